@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.request import check_request, speed_in_si
-from rotorgear.analysis.response.state_space import linear_system
+from rotorgear.analysis.response.state_space import frf_system
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.export.files import reason_of, replacing
 from rotorgear.export.state_space import require_matrix_name
@@ -53,7 +53,7 @@ def write_matrices(
         )
     if fmax is not None and not 0.0 < fmax < float("inf"):
         raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
-    system, _ = linear_system(model, turns, fmax or 1.0, elements)
+    system, _ = frf_system(model, turns, fmax or 1.0, elements)
     found = system.matrices(turns)
     parts = {
         "mass": system.mass,

@@ -72,6 +72,19 @@ class OilFilm(ForceLaw):
         T = film_temperature(self.grade, self.density, self.inlet_temperature, rise)
         return replace(self, viscosity=oil_viscosity(self.grade, self.density, T))
 
+    def kept_at(self, temperature: float | None, inlet: float | None) -> Self:
+        """The film of motions in time, which are too fast to warm it: at one temperature (K), with its inlet (rad) in one place.
+
+        None leaves what follows from no equilibrium as it is.
+        """
+        kept: dict[str, Any] = {}
+        if temperature is not None:
+            viscosity = oil_viscosity(self.grade, self.density, temperature)
+            kept = {"viscosity": viscosity, "inlet_temperature": temperature, "heat_share": 0.0}
+        if inlet is not None:
+            kept |= {"follows": False, "inlet": inlet}
+        return replace(self, **kept)
+
     def too_hot(self) -> str:
         """Why the film does not hold at its temperature, as a clause; or ""."""
         T = self.temperature if self.heats else None

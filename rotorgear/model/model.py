@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Hashable, Mapping
 from functools import cached_property
 from html import escape
 from typing import Any
@@ -14,7 +15,8 @@ from rotorgear.model.address import with_values
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.layout.mean_load import MeanLoad, torque_flow
+from rotorgear.model.layout.state import State
+from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.parts.fields import MOTIONS, Name
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.model.parts.tables import Tables, counted
@@ -87,19 +89,11 @@ class Model(Tables):
         return []
 
     @cached_property
-    def mean_loads(self) -> dict[int, MeanLoad]:
-        """The mean loads that were asked for, by direction."""
+    def states(self) -> dict[Hashable, State]:
+        """The states that were asked for, by what they are about: several analyses of one state find it once."""
         return {}
 
-    @cached_property
-    def linear_models(self) -> dict[tuple[float | None, ...], tuple[Model, tuple[str, ...]]]:
-        """Linear models about the equilibrium of this one, by speeds, each with sentences on what was linearised.
-
-        Analyses make them (`analysis/static/tangent.py`): several about one state find it once.
-        """
-        return {}
-
-    def mean_load(self, direction: int | None = None) -> MeanLoad:
+    def torque_flow(self, direction: int | None = None) -> State:
         """Forces, working flanks and mesh stiffnesses of the torque flow, made once for each sense of rotation.
 
         Args:
@@ -110,9 +104,14 @@ class Model(Tables):
             ConvergenceError: in a loop, mesh stiffness and torque split don't come to agree.
         """
         sense = direction or self.layout.direction
-        if sense not in self.mean_loads:
-            self.mean_loads[sense] = torque_flow(self.layout, sense)
-        return self.mean_loads[sense]
+        if sense not in self.states:
+            self.states[sense] = torque_flow(self.layout, sense)
+        return self.states[sense]
+
+    def mean_load(self, direction: int | None = None) -> State:
+        """Old name of `torque_flow`."""
+        warnings.warn("Model.mean_load is now Model.torque_flow", FutureWarning, stacklevel=2)
+        return self.torque_flow(direction)
 
 
 __all__ = ["MOTIONS", "SCHEMA_VERSION", "Model"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.elements.gear_mesh import face_strains
-from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.model.layout.mesh_force import MeshForce
 from rotorgear.system.groups import contact_geometry, face_of
 from rotorgear.system.system import System
 
@@ -58,7 +58,7 @@ class ContactLines:
 
 def contact_lines(system: System) -> ContactLines:
     """Return the contacts of a system as vectors over its free degrees of freedom."""
-    states = system.load.forces
+    states = system.state.forces
     groups = [group for group in system.groups if group.part.startswith("meshes.")]
     count = len(states)
     size = system.dofs.transform.shape[0]

@@ -27,11 +27,12 @@ from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.elements.spring import grounded_spring, linking_spring, seated_spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.layout.mean_load import MeanLoad, MeshForce
+from rotorgear.model.layout.mesh_force import MeshForce
+from rotorgear.model.layout.spring import matrix_rows
+from rotorgear.model.layout.state import State
 from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatrix
+from rotorgear.model.parts.supports import Bearing
 from rotorgear.model.parts.tables import Tables
-from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.nodes import CASING, Element, Nodes
 
 if TYPE_CHECKING:
@@ -125,9 +126,11 @@ def node_dofs(*nodes: int) -> np.ndarray:
     return np.concatenate([6 * node + np.arange(6) for node in nodes])[None]
 
 
-def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[ElementGroup]:
+def constant_groups(state: State, nodes: Nodes) -> list[ElementGroup]:
     """Groups that do not depend on speed, except through gyroscopic and circulatory terms in proportion to it."""
+    layout = state.layout
     model = layout.model
+    springs = state.springs
     found = [group for name in model.shafts for group in _shaft(layout, nodes, name)]
     for body in layout.bodies:
         b = body.body
@@ -142,7 +145,7 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
             matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
         found.append(ElementGroup(body.part, body.shaft, matrices, dofs, layout.train.ratio(body.shaft)))
     found += [_gear_body(layout, nodes, name, wheel) for name, wheel in layout.elastic_bodies.items()]
-    for force in load.forces:
+    for force in state.forces:
         c = force.contact
         geometry = contact_geometry(force)
         face = face_of(layout, force) if force.face else None
@@ -154,46 +157,47 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
         if pedestal is not None:
             part = f"bearings.{name}.pedestal"
             dofs = node_dofs(nodes.of_pedestal(name))
-            matrices = grounded_spring(_rows(pedestal.stiffness), _rows(pedestal.damping))
+            matrices = grounded_spring(matrix_rows(pedestal.stiffness), matrix_rows(pedestal.damping))
             found.append(ElementGroup(part, bearing.shaft, matrices, dofs))
             if pedestal.mass:
                 found.append(ElementGroup(part, bearing.shaft, rigid_body(pedestal.mass, 0.0, 0.0), dofs))
-        if not bearing.table:
-            found.append(_bearing(layout, nodes, name, bearing, _rows(bearing.stiffness), _rows(bearing.damping)))
+        spring = springs[f"bearings.{name}"]
+        if not spring.varies:
+            found.append(_bearing(layout, nodes, name, bearing, spring.stiffness[0], spring.damping[0]))
     for name, support in model.supports.items():
         node = nodes.at(*layout.place(f"supports.{name}"))
-        matrices = grounded_spring(_rows(support.stiffness), _rows(support.damping))
+        spring = springs[f"supports.{name}"]
+        matrices = grounded_spring(spring.stiffness[0], spring.damping[0])
         found.append(ElementGroup(f"supports.{name}", support.shaft, matrices, node_dofs(node)))
     for name, element in model.nonlinear_elements.items():
-        if not element.table:
-            found.append(_element(layout, nodes, name, element, _rows(element.stiffness), _rows(element.damping)))
-    for name, coupling in model.couplings.items():
+        spring = springs[f"nonlinear_elements.{name}"]
+        if not spring.varies:
+            found.append(_element(layout, nodes, name, element, spring.stiffness[0], spring.damping[0]))
+    for name in model.couplings:
         first, second = layout.places(f"couplings.{name}")
+        spring = springs[f"couplings.{name}"]
         matrices = linking_spring(
-            _rows(coupling.stiffness), _rows(coupling.damping), np.array([0, 0, first.z]), np.array([0, 0, second.z])
+            spring.stiffness[0], spring.damping[0], np.array([0, 0, first.z]), np.array([0, 0, second.z])
         )
         dofs = node_dofs(nodes.at(*first), nodes.at(*second))
         found.append(ElementGroup(f"couplings.{name}", "", matrices, dofs))
     return found
 
 
-def table_groups(layout: Layout, nodes: Nodes, speed: float) -> list[ElementGroup]:
-    """Bearings and nonlinear elements with tables at a speed of the reference shaft in rad/s.
+def table_groups(state: State, nodes: Nodes, speed: float) -> list[ElementGroup]:
+    """Bearings and nonlinear elements that vary over the speed of their shaft, at a speed of the reference shaft in rad/s.
 
     Raises:
         AnalysisError: the speed of a bearing's shaft lies outside its table.
     """
+    layout = state.layout
     found = []
-    for name, bearing in layout.model.bearings.items():
-        if bearing.table:
-            shaft_speed = abs(layout.train.ratio(bearing.shaft) * speed)
-            values = table_values(f"bearings.{name}", bearing, shaft_speed)
-            found.append(_bearing(layout, nodes, name, bearing, *values))
-    for name, element in layout.model.nonlinear_elements.items():
-        if element.table:
-            shaft_speed = abs(layout.train.ratio(element.shaft) * speed)
-            values = table_values(f"nonlinear_elements.{name}", element, shaft_speed)
-            found.append(_element(layout, nodes, name, element, *values))
+    for make, table in ((_bearing, "bearings"), (_element, "nonlinear_elements")):
+        for name, part in getattr(layout.model, table).items():
+            spring = state.springs[f"{table}.{name}"]
+            if spring.varies:
+                values = spring.at(abs(layout.train.ratio(part.shaft) * speed), f"{table}.{name}")
+                found.append(make(layout, nodes, name, part, *values))
     return found
 
 
@@ -213,33 +217,6 @@ def _gear_body(layout: Layout, nodes: Nodes, name: str, wheel: ReducedWheel) -> 
     motions = tuple(nodes.internal[k - 6 * len(nodes)] for k in own)
     return ElementGroup(
         f"gears.{name}", place.shaft, gear_body(wheel), dofs, layout.train.ratio(place.shaft), body_motions=motions
-    )
-
-
-def _rows(matrix: StiffnessMatrix | DampingMatrix | None) -> np.ndarray:
-    return np.zeros((6, 6)) if matrix is None else np.array(matrix.as_rows())
-
-
-def table_values(part: str, bearing: Bearing | NonlinearElement, speed: float) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping (6, 6) of a part with a table at the speed of its shaft in rad/s; `part` is its address.
-
-    Raises:
-        AnalysisError: the speed lies outside the table.
-    """
-    speeds = np.array([row.speed for row in bearing.table])
-    if not speeds[0] * (1.0 - 1e-12) <= speed <= speeds[-1] * (1.0 + 1e-12):
-        rpm, first, last = (value * RPM_PER_RAD_S for value in (speed, speeds[0], speeds[-1]))
-        raise AnalysisError(
-            f"{part}: its shaft turns at {rpm:.6g} rpm, but its table covers {first:.6g} to "
-            f"{last:.6g} rpm; ask for a speed inside (--speed) or add rows to the table"
-        )
-    right = int(np.clip(np.searchsorted(speeds, speed), 1, len(speeds) - 1))
-    share = float(np.clip((speed - speeds[right - 1]) / (speeds[right] - speeds[right - 1]), 0.0, 1.0))
-    low = bearing.table[right - 1]
-    high = bearing.table[right]
-    return (
-        (1.0 - share) * _rows(low.stiffness) + share * _rows(high.stiffness),
-        (1.0 - share) * _rows(low.damping) + share * _rows(high.damping),
     )
 
 

@@ -11,7 +11,7 @@ from rotorgear.system.system import System
 def torque_loads(system: System) -> np.ndarray:
     """Applied torques at their places, (a,)."""
     f = np.zeros(system.dofs.transform.shape[0])
-    for item in system.load.applied:
+    for item in system.state.applied:
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
     return f
 

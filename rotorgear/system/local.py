@@ -1,7 +1,7 @@
 """The system as time integrators take it: the linear structure without its meshes, and each tooth contact as a local law.
 
 Per flank and helix one relative displacement d = v^T q (elements/gear_mesh.py); phases of k(t) and e(t) follow from tooth
-numbers and centre lines (model/layout/mean_load.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
+numbers and centre lines (model/layout/state.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
-from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.model.layout.mesh_force import MeshForce
 from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -146,7 +146,7 @@ def torque_load(system: System) -> np.ndarray:
     f = np.zeros(system.dofs.transform.shape[0])
     # A history acts as a law with its whole value, the moment about z in the balance of torques included.
     histories = {load.address for load in system.layout.external_loads if load.history}
-    for item in system.load.applied:
+    for item in system.state.applied:
         if varying_load(system, item.name) is not None or item.name in histories:
             continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
@@ -155,13 +155,13 @@ def torque_load(system: System) -> np.ndarray:
 
 def _faces(system: System) -> dict[int, FaceMap]:
     """Maps over the tilt of the flanks by number of the contact, where loaded teeth have one."""
-    load = system.load.about_nominal_flanks
+    load = system.state.about_nominal_flanks
     found = {k: load.face_map(force) for k, force in enumerate(load.forces)}
     return {k: teeth for k, teeth in found.items() if teeth is not None}
 
 
 def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
-    load = system.load.about_nominal_flanks
+    load = system.state.about_nominal_flanks
     found = []
     for number, force in enumerate(load.forces):
         contact = force.contact
@@ -212,7 +212,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
 
 def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: FaceMap, label: str) -> list[LocalPart]:
     """A helix of loaded teeth that follows the tilt of its shafts; its coast flanks stand askew as in the mean state."""
-    load = system.load.about_nominal_flanks
+    load = system.state.about_nominal_flanks
     contact = force.contact
     part = f"meshes.{contact.mesh}"
     geometry = contact_geometry(force)
@@ -356,7 +356,7 @@ def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, 
     """Straight pieces of k over its mean in the mesh cycle of one helix, where the file gives a curve or a stiffness model."""
     if not system.layout.mesh(force.contact.mesh).varies:
         return ()
-    curve = system.load.curve(force)
+    curve = system.state.curve(force)
     values = curve.evenly(POSITIONS) if curve.event is not None else curve.transverse
     share = values / values.mean()
     # Positions count along the path from approach of the pinion: where the gear drives, time runs the other way.

@@ -14,7 +14,7 @@ import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
 from rotorgear.elements.spring import rigid_transfer
-from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.model.layout.mesh_force import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
@@ -73,14 +73,23 @@ def element_parts(system: System) -> Iterator[LocalPart]:
         if seat is not None:
             at_seat = rows @ rigid_transfer(seat.arm)
             columns -= columns_at(system, system.nodes.of_seat(seat.casing, seat.number), at_seat)
-        yield LocalPart(part, name, element_law(element, float(system.train.ratio(element.shaft))), columns)
+        law = _kept(system, part, element_law(element, float(system.train.ratio(element.shaft))))
+        yield LocalPart(part, name, law, columns)
+
+
+def _kept(system: System, part: str, law: ForceLaw) -> ForceLaw:
+    """A law with what the state keeps of its film."""
+    film = system.state.films.get(part)
+    return law.kept_at(film.temperature, film.inlet) if film else law  # type: ignore[attr-defined]
 
 
 def without_linear_part(system: System) -> list[LocalPart]:
-    """Nonlinear elements, and bearings that are given by their rolling elements alone: in statics their laws hold the shafts."""
+    """Nonlinear elements, and bearings that have a law alone: in statics their laws hold the shafts, but where the state has a
+    spring in their place.
+    """
     bearings = system.model.bearings
     alone = [part for part in bearing_parts(system) if bearings[part.label].stiffness is None]
-    return [*alone, *element_parts(system)]
+    return [part for part in (*alone, *element_parts(system)) if part.part not in system.state.tangents]
 
 
 def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
@@ -127,7 +136,9 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
         if not bearing.has_law:
             continue
         check_oil(f"bearings.{name}", bearing)
-        law = bearing_law(bearing, float(system.train.ratio(bearing.shaft)), built_for)
+        law = _kept(
+            system, f"bearings.{name}", bearing_law(bearing, float(system.train.ratio(bearing.shaft)), built_for)
+        )
         rows = np.eye(6)[: law.components]
         dofs = node_dofs(system.nodes.at(*system.layout.place(f"bearings.{name}")))[0]
         seat = system.layout.seat(f"bearings.{name}")
@@ -204,7 +215,7 @@ def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
 
 def load_parts(system: System) -> Iterator[LocalPart]:
     """Yield the loads that vary with time or speed."""
-    varying = [(item, load) for item in system.load.applied if (load := varying_load(system, item.name)) is not None]
+    varying = [(item, load) for item in system.state.applied if (load := varying_load(system, item.name)) is not None]
     if not varying:
         return
     from rotorgear.forces.torque_curve import TorqueCurve

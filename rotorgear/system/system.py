@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.model.layout.mean_load import MeanLoad
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.state import State
 from rotorgear.model.layout.train import Train
 from rotorgear.model.model import Model
 from rotorgear.system.assembly import assemble, strain_factor, without_negative
@@ -42,8 +43,8 @@ class System:
         model: a checked model.
         elements: basic elements in each shaft segment.
         plan: how finely each piece is cut, in place of `elements`.
-        load: mean forces, working flanks and mesh stiffnesses. None: those of the torque flow at the operating speed.
-        direction: old way to ask for the load of one sense of rotation.
+        state: flanks, forces and tangents that it is about. None: those of the torque flow at the operating speed.
+        load, direction: old ways to ask for a state.
     """
 
     def __init__(
@@ -52,17 +53,21 @@ class System:
         elements: int | None = None,
         *,
         plan: Plan | None = None,
-        load: MeanLoad | None = None,
+        state: State | None = None,
+        load: State | None = None,
         direction: int | None = None,
     ) -> None:
         if direction is not None:
-            warnings.warn("System(direction=...) is now load=model.mean_load(direction)", FutureWarning, stacklevel=2)
+            warnings.warn(
+                "System(direction=...) is now state=model.torque_flow(direction)", FutureWarning, stacklevel=2
+            )
+        if load is not None:
+            warnings.warn("System(load=...) is now state=...", FutureWarning, stacklevel=2)
         self.model = model
-        self.layout = model.layout
         self.plan = plan or Plan(elements or 1)
-        self.load = load or model.mean_load(direction)
-        self.nodes: Nodes = discretise(self.layout, self.plan)
-        self.dofs: DofMap = map_dofs(self.layout, self.nodes)
+        state = state or load or model.torque_flow(direction)
+        # A state may have been found on a model that differs in what it does not depend on, such as modes of its casings.
+        self.state = state if state.layout is model.layout else replace(state, layout=model.layout)
         self._last: tuple[float, Matrices] | None = None
         self._last_damping: tuple[float, sp.csc_array] | None = None
         self._last_stiffness: tuple[float, sp.csc_array] | None = None
@@ -70,11 +75,32 @@ class System:
 
     def with_plan(self, plan: Plan) -> System:
         """The same model under the same load on another mesh."""
-        return System(self.model, plan=plan, load=self.load)
+        return System(self.model, plan=plan, state=self.state)
 
-    def with_load(self, load: MeanLoad) -> System:
-        """The same mesh about another mean state: its contacts have the flanks and stiffnesses of that load."""
-        return System(self.model, plan=self.plan, load=load)
+    def with_state(self, state: State) -> System:
+        """The same mesh about another state."""
+        return System(self.model, plan=self.plan, state=state)
+
+    @property
+    def load(self) -> State:
+        """Old name of `state`."""
+        warnings.warn("System.load is now System.state", FutureWarning, stacklevel=2)
+        return self.state
+
+    @property
+    def layout(self) -> Layout:
+        """What follows from the parts of the model before any load."""
+        return self.state.layout
+
+    @cached_property
+    def nodes(self) -> Nodes:
+        """Nodes of all parts, by the plan."""
+        return discretise(self.layout, self.plan)
+
+    @cached_property
+    def dofs(self) -> DofMap:
+        """Which of their displacements are degrees of freedom, and how the others follow."""
+        return map_dofs(self.layout, self.nodes)
 
     @property
     def train(self) -> Train:
@@ -84,7 +110,7 @@ class System:
     @property
     def direction(self) -> int:
         """+1 or -1: sense in which the reference shaft turns."""
-        return self.load.direction
+        return self.state.direction
 
     @property
     def n(self) -> int:
@@ -94,19 +120,17 @@ class System:
     @cached_property
     def has_tables(self) -> bool:
         """Whether stiffness or damping of some part depends on speed in another way than in proportion: tables, gear bodies."""
-        model = self.model
-        tables = [bearing.table for bearing in model.bearings.values()]
-        bodies = [gear.body.mesh for gear in model.gears.values()]
-        return any([*tables, *bodies, *(element.table for element in model.nonlinear_elements.values())])
+        bodies = any(gear.body.mesh for gear in self.model.gears.values())
+        return bodies or any(spring.varies for spring in self.state.springs.values())
 
     @cached_property
     def groups(self) -> list[ElementGroup]:
         """Element groups without the bearings that have tables."""
-        return constant_groups(self.layout, self.load, self.nodes)
+        return constant_groups(self.state, self.nodes)
 
     def groups_at(self, speed: float) -> list[ElementGroup]:
         """All element groups at a reference speed in rad/s."""
-        return [group.at(speed) for group in self.groups] + table_groups(self.layout, self.nodes, speed)
+        return [group.at(speed) for group in self.groups] + table_groups(self.state, self.nodes, speed)
 
     @cached_property
     def mass(self) -> sp.csc_array:

@@ -347,9 +347,9 @@ def test_c21_input_torque_acts_with_the_rotation_and_output_torque_against_it_an
     direction: int,
 ) -> None:
     model = rg.load(SPLIT_TORQUE)
-    system = System(model, load=model.mean_load(direction))
+    system = System(model, state=model.torque_flow(direction))
     speed = direction * 16350 / RPM_PER_RAD_S
-    torques = {item.shaft: item.torque for item in system.load.applied}
+    torques = {item.shaft: item.torque for item in system.state.applied}
     powers = {shaft: torque * speed * system.train.ratio(shaft) for shaft, torque in torques.items()}
     assert powers["input"] == pytest.approx(2.5e6, rel=1e-12)
     assert powers["output"] == pytest.approx(-2.5e6, rel=1e-12)
@@ -373,7 +373,7 @@ def loop(first: float, second: float, wheel_a: float = 0.15) -> rg.Model:
 
 
 def test_c22_in_a_loop_the_torque_splits_by_stiffness_and_driving_flanks_follow_the_torque() -> None:
-    flow = System(loop(4e7, 2.5e7)).load
+    flow = System(loop(4e7, 2.5e7)).state
     force = {item.contact.mesh: item.normal_force for item in flow.forces}
     step = 0.15 / 0.04  # force on the second mesh over that on the first
     give_a = 1 / 4e7 + step**2 / 2.5e7
@@ -390,7 +390,7 @@ def test_c22_without_torque_the_shaft_nearer_to_the_input_drives() -> None:
     for first, drives in (("pinion", True), ("wheel", False)):
         shaft = {"pinion": "one", "wheel": "two"}[first]
         model = lumped_pair(lumped_gear("one", 0.06), lumped_gear("two", 0.1), {}, operation={"input_shaft": shaft})
-        (force,) = System(model).load.forces
+        (force,) = System(model).state.forces
         assert force.assumed
         assert force.pinion_drives is drives
         assert force.torque_sense == 1  # input wheel turns positively, its pinion negatively, and resists

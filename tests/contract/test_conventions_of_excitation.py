@@ -88,11 +88,11 @@ def pair_of_one_kind(kind: str, clocking: float, **own: Any) -> rg.Model:
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_c31_the_helix_at_larger_z_is_ahead_as_a_gear_that_is_turned_on_its_shaft(direction: int) -> None:
-    both = pair_of_one_kind("herringbone", 0.0, nodes=1).mean_load(direction)
+    both = pair_of_one_kind("herringbone", 0.0, nodes=1).torque_flow(direction)
     first, second = (both.phase(state.contact) for state in both.forces)
     # Both gears have their teeth ahead at larger z. The big one turns with the input, so that its teeth lie towards +z.
     apart, turned = (
-        pair_of_one_kind("helical", angle).mean_load(direction) for angle in (0.0, 0.2 * 2.0 * math.pi / 31)
+        pair_of_one_kind("helical", angle).torque_flow(direction) for angle in (0.0, 0.2 * 2.0 * math.pi / 31)
     )
     lead = turned.phases["m"] - apart.phases["m"]  # type: ignore[operator]
     assert cmath.exp(1j * (second - first)) == pytest.approx(cmath.exp(1j * lead), rel=1e-12)  # type: ignore[operator]

@@ -158,7 +158,7 @@ def test_c15_a_right_hand_pinion_that_drives_counter_clockwise_is_pushed_to_plus
     operation = {"input_shaft": "one", "output_shaft": "two", "torque": 100.0, "speed": 100.0 * speed}
     model = lumped_pair(lumped_gear("one", 0.06, hand), lumped_gear("two", 0.15, other), {}, operation=operation)
     system = System(model)
-    (v,), (force,) = vectors(system), system.load.forces
+    (v,), (force,) = vectors(system), system.state.forces
     on_bodies = -force.normal_force * v
     assert on_bodies[2] == pytest.approx(sign * force.normal_force * np.sin(0.4), rel=1e-12)
     assert on_bodies[8] == pytest.approx(-on_bodies[2], rel=1e-12)
@@ -211,7 +211,7 @@ def herringbone_pair(nodes: int, hand: str = "right", rigid: bool = True, **shaf
 @pytest.mark.parametrize("nodes", [1, 2])
 def test_c16_a_symmetric_herringbone_has_no_net_axial_force(nodes: int) -> None:
     system = System(herringbone_pair(nodes))
-    forces = [-force.normal_force * v for force, v in zip(system.load.forces, vectors(system), strict=True)]
+    forces = [-force.normal_force * v for force, v in zip(system.state.forces, vectors(system), strict=True)]
     total = np.sum(forces, axis=0)
     assert abs(forces[0][2]) > 100.0
     assert abs(total[2]) < 1e-12 * abs(forces[0][2])

@@ -57,7 +57,7 @@ ROOMS = {
         "rig": {"common", "modal", "static"},
         "updating": {"common", "rig"},
         "correlation": {"common", "modal", "response", "rig", "updating"},
-        "layout": {"common", "scatter"},
+        "layout": {"common", "scatter", "static"},
         "casing": {"common"},
         "standards": {"campbell", "common", "modal", "response", "static"},
         "": {"bearing", "campbell", "casing", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},

@@ -3,14 +3,16 @@
     python -m tests.frozen write before.pickle [--only TEXT ...] [--jobs 2]
     python -m tests.frozen compare before.pickle after.pickle
 
-Digits are those of one machine: write both files on it, with one thread (OPENBLAS_NUM_THREADS=1). Times and versions are left out,
-and a refusal counts as its sentence. The exit code of `compare` is 1 where anything differs.
+Digits are those of one machine: write both files on it, with one thread (OPENBLAS_NUM_THREADS=1). Times and versions are left
+out, and a refusal counts as its sentence. A file that is there is gone on with. The exit code of `compare` is 1 where anything
+differs.
 """
 
 from __future__ import annotations
 
 import argparse
 import multiprocessing
+import os
 import pickle
 import sys
 from collections.abc import Iterator
@@ -18,20 +20,24 @@ from typing import Any
 
 import numpy as np
 
-from tests.frozen.output import run_case
+from tests.frozen.output import UNFINISHED, run_case
 from tests.frozen.runs import cases
 
 
 def write(path: str, only: list[str], jobs: int) -> None:
     """Run all cases whose name has one of the texts and write what they say."""
-    chosen = [k for k, case in enumerate(cases()) if not only or any(text in case.name for text in only)]
-    found = {}
+    found: dict[str, dict[str, Any]] = {}
+    if os.path.exists(path):
+        with open(path, "rb") as file:
+            found = pickle.load(file)
+    wanted = [k for k, case in enumerate(cases()) if not only or any(text in case.name for text in only)]
+    chosen = [k for k in wanted if cases()[k].name not in found]
     with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=40) as pool:
         for name, output, seconds in pool.imap_unordered(run_case, chosen):
             found[name] = output
-            print(f"{len(found):4d} of {len(chosen)}  {seconds:7.1f} s  {name}", flush=True)
-    with open(path, "wb") as file:
-        pickle.dump(found, file)
+            print(f"{len(found):4d} of {len(wanted)}  {seconds:7.1f} s  {name}", flush=True)
+            with open(path, "wb") as file:
+                pickle.dump(found, file)
 
 
 def compare(first: str, second: str) -> int:
@@ -39,7 +45,8 @@ def compare(first: str, second: str) -> int:
     with open(first, "rb") as one, open(second, "rb") as other:
         before, after = pickle.load(one), pickle.load(other)
     differing = 0
-    for name in sorted(before.keys() & after.keys()):
+    both = [name for name in sorted(before.keys() & after.keys()) if UNFINISHED not in {*before[name], *after[name]}]
+    for name in both:
         lines = [
             line
             for key in sorted(before[name].keys() | after[name].keys())
@@ -49,7 +56,7 @@ def compare(first: str, second: str) -> int:
             differing += 1
             print(name, *lines, sep="\n    ")
     alone = sorted(before.keys() ^ after.keys())
-    print(f"{len(before.keys() & after.keys())} cases in both, {differing} differ; in one file only: {alone or 'none'}")
+    print(f"{len(both)} cases finished in both, {differing} differ; in one file only: {alone or 'none'}")
     return differing
 
 

@@ -75,7 +75,7 @@ def test_a_film_that_carries_nothing_is_in_equilibrium_where_it_is_centred(seed:
     model = model_of("geared_pair", seed, tmp_path)
     assert model.operation is not None
     speed = model.operation.speed
-    [law] = equilibrate(System(model, load=model.mean_load(speed).of_kind("static")), speed).laws
+    [law] = equilibrate(System(model, state=model.torque_flow(speed).of_kind("static")), speed).laws
     assert np.abs(law.force).max() < 1e-9
     assert np.hypot(*law.d) < 1e-12 * law.part.law.clearance
 

@@ -34,7 +34,7 @@ def test_the_jeffcott_rotor_runs_above_its_critical_speed_of_1190_rpm_with_1_per
 def test_the_helical_pair_is_pushed_as_its_comment_says_and_checks_without_a_warning() -> None:
     model = rg.load(MODELS / "helical_pair.toml")
     system = System(model)
-    (force,) = system.load.forces
+    (force,) = system.state.forces
     (mesh,) = (group.matrices.strain for group in system.groups if group.part == "meshes.stage")
     assert force.pinion_drives
     assert mesh is not None

@@ -78,7 +78,7 @@ def found(name: str) -> StaticResult:
 def positions_apart(model: rg.Model) -> np.ndarray:
     """Misalignment (p,) in m of the only mesh at each position by itself, from the pair alone and the tilt of its shafts."""
     apart = model.with_("meshes.stage.tilt", False)
-    state = equilibrate(System(apart, load=apart.mean_load().of_kind("static")), 0.0)
+    state = equilibrate(System(apart, state=apart.torque_flow().of_kind("static")), 0.0)
     tilt = state.lines.tilt
     # A couple along the face turns no shaft: the mesh force stays, and the structure tilts by c for each N m.
     c = float((tilt.T @ state.solver.solve(tilt))[0, 0])

@@ -80,7 +80,7 @@ def reference(model: rg.Model, positions: int) -> Curves:
         positions: in a base pitch.
     """
     force = np.asarray(rg.static(model).mesh_force)
-    if len(model.mean_load(1).forces) > 1:
+    if len(model.torque_flow(1).forces) > 1:
         return joint(model, force, positions)
     if any(mesh.tilt for mesh in model.meshes.values()):
         return coupled(model, force, positions)
@@ -89,7 +89,7 @@ def reference(model: rg.Model, positions: int) -> Curves:
 
 def contact(model: rg.Model, positions: int) -> tuple[int, np.ndarray]:
     """Periods of the cycle, and transmission error (p, 1) of the loaded contact of a lone mesh without any map."""
-    (state,) = model.mean_load(1).forces
+    (state,) = model.torque_flow(1).forces
     mesh = model.layout.mesh(state.contact.mesh)
     load = state.normal_force * np.cos(state.contact.base_helix_angle)
     problem = contact_problem(mesh.helix_teeth(0, state.torque_sense))
@@ -122,7 +122,7 @@ def coupled(model: rg.Model, force: np.ndarray, positions: int) -> Curves:
     a, tilt_0 = np.polyfit(cycle.moment[:, 0], cycle.tilt[:, 0], 1)
     low, high = cycle.tilt[:, 0].min(), cycle.tilt[:, 0].max()
     tilts = 0.5 * (low + high) + 0.75 * (high - low) * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
-    (state,) = model.mean_load(1).forces
+    (state,) = model.torque_flow(1).forces
     mesh = model.layout.mesh(state.contact.mesh)
     teeth = mesh.working_teeth(state.torque_sense)
     problems = [contact_problem(replace(teeth, misalignment=teeth.misalignment - teeth.width * tilt)) for tilt in tilts]
@@ -147,8 +147,8 @@ def coupled(model: rg.Model, force: np.ndarray, positions: int) -> Curves:
 def about_mean(model: rg.Model) -> Setup:
     """The model about the mean state of its loaded teeth."""
     assert model.operation is not None
-    load = model.mean_load(1).of_kind("static")
-    return mean_state(System(model, load=load), float(model.operation.speed or 0.0))
+    load = model.torque_flow(1).of_kind("static")
+    return mean_state(System(model, state=load), float(model.operation.speed or 0.0))
 
 
 def joint_of(setup: Setup) -> JointState:

@@ -68,7 +68,7 @@ def measured(shafts: int) -> dict[str, float]:
 
     model = chain(shafts)
     lap("model")
-    model.mean_load()
+    model.torque_flow()
     system = System(model, 2)
     _ = system.mass, system.stiffness(), system.strain_factor()
     lap("matrices")

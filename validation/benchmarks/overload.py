@@ -29,12 +29,12 @@ MOST_RESIDUAL = 1e-9
 def loads(model: rg.Model) -> list[tuple[MeshLayout, ToothPair, float]]:
     """Each mesh of gears with teeth, one helix of it, and F_bt (N) of that helix."""
     found = []
-    torque = model.operation is not None and bool(model.mean_load(1).applied)
+    torque = model.operation is not None and bool(model.torque_flow(1).applied)
     for name in model.meshes:
         mesh = model.layout.mesh(name)
         if mesh.pinion.geometry is None or mesh.gear.geometry is None:
             continue
-        forces = model.mean_load(1).of_mesh(name) if torque else ()
+        forces = model.torque_flow(1).of_mesh(name) if torque else ()
         force = max((abs(one.normal_force) * np.cos(one.contact.base_helix_angle) for one in forces), default=0.0)
         sense = forces[0].torque_sense if forces else 1
         found.append((mesh, mesh.working_teeth(sense), float(force or LINE_LOAD * mesh.width)))

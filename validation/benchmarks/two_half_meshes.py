@@ -45,7 +45,7 @@ def flank_row(model: rg.Model, z: float) -> np.ndarray:
     working = math.acos((r_b1 + r_b2) / distance)
     e = centres / distance
     across = np.array([-e[1], e[0], 0.0])
-    sense = math.copysign(1.0, model.mean_load(1).forces[0].torque_sense)
+    sense = math.copysign(1.0, model.torque_flow(1).forces[0].torque_sense)
     n = math.cos(beta_b) * (sense * math.cos(working) * across + math.sin(working) * e)
     n[2] = -sense * math.sin(beta_b)
     pitch_point = first + r_b1 / math.cos(working) * e + np.array([0.0, 0.0, z])

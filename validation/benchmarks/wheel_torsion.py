@@ -125,7 +125,7 @@ def reference_hz(model: rg.Model, *, rigid: bool, side: float = SIDE) -> np.ndar
     M = sp.csc_array(T.T @ sp.kron(matrices.mass, sp.eye_array(3)) @ T)
 
     # The mesh holds the mean rotation of the root circle over the face.
-    force = next(iter(model.mean_load().forces))
+    force = next(iter(model.torque_flow().forces))
     spring = force.contact.stiffness * wheel.geometry.base_radius**2 * WEDGE / (2.0 * math.pi)
     low, high = rectangles[-1][2:]
     on_circle = np.flatnonzero(

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.static.solve import LawState
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.state_at import state_at
 from rotorgear.model.model import Model
 
 _MODES = 24
@@ -41,7 +41,7 @@ class Decrements:
         Args:
             speed: of the reference shaft in rad/s. near: the laws in a known equilibrium at that speed or near by.
         """
-        about_equilibrium(self._model, [speed], near)  # which the modes find there
+        state_at(self._model, [speed], near=near)  # which the modes find there
         modes = modal(self._system, speed=speed, modes=_MODES, error_estimate=False)
         s = modes.eigenvalues
         s = s[(s.imag > 0.0) & ~modes.rigid & (np.abs(s.real) > _UNDAMPED * np.abs(s))]

@@ -17,7 +17,7 @@ from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
 from rotorgear.quantity import nearest
 from rotorgear.solvers.sparse.newton import ROUNDING
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
@@ -76,7 +76,7 @@ def equilibrium_of(model: Model, speed: float, near: Sequence[LawState] = ()) ->
     Raises:
         AnalysisError: there is no equilibrium.
     """
-    system = System(model, load=model.mean_load(direction_of(speed)).of_kind("static"))
+    system = flow_system(model, direction=direction_of(speed), kind="static")
     return over_cycle(equilibrate(system, speed, near=near), speed)[0]
 
 

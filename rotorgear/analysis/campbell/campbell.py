@@ -27,7 +27,7 @@ from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
-from rotorgear.analysis.static.tangent import about_equilibrium_of
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -93,11 +93,19 @@ def campbell(
         modes = DEFAULT_MODES if fmax is None else None
     _check(modes, fmax, sidebands)
     clock = Clock()
-    model, given, notes = about_equilibrium_of(model, [float(speed) for speed in asked])
-    model, few = (model, ()) if isinstance(model, System) else serving(model, fmax)
+    about = linear_system(model, [float(speed) for speed in asked])
+    model, few = (about, ()) if isinstance(model, System) else serving(model, fmax)
     ends = [float(asked[0]), float(asked[-1])]
     system = system_for_speeds(
-        model, ends, modes=modes, fmax=fmax, elements=elements, accuracy=accuracy, only=tuple(only), progress=progress
+        model,
+        ends,
+        modes=modes,
+        fmax=fmax,
+        elements=elements,
+        accuracy=accuracy,
+        only=tuple(only),
+        state=about.state,
+        progress=progress,
     )
     clock.lap("mesh")
     request = Request(modes, None if fmax is None else 2.0 * np.pi * fmax, tuple(only))
@@ -120,8 +128,8 @@ def campbell(
     )
     return replace(
         result,
-        model=given,
-        left_out=(*result.left_out, *notes, *(note for note in (begun, beyond) if note)),
+        model=parts,
+        left_out=(*result.left_out, *about.state.notes, *(note for note in (begun, beyond) if note)),
         warnings=(*result.warnings, *few, *_reduction_warnings(system, found, chains), *([short] if short else [])),
         status=short or "success",
     )

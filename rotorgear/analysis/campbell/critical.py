@@ -23,7 +23,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.analysis.static.lowest_speed import lowest_speed
-from rotorgear.analysis.static.tangent import about_equilibrium_of
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -89,9 +89,9 @@ def critical(
     clock = Clock()
     low, begun = lowest_speed(parts, start, top)
     # Where a line meets a mode is not known before: tangents over the whole range.
-    model, given, notes = about_equilibrium_of(model, list(np.linspace(low, top, _TANGENTS)))
+    about = linear_system(model, list(np.linspace(low, top, _TANGENTS)))
     highest = min(max(line.frequency_hz(top) for line in lines), fmax or np.inf)
-    model, few = (model, ()) if isinstance(model, System) else serving(model, highest)
+    model, few = (about, ()) if isinstance(model, System) else serving(model, highest)
     aim = accuracy
     for _ in range(_ROUNDS):
         system = system_for_speeds(
@@ -101,6 +101,7 @@ def critical(
             fmax=highest,
             elements=elements,
             accuracy=aim,
+            state=about.state,
             progress=progress,
         )
         clock.lap("mesh")
@@ -126,8 +127,8 @@ def critical(
     short = missed(accuracy, worst, "ask for less, or for a lower --to")
     return replace(
         result,
-        model=given,
-        left_out=(*result.left_out, *notes, *([begun] if begun else [])),
+        model=parts,
+        left_out=(*result.left_out, *about.state.notes, *([begun] if begun else [])),
         warnings=(
             *result.warnings,
             *few,

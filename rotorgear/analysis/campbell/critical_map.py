@@ -7,7 +7,6 @@ cuts the curves, its undamped critical speeds are read off.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -20,10 +19,11 @@ from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.spring import constant_spring
+from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
-from rotorgear.model.parts.supports import Bearing
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -71,28 +71,28 @@ def critical_map(
     line = next((item for item in lines if shaft in item.parts), None)
     if line is None:
         raise AnalysisError(f"there is no turning shaft '{shaft}'; there are {', '.join(model.shafts)}")
-    given = model
-    model, _ = about_equilibrium(model, [highest_speed(model, stop)])
-    radial = {name: radial_stiffness(bearing) for name, bearing in model.bearings.items()}
+    top = highest_speed(model, stop)
+    about = state_at(model, [top])
+    radial = {name: np.diag(_middle(about, name))[:2] for name in model.bearings}
     values = np.sort(np.asarray(stiffness if stiffness is not None else _default(radial), float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         raise AnalysisError("the support stiffness must be positive, in N/m")
-    top = highest_speed(model, stop)
     clock = Clock()
     stiffest = system_for_speeds(
-        with_radial_stiffness(model, float(values[-1])),
+        model,
         [top],
         modes=None,
         fmax=line.frequency_hz(top),
         elements=elements,
         accuracy=accuracy,
+        state=with_radial_stiffness(model, about, float(values[-1]), top),
         progress=progress,
     )
     clock.lap("mesh")
     rows: list[tuple[np.ndarray, np.ndarray]] = []
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
-        system = System(with_radial_stiffness(model, float(value)), plan=stiffest.plan, load=stiffest.load)
+        system = stiffest.with_state(with_radial_stiffness(model, about, float(value), top))
         rows.append(_with_whirl(system, line, top))
     clock.lap("critical speeds")
     # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
@@ -103,7 +103,7 @@ def critical_map(
         speeds[k, : len(found)] = found
         whirl[k, : len(found)] = numbers
     return CriticalMap(
-        model=given,
+        model=model,
         line=line.name,
         stiffness=values,
         critical_speeds=speeds,
@@ -131,30 +131,27 @@ def _with_whirl(system: System, line: ExcitationOrder, top: float) -> tuple[np.n
     return speeds, whirl_numbers(tuple(words))
 
 
-def radial_stiffness(bearing: Bearing) -> np.ndarray:
-    """Stiffness along x and y in N/m, (2,); of a table that in the middle row."""
-    given = bearing.table[len(bearing.table) // 2].stiffness if bearing.table else bearing.stiffness
-    rows = given.as_rows() if given else ((0.0,) * 6,) * 6
-    return np.array([rows[0][0], rows[1][1]])
+def with_radial_stiffness(model: Model, about: State, value: float, speed: float) -> State:
+    """The state at a speed with one radial stiffness in N/m in all bearings that have a radial one, and no damping in them.
 
-
-def with_radial_stiffness(model: Model, value: float) -> Model:
-    """The model with one radial stiffness in N/m in all bearings that have a radial one, and no damping in them."""
-    data: dict[str, Any] = model.model_dump(exclude_none=True)
-    for name, bearing in model.bearings.items():
-        if not np.any(radial_stiffness(bearing)):
+    `about` is that of the bearings as they are; what they leave of it, such as the load along the faces, is found anew.
+    """
+    springs = {}
+    for name in model.bearings:
+        rows = _middle(about, name).copy()
+        if not np.any(np.diag(rows)[:2]):
             continue
-        given = bearing.table[len(bearing.table) // 2].stiffness if bearing.table else bearing.stiffness
-        assert given is not None
-        rows = np.array(given.as_rows())
         rows[:2, :] = 0.0
         rows[:, :2] = 0.0
         rows[0, 0] = rows[1, 1] = value
-        entry = data["bearings"][name]
-        entry.pop("table", None)
-        entry.pop("damping", None)
-        entry["stiffness"] = {"matrix": rows.tolist()}
-    return Model(**data)
+        springs[f"bearings.{name}"] = constant_spring(rows, np.zeros((6, 6)))
+    return state_at(model, [speed], springs=springs)
+
+
+def _middle(about: State, bearing: str) -> np.ndarray:
+    """Stiffness (6, 6) of a bearing; of a table that in the middle row."""
+    stiffness = about.springs[f"bearings.{bearing}"].stiffness
+    return stiffness[len(stiffness) // 2]
 
 
 def _default(stiffnesses: dict[str, np.ndarray]) -> np.ndarray:

@@ -12,8 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.supports import Bearing
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.system.assembly import assemble
 from rotorgear.system.components import groups_with_inertia, independent_groups
@@ -76,7 +74,7 @@ class SpeedFamily:
 
     def _table(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """Damping and stiffness of the bearings with tables at a speed, sparse (n, n)."""
-        bearings = table_groups(self.system.layout, self.system.nodes, float(speed))
+        bearings = table_groups(self.system.state, self.system.nodes, float(speed))
         K = assemble(bearings, self.system.dofs, _whole_stiffness)
         C = assemble(bearings, self.system.dofs, lambda g: g.matrices.damping)
         beta = self.system.model.damping.rayleigh_beta
@@ -146,13 +144,14 @@ def table_speeds(system: System, low: float, high: float) -> np.ndarray:
     """Reference speeds (k,) from `low` to `high` at which a table of a part has a kink; none without tables."""
     found: set[float] = set()
     sign = -1.0 if min(low, high) < 0.0 else 1.0
-    parts: list[Bearing | NonlinearElement] = [*system.model.bearings.values()]
-    for part in [*parts, *system.model.nonlinear_elements.values()]:
-        ratio = abs(system.train.ratio(part.shaft))
-        if part.table:
-            found |= {low, high}
-        for row in part.table if ratio else ():
-            speed = sign * row.speed / ratio
+    for address, spring in system.state.springs.items():
+        if not spring.varies:
+            continue
+        table, _, name = address.partition(".")
+        ratio = abs(system.train.ratio(getattr(system.model, table)[name].shaft))
+        found |= {low, high}
+        for row in spring.speeds if ratio else ():
+            speed = sign * row / ratio
             if low < speed < high:
                 found.add(float(speed))
     return merged(sorted(found), high - low)

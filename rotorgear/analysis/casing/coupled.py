@@ -24,7 +24,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.solvers.sparse.large import factor_positive
 from rotorgear.system.assembly import assemble
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
 
 # A mode below this share of the highest one compared is a rigid motion.
 _RIGID = 1e-3
@@ -53,7 +53,7 @@ def reduced_modes(model: Model, name: str, count: int, progress: Progress = sile
     fe = finite_element_body(settings, progress)
     body, _, basis = reduce_in_basis(fe, settings.modes_to, progress)
     keep(settings, body)
-    system = System(model)
+    system = flow_system(model)
     eigenvalues, shapes = la.eigh(system.stiffness().toarray(), system.mass.toarray())
     chosen = _elastic(eigenvalues, count)
     eigenvalues = eigenvalues[chosen]
@@ -69,7 +69,7 @@ def reduced_modes(model: Model, name: str, count: int, progress: Progress = sile
 
 def whole_frequencies(model: Model, name: str, count: int, progress: Progress = silent) -> np.ndarray:
     """The lowest elastic frequencies (count,) in Hz with every node of the casing's mesh: nothing of it is reduced."""
-    system = System(model)
+    system = flow_system(model)
     fe = finite_element_body(casing_settings(model, name), progress)
     shapes, seats = _mesh_space(fe)
     of_casing = system.nodes.of_casing(name)

@@ -14,6 +14,8 @@ from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
+from rotorgear.system.flow_system import flow_system
+from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 _COUNTED = (
@@ -40,7 +42,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         model: a checked model.
         elements: basic elements in each shaft segment, for the number of dofs; 1 where it is not given.
     """
-    system = System(model, elements)
+    system = flow_system(model, Plan(elements or 1))
     speed = model.operation.speed if model.operation else None
     masses = _masses(system)
     dampings = _mesh_dampings(system)
@@ -59,7 +61,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
                 item.torque,
                 None if speed is None else item.torque * system.train.ratio(item.shaft) * speed,
             )
-            for item in system.load.applied
+            for item in system.state.applied
         ),
         total_mass_kg=sum(bare + bodies for bare, bodies, _ in masses.values()),
         casing_mass_kg=_casing_masses(system),
@@ -137,9 +139,9 @@ def _mesh(system: System, name: str, damping: float, speed: float | None) -> Mes
     mesh = system.layout.mesh(name)
     pinion = mesh.pinion.part
     gear = mesh.gear.part
-    forces = system.load.of_mesh(name)
+    forces = system.state.of_mesh(name)
     contact = forces[0].contact
-    phases = [system.load.phase(force.contact) for force in forces]
+    phases = [system.state.phase(force.contact) for force in forces]
     line = mesh.centre_line
     pair = mesh.pair
     return MeshRow(

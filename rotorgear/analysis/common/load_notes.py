@@ -41,7 +41,7 @@ def load_notes(system: System, analysis: Analysis) -> Iterator[str]:
         return
     from rotorgear.system.local_parts import varying_load
 
-    for item in system.load.applied:
+    for item in system.state.applied:
         torque = varying_load(system, item.name)
         if torque is not None and torque.speed_power:
             yield f"{item.name}: how its torque changes with the speed, which transients take"

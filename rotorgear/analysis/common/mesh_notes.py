@@ -24,9 +24,9 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
             share = (max(mesh.stiffness) - min(mesh.stiffness)) / mean
             ripple = f"ripple of the given stiffness, {100.0 * share:.3g} % peak to peak"
             yield f"meshes.{name}: {ripple}; its mean {mean:.4g} N/m is taken"
-        elif curve := system.load.whole_curve(name):
-            taken = sum(force.contact.stiffness for force in system.load.of_mesh(name))
-            joint = curve.model == "tooth_fe" and all(force.start is not None for force in system.load.of_mesh(name))
+        elif curve := system.state.whole_curve(name):
+            taken = sum(force.contact.stiffness for force in system.state.of_mesh(name))
+            joint = curve.model == "tooth_fe" and all(force.start is not None for force in system.state.of_mesh(name))
             yield f"meshes.{name}: {_over_cycle(curve.about_load, taken) if joint else _of_model(curve.about_load, taken)}"
         if mesh.stiffness == "tooth_fe" and not mesh.tilt:
             yield f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
@@ -34,7 +34,7 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
 
 def unlike_teeth_left_out(system: System) -> Iterator[str]:
     """Yield a sentence for each gear whose teeth differ where it is not known which of them are in its meshes at one time."""
-    unknown = system.load.tooth_numbers.unknown
+    unknown = system.state.tooth_numbers.unknown
     for name, meshes in unlike_gears(system.layout).items():
         if name in unknown:
             where = " and ".join(f"meshes.{mesh.name}" for mesh in meshes)
@@ -82,6 +82,6 @@ def _of_model(curve: MeshStiffness, taken: float) -> str:
 
 def mesh_stiffness_warnings(system: System) -> Iterator[str]:
     """Yield what the stiffness models themselves warn about."""
-    for name, helices in system.load.curves.items():
+    for name, helices in system.state.curves.items():
         sentences = dict.fromkeys(sentence for curve in helices for sentence in curve.warnings)
         yield from (f"meshes.{name}: {sentence}" for sentence in sentences)

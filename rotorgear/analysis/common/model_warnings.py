@@ -65,7 +65,7 @@ def _meshes(system: System) -> Iterator[str]:
             if abs(off) > 1e-6:
                 said = f"the base radii's ratio is {100 * off:+.3g} % off that of the teeth, which set the speeds"
                 yield f"meshes.{mesh.name}: {said}"
-        if system.load.applied and any(force.assumed for force in system.load.of_mesh(mesh.name)):
+        if system.state.applied and any(force.assumed for force in system.state.of_mesh(mesh.name)):
             yield f"meshes.{mesh.name}: no torque flows through it; its driving flank is taken from the sense of rotation"
 
 
@@ -76,7 +76,7 @@ def _train(system: System) -> Iterator[str]:
         if train.ratios[name] == 0:
             by = f"nothing drives it from shaft '{train.reference}', so it stands still"
             yield f"shafts.{name}: {by}; give speed_ratio if it turns"
-    if not system.load.applied and model.meshes:
+    if not system.state.applied and model.meshes:
         yield "no torque is given: driving flanks follow from the sense of rotation, power flowing out from the input shaft"
     for name, bearing in model.bearings.items():
         if bearing.table and model.operation and model.operation.speed is not None:

@@ -54,7 +54,9 @@ def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tup
             laws = [
                 f"nonlinear_elements.{name}"
                 for name, element in system.model.nonlinear_elements.items()
-                if not element.is_given and element_law(element, 1.0).uses_velocity
+                if not element.is_given
+                and f"nonlinear_elements.{name}" not in system.state.tangents
+                and element_law(element, 1.0).uses_velocity
             ]
             notes.append("damping matrix: " + (f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps"))
     notes += beta_notes(system, speed, rolls=rolls)

@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed
 from rotorgear.analysis.layout.penalty import complex_forms, spaces_of
-from rotorgear.analysis.layout.state import State
-from rotorgear.analysis.scatter.family import neighbour, system_at
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, forms_of
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.spreads import Spreads, spreads_of
@@ -29,7 +29,7 @@ MARGINS = 3.0
 _SOME = 0.7
 
 
-def with_deviations(state: State, model: Model, plan: Plan, margin: float, least: float) -> State:
+def with_deviations(state: ModesAtSpeed, model: Model, plan: Plan, margin: float, least: float) -> ModesAtSpeed:
     """The state with relative standard deviations of its modes; 0 of those that no line is near to or excites.
 
     Args:
@@ -61,14 +61,15 @@ def with_deviations(state: State, model: Model, plan: Plan, margin: float, least
     return replace(state, sigma=sigma)
 
 
-def _coupling(state: State, spreads: Spreads, j: int, plan: Plan, modes: list[int]) -> NDArray[np.complex128]:
+def _coupling(state: ModesAtSpeed, spreads: Spreads, j: int, plan: Plan, modes: list[int]) -> NDArray[np.complex128]:
     """s_j H_j over some modes (k, k), in rad/s."""
     shapes = np.asarray(state.V @ state.modes.q[:, modes], dtype=complex)
     X = np.hstack([shapes.real, shapes.imag])
     step = np.zeros(len(spreads))
     step[j] = _STEP
-    sides = (neighbour(state.system.model, spreads.at(side * step), state.speed) for side in (1.0, -1.0))
-    above, below = (system_at(model, state.speed, plan) for model in sides)
+    above, below = (
+        linear_system(spreads.at(side * step), [state.speed], plan, beside=state.system.state) for side in (1.0, -1.0)
+    )
     if not above.n == below.n == state.system.n:
         raise AnalysisError(
             f"[scatter] of {spreads.numbers.addresses[j]} moves a place past another one that it coincides with: move one of "
@@ -81,7 +82,7 @@ def _coupling(state: State, spreads: Spreads, j: int, plan: Plan, modes: list[in
     return np.asarray(0.5 * (H + H.conj().T) / (2.0 * np.sqrt(np.outer(w, w))))
 
 
-def kept_deviations(states: list[State], margin: float, least: float) -> float:
+def kept_deviations(states: list[ModesAtSpeed], margin: float, least: float) -> float:
     """By how many standard deviations the modes that count keep a margin, the least of all; infinite where none is near."""
     found = [np.inf]
     for state in states:

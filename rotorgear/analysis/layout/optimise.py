@@ -20,8 +20,8 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
 from rotorgear.analysis.layout.bounds import bounds_of
 from rotorgear.analysis.layout.deviation import MARGINS, kept_deviations
+from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, total_mass
 from rotorgear.analysis.layout.problem import Problem
-from rotorgear.analysis.layout.state import State, total_mass
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import numbers_of
@@ -354,7 +354,9 @@ def _on_finer_mesh(problem: Problem) -> Problem:
     return replace(problem, plan=finer, own_maps=True, solutions=0, gradients=0)
 
 
-def _change_of_mesh(problem: Problem, layouts: Iterable[tuple[NDArray[np.float64], list[State]]]) -> tuple[float, str]:
+def _change_of_mesh(
+    problem: Problem, layouts: Iterable[tuple[NDArray[np.float64], list[ModesAtSpeed]]]
+) -> tuple[float, str]:
     """Largest change of a margin from the mesh of the search to a finer one, on which states are known, and its excitation."""
     largest = (0.0, "")
     for t, states in layouts:
@@ -369,7 +371,7 @@ def _change_of_mesh(problem: Problem, layouts: Iterable[tuple[NDArray[np.float64
     return largest
 
 
-def _margin_rows(problem: Problem, before: list[State], after: list[State]) -> list[LayoutMargin]:
+def _margin_rows(problem: Problem, before: list[ModesAtSpeed], after: list[ModesAtSpeed]) -> list[LayoutMargin]:
     rows = []
     for first, second in zip(before, after, strict=True):
         for k, line in enumerate(problem.lines):
@@ -379,7 +381,7 @@ def _margin_rows(problem: Problem, before: list[State], after: list[State]) -> l
     return rows
 
 
-def _near_rows(problem: Problem, states: list[State]) -> list[LayoutMode]:
+def _near_rows(problem: Problem, states: list[ModesAtSpeed]) -> list[LayoutMode]:
     """Modes within three margins of each line that take part at all."""
     rows: list[LayoutMode] = []
     for state in states:
@@ -392,7 +394,7 @@ def _near_rows(problem: Problem, states: list[State]) -> list[LayoutMode]:
     return rows
 
 
-def _nearest(state: State, line: int, problem: Problem) -> tuple[float, float, float, float]:
+def _nearest(state: ModesAtSpeed, line: int, problem: Problem) -> tuple[float, float, float, float]:
     """Frequency, margin and participation of the mode nearest to a line among those that count, NaN without one; and the largest
     participation within the margin of those that don't."""
     margins = state.hz / state.line_hz[line] - 1.0

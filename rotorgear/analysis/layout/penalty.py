@@ -24,7 +24,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.layout.state import State
+from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, FormNames, forms_of
 from rotorgear.analysis.scatter.samples import exciting_forms, spin_signs
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -58,7 +58,7 @@ class Near:
     slopes: NDArray[np.float64]
 
 
-def near_modes(state: State, margin: float | NDArray[np.float64], least: float) -> list[Near]:
+def near_modes(state: ModesAtSpeed, margin: float | NDArray[np.float64], least: float) -> list[Near]:
     """The modes that count in J; `margin` is one for all, or that of each beside each line (l, m)."""
     found = []
     wide = np.broadcast_to(np.asarray(margin, dtype=float), state.taken.shape)
@@ -96,7 +96,7 @@ def penalty(near: list[Near]) -> float:
 
 
 def penalty_slopes(
-    state: State,
+    state: ModesAtSpeed,
     near: list[Near],
     lines: tuple[ExcitationOrder, ...],
     beside: Callable[[int], tuple[System, System, float]],
@@ -128,7 +128,7 @@ def penalty_slopes(
     return slopes
 
 
-def frequency_slopes(state: State, chosen: list[int], change: NDArray[np.complex128]) -> NDArray[np.float64]:
+def frequency_slopes(state: ModesAtSpeed, chosen: list[int], change: NDArray[np.complex128]) -> NDArray[np.float64]:
     """dw/dx of chosen modes from the changes of K, M and W G over their shapes (3, k, k)."""
     q = state.modes.q[:, chosen]
     w = state.modes.omega[chosen]
@@ -145,7 +145,7 @@ def complex_forms(forms: NDArray[np.float64]) -> NDArray[np.complex128]:
 
 
 def _pushed(
-    above: System, below: System, state: State, phi: NDArray[np.complex128], w: float, width: float
+    above: System, below: System, state: ModesAtSpeed, phi: NDArray[np.complex128], w: float, width: float
 ) -> NDArray[np.complex128]:
     """Q' phi (n,)."""
 
@@ -157,7 +157,7 @@ def _pushed(
 
 
 def _share_slope(
-    state: State,
+    state: ModesAtSpeed,
     one: Near,
     lines: tuple[ExcitationOrder, ...],
     changed: NDArray[np.complex128],
@@ -187,7 +187,7 @@ def _share_slope(
 
 
 def _bordered(
-    state: State, w: float, together: NDArray[np.complex128], push: NDArray[np.complex128]
+    state: ModesAtSpeed, w: float, together: NDArray[np.complex128], push: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
     """phi' (n,) outside the space of the shapes `together` (n, c)."""
     from scipy.sparse.linalg import splu

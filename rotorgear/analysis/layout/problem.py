@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.layout.deviation import with_deviations
+from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, state_of, total_mass
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
-from rotorgear.analysis.layout.state import State, state_of, total_mass
-from rotorgear.analysis.scatter.family import neighbour, system_at
+from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
 from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
@@ -70,31 +71,37 @@ class Problem:
         """t of the file (p,)."""
         return np.asarray((self.numbers.start - self.low) / (self.high - self.low))
 
-    def states(self, t: NDArray[np.float64]) -> list[State]:
+    def states(self, t: NDArray[np.float64]) -> list[ModesAtSpeed]:
         """The modes at every speed."""
         model = self.numbers.at(self.values(t))
-        if not self.own_maps:
-            model = neighbour(self.numbers.model, model, self.speeds[0])
+        beside = None if self.own_maps else state_at(self.numbers.model, [self.speeds[0]])
         self.solutions += len(self.speeds)
         found = [
-            state_of(model, speed, self.plan, self.lines, self.below_hz, margin=self.margin, least=self.least)
+            state_of(
+                linear_system(model, [speed], self.plan, beside=beside),
+                speed,
+                self.lines,
+                self.below_hz,
+                margin=self.margin,
+                least=self.least,
+            )
             for speed in self.speeds
         ]
         if self.deviations is None:
             return found
         return [with_deviations(state, model, self.plan, self.asked, self.least) for state in found]
 
-    def _wide(self, state: State, margin: float) -> NDArray[np.float64]:
+    def _wide(self, state: ModesAtSpeed, margin: float) -> NDArray[np.float64]:
         """A margin with the deviations of each mode beside each line, (l, m)."""
         if state.sigma is None or not self.deviations:
             return np.full(state.taken.shape, margin)
         return np.asarray(margin + self.deviations * state.sigma * state.hz / state.line_hz[:, None])
 
-    def penalty(self, states: list[State]) -> float:
+    def penalty(self, states: list[ModesAtSpeed]) -> float:
         """J of all speeds."""
         return sum(penalty(near_modes(state, self._wide(state, self.margin), self.least)) for state in states)
 
-    def slopes(self, t: NDArray[np.float64], states: list[State]) -> NDArray[np.float64]:
+    def slopes(self, t: NDArray[np.float64], states: list[ModesAtSpeed]) -> NDArray[np.float64]:
         """dJ/dt (p,)."""
         self.gradients += 1
         # Differences need room on both sides: a bound may be where the model ends.
@@ -105,7 +112,7 @@ class Problem:
         total = np.zeros(len(t))
         for state in states:
 
-            def beside(j: int, state: State = state) -> tuple[System, System, float]:
+            def beside(j: int, state: ModesAtSpeed = state) -> tuple[System, System, float]:
                 return self._beside(t, j, state)
 
             near = near_modes(state, self._wide(state, self.margin), self.least)
@@ -122,7 +129,7 @@ class Problem:
         steps = 1e-3 * np.eye(len(t))
         return at(t), np.array([(at(t + step) - at(t - step)) / 2e-3 for step in steps])
 
-    def margins_kept(self, states: list[State]) -> bool:
+    def margins_kept(self, states: list[ModesAtSpeed]) -> bool:
         """Whether no mode that counts is within the margin that was asked for, deviations included."""
         return all(
             not np.any(
@@ -132,12 +139,11 @@ class Problem:
             for state in states
         )
 
-    def _beside(self, t: NDArray[np.float64], j: int, state: State) -> tuple[System, System, float]:
+    def _beside(self, t: NDArray[np.float64], j: int, state: ModesAtSpeed) -> tuple[System, System, float]:
         step = np.zeros(len(t))
         step[j] = _STEP
         sides = (self.numbers.at(self.low + (t + side * step) * (self.high - self.low)) for side in (1.0, -1.0))
-        beside = (neighbour(state.system.model, model, state.speed) for model in sides)
-        above, below = (system_at(model, state.speed, self.plan) for model in beside)
+        above, below = (linear_system(model, [state.speed], self.plan, beside=state.system.state) for model in sides)
         if not above.n == below.n == state.system.n:
             raise AnalysisError(
                 f"{self.numbers.addresses[j]}: its place is too near to another one to be differentiated"
@@ -163,4 +169,4 @@ class Problem:
     def _at_rest(self, values: NDArray[np.float64]) -> System:
         """The system at some values (p,), for what no equilibrium changes: masses and places."""
         model = self.numbers.at(values)
-        return System(model, plan=self.plan, load=model.mean_load(direction_of(self.speeds[0])))
+        return flow_system(model, self.plan, direction=direction_of(self.speeds[0]))

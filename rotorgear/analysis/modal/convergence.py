@@ -14,7 +14,8 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.results.steady.modal import ModalResult
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
+from rotorgear.system.plan import Plan
 
 REFERENCE = 1e-10
 # Ten times the accuracy of the reference: below, the ratio of estimate and error is that of the reference.
@@ -63,7 +64,7 @@ def convergence_study(
         return Judged(result.dofs, error, estimate)
 
     # A mesh so coarse that the supports hold everything has nothing to solve.
-    able = [n for n in elements if System(model, n).n]
+    able = [n for n in elements if flow_system(model, Plan(n)).n]
     resolution = RESOLUTION if reference is None else 0.0
     study = Study(lambda options: modal(model, speed=speed, modes=modes, **options), judge, resolution, repeat=repeat)
     rungs = study.rungs(mesh_settings(able, accuracies), progress)

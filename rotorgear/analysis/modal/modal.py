@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reductio
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.notes import gathering
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_request, speed_in_si
 from rotorgear.analysis.modal.conditioning import too_far_apart
 from rotorgear.analysis.modal.enriched_error import enriched_errors
 from rotorgear.analysis.modal.mode_count import MOST_MODES, check_count
@@ -20,8 +20,9 @@ from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, errors_of, refined, total_error
 from rotorgear.analysis.modal.result import modal_result
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.analysis.static.tangent import about_equilibrium, about_state_of
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
@@ -68,8 +69,31 @@ def modal(
         AnalysisError: nothing to solve, a dof with neither inertia nor stiffness, a speed outside a bearing's table.
         ConvergenceError: a guard of the solver was not met, or the accuracy can't be reached; never a silent loss.
     """
-    speed = speed_in_si(speed)
-    check_request(speed, modes, fmax, elements, accuracy)
+    asked = ModalRequest(speed_in_si(speed), modes, fmax, elements, accuracy, tuple(only), pruning, error_estimate)
+    return modes_about(model, asked, progress=progress)
+
+
+@dataclass(frozen=True)
+class ModalRequest:
+    """What is asked of modes; fields as the arguments of `modal`, the speed in rad/s."""
+
+    speed: float | None = None
+    modes: int | None = None
+    fmax: float | None = None
+    elements: int | None = None
+    accuracy: float | None = None
+    only: tuple[str, ...] = ()
+    pruning: bool = True
+    error_estimate: bool = True
+
+
+def modes_about(
+    model: Model | System, asked: ModalRequest, state: State | None = None, progress: Progress = silent
+) -> ModalResult:
+    """The modes of a model about a state, for analyses that know it; None: about its equilibrium. Errors are those of `modal`."""
+    speed, modes, fmax, elements = asked.speed, asked.modes, asked.fmax, asked.elements
+    only, error_estimate = asked.only, asked.error_estimate
+    check_request(speed, modes, fmax, elements, asked.accuracy)
     unknown = set(only) - set(MOTIONS)
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
@@ -78,23 +102,26 @@ def modal(
         modes = DEFAULT_MODES
     fixed = isinstance(model, System) or elements is not None
     served, short = (model, ()) if isinstance(model, System) else serving(model, fmax)
-    system, notes = _system(served, speed, Plan(elements) if elements else (Plan() if fixed else START))
+    plan = Plan(elements) if elements else (Plan() if fixed else START)
+    system = linear_system(served, [speed], plan, state=state)
+    if system.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     if not (fixed or error_estimate):
         raise AnalysisError(
             "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
         )
-    target = np.inf if fixed else accuracy or DEFAULT_ACCURACY
+    target = np.inf if fixed else asked.accuracy or DEFAULT_ACCURACY
     if not fixed and modes is None and fmax is not None:
         check_count(system.model, fmax)
     reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax, *((0, 1.0) if fixed else ()))
     if not fixed and speed is not None and not system.has_tables and not system.circulatory(speed).nnz:
         # Damping and spin hardly change what mesh a mode needs: undamped modes find it at less cost, and it is checked below.
         # Films whose symmetric part alone is no stable spring have no such modes.
-        system = _refined_undamped(system, reach, tuple(only), target)
+        system = _refined_undamped(system, reach, only, target)
         clock.lap("refinement")
     for round_number in range(_ROUNDS):
         progress(min(0.1 + 0.15 * round_number, 0.8), f"solving {system.n} dofs")
-        found = _solved(system, Wanted(speed, *reach.solver_request(), tuple(only), pruning))
+        found = _solved(system, Wanted(speed, *reach.solver_request(), only, asked.pruning))
         clock.lap("modes")
         q = system.dofs.expand(found.vectors)
         parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if error_estimate else {}
@@ -104,7 +131,7 @@ def modal(
         clock.lap("error estimate")
         if fixed:
             if error_estimate:
-                estimate = enriched_errors(system, Wanted(speed, None, None, tuple(only), pruning), found, estimate)
+                estimate = enriched_errors(system, Wanted(speed, None, None, only, asked.pruning), found, estimate)
             break
         size = np.abs(found.eigenvalues)
         ended = reach.limit is not None and not found.is_complete  # by the highest frequency, not by the mesh
@@ -137,17 +164,7 @@ def modal(
         # How far a number of modes reaches is known now.
         further, _ = serving(model, float(np.max(np.abs(found.eigenvalues[:kept]))) / (2.0 * np.pi))
         if further is not model:
-            again = modal(
-                further,
-                speed=speed,
-                modes=modes,
-                elements=elements,
-                accuracy=accuracy,
-                only=only,
-                pruning=pruning,
-                error_estimate=error_estimate,
-                progress=progress,
-            )
+            again = modes_about(further, replace(asked, modes=modes), state, progress)
             return replace(again, model=given)
     progress(0.9, "energies")
     result = modal_result(
@@ -155,7 +172,7 @@ def modal(
     )
     warnings = (*result.warnings, *short, *casing_warnings(reduction[:kept], found.eigenvalues))
     progress(1.0, "done")
-    return replace(result, model=given, left_out=(*result.left_out, *notes), warnings=warnings)
+    return replace(result, model=given, left_out=(*result.left_out, *system.state.notes), warnings=warnings)
 
 
 def _refined_undamped(system: System, reach: Reach, only: tuple[str, ...], target: float) -> System:
@@ -188,16 +205,3 @@ def _solved(system: System, wanted: Wanted) -> Modes:
             f"gathers overdamped modes without end at {gathers / (2.0 * np.pi):.4g} Hz; ask for modes below (--fmax, --modes)",
             error.partial,
         ) from error
-
-
-def _system(model: Model | System, speed: float | None, plan: Plan) -> tuple[System, tuple[str, ...]]:
-    """The linear system about the static equilibrium, cut by a plan, and what was linearised; a linear one is taken as it is."""
-    given = model.model if isinstance(model, System) else model
-    linear, notes = about_equilibrium(given, [speed])
-    if isinstance(model, System):
-        system = about_state_of(model, linear)
-    else:
-        system = System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
-    if system.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    return system, notes

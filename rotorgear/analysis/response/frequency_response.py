@@ -18,14 +18,14 @@ from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.error import highest_peaks
 from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.response.ports import Ports
-from rotorgear.analysis.static.mean_state import mean_state
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.mean_state import about_mean
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -93,8 +93,7 @@ def frf(
     model, few = serving(model, float(hz[-1]))
     ports = Ports(model, (*inputs, *outputs))
     zeta = modal_damping + model.damping.modal_ratio
-    linear, notes = about_equilibrium(model, [turns or None])
-    first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
+    state, first = about_mean(model, [turns or None], turns)
 
     def solve(system: System, hz: np.ndarray, limit: float, progress: Progress) -> _Solved:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
@@ -104,8 +103,8 @@ def frf(
 
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
-        plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, aim)
-        system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
+        plan = plan_up_to(model, at_speed(state, turns), MARGIN * float(hz[-1]), elements, aim)
+        system = linear_system(model, [turns], plan, state=first.with_tangents(state))
         limit = damped_up_to(system, 2.0 * np.pi * float(hz[-1]))
         found = solve(system, hz, limit, progress)
         receptance = found.receptance
@@ -138,7 +137,7 @@ def frf(
         seconds={"total": time.perf_counter() - clock},
         left_out=(
             *first.notes,
-            *notes,
+            *state.notes,
             *body_notes(system),
             *rolling_notes(model, rolls=False),
             *load_notes(system, "frf"),

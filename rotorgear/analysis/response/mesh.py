@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.common.request import FINEST
-from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
 from rotorgear.analysis.modal.solve import solve
+from rotorgear.model.layout.spring import constant_spring
+from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
-from rotorgear.model.parts.supports import StiffnessMatrix
 from rotorgear.results.steady.modal import ModalResult
-from rotorgear.system.groups import table_values
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
@@ -25,14 +25,14 @@ MARGIN = 1.25
 _TIGHTER = 0.03
 
 
-def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
-    """The mesh that modes up to a frequency in Hz need, or a fixed one."""
+def plan_up_to(model: Model, state: State, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
+    """The mesh that modes about a state need up to a frequency in Hz, or a fixed one."""
     if elements is not None:
         return Plan(elements)
     if not any(shaft.sections for shaft in model.shafts.values()):
         return Plan()
-    found = modal(model, fmax=fmax, accuracy=accuracy or DEFAULT_ACCURACY)
-    return plan_of(found)
+    asked = ModalRequest(fmax=fmax, accuracy=accuracy or DEFAULT_ACCURACY)
+    return plan_of(modes_about(model, asked, state))
 
 
 def aims(accuracy: float | None) -> Iterator[float | None]:
@@ -59,29 +59,24 @@ def plan_of(result: ModalResult) -> Plan:
     return Plan(START.elements, START.order, cut)
 
 
-def at_speed(model: Model, speed: float) -> Model:
-    """The conservative part of a model: bearings with tables as at a speed of the reference shaft in rad/s, no skew stiffness.
+def at_speed(state: State, speed: float) -> State:
+    """The conservative part of a state: bearings with tables as at a speed of the reference shaft in rad/s, no skew stiffness.
 
     Modes of this are real, so that a damping ratio can be given to each.
 
     Raises:
         AnalysisError: the speed lies outside a table.
     """
-    train = model.layout.train
-    changed: dict[str, dict[str, Any]] = {}
-    for table in ("bearings", "supports", "couplings", "nonlinear_elements"):
-        for name, part in getattr(model, table).items():
-            if getattr(part, "table", ()):
-                rows = table_values(f"{table}.{name}", part, abs(train.ratio(part.shaft) * speed))[0]
-            elif part.stiffness is not None:
-                rows = np.array(part.stiffness.as_rows())
-            else:
-                continue
-            if getattr(part, "table", ()) or not np.array_equal(rows, rows.T):
-                even = StiffnessMatrix(matrix=tuple(map(tuple, _conservative(rows))))
-                update = {"stiffness": even, "damping": None, **({"table": ()} if hasattr(part, "table") else {})}
-                changed.setdefault(table, dict(getattr(model, table)))[name] = part.model_copy(update=update)
-    return model.model_copy(update=changed) if changed else model
+    changed = {}
+    for address, spring in state.springs.items():
+        table, _, name = address.partition(".")
+        turns = 0.0
+        if spring.varies:
+            turns = abs(state.layout.train.ratio(getattr(state.layout.model, table)[name].shaft) * speed)
+        stiffness, _ = spring.at(turns, address)
+        if spring.varies or not np.array_equal(stiffness, stiffness.T):
+            changed[address] = constant_spring(_conservative(stiffness), np.zeros((6, 6)))
+    return replace(state, tangents={**state.tangents, **changed}) if changed else state
 
 
 def _conservative(K: np.ndarray) -> np.ndarray:
@@ -98,9 +93,9 @@ def damped_modes(
     They are those of the conservative part of the model at standstill, with bearings as at a speed of the reference shaft; where
     dofs are given, only of the groups that have one of these.
     """
-    model = at_speed(system.model, speed)
-    if model is not system.model:
-        system = System(model, plan=system.plan, load=system.load)
+    conservative = at_speed(system.state, speed)
+    if conservative is not system.state:
+        system = system.with_state(conservative)
     among = None if dofs is None else frozenset(dofs.tolist())
     found = solve(system, Wanted(None, None, limit if np.isfinite(limit) else None, dofs=among))
     keep = np.flatnonzero(found.vectors.any(axis=0))

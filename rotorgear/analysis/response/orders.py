@@ -9,7 +9,7 @@ Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i
 A transmission error e(t) and a stiffness k (1 + a(t)) turn the force of a contact under the mean force F_0 into
 F = k (v.q - e) + c (v.q' - e') + F_0 a to first order; a may follow from a model of the teeth, and an impact adds to the last
 term. Of loaded teeth the last term is f of their joint state, F_i - k_i delta_i, which holds all of their ripple
-(analysis/static/joint_state.py), and e what the approach is at first touch. Mesh phases: model/layout/mean_load.py.
+(analysis/static/joint_state.py), and e what the approach is at first touch. Mesh phases: model/layout/state.py.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ def _add(
 def _external_loads(system: System, left: list[str]) -> Iterable[tuple[_Key, str, float, float, np.ndarray]]:
     """(key, name, ratio, fixed frequency in rad/s, force on the free dofs) of each harmonic of loads and torque ripples."""
     T = system.dofs.transform
-    for item in system.load.applied:
+    for item in system.state.applied:
         torque = varying_load(system, item.name)
         ratio = abs(system.train.ratio(item.shaft))
         if torque is None or not torque.ripple or not ratio:
@@ -202,7 +202,7 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
 def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np.ndarray]]:
     """(mesh, harmonic, ratio, [errors; forces; couples] of all contacts) of every harmonic that a mesh is given."""
     system = setup.system
-    load = system.load.about_nominal_flanks
+    load = system.state.about_nominal_flanks
     for k, state in enumerate(setup.lines.states):
         mesh = system.layout.mesh(state.contact.mesh)
         phase = load.phase(state.contact)
@@ -221,7 +221,7 @@ def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Itera
     state = setup.lines.states[contact]
     mean_force = float(setup.mean_force[contact])
     # What opens the nominal flanks closes the others.
-    opens = 1.0 if setup.system.load.is_nominal(state) else -1.0
+    opens = 1.0 if setup.system.state.is_nominal(state) else -1.0
     for item in mesh.transmission_error:
         yield 0, item.harmonic, opens * item.amplitude * cmath.exp(1j * item.phase)
     for share in mesh.stiffness_variation:

@@ -15,7 +15,7 @@ from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
 from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, plan_up_to
@@ -24,8 +24,8 @@ from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.response.second_order import peaks_of
 from rotorgear.analysis.static.lowest_speed import lowest_speed
-from rotorgear.analysis.static.mean_state import Setup, mean_state
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.mean_state import Setup, about_mean
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -33,7 +33,6 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.steady.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 METHODS = ("auto", "modal", "direct")
@@ -88,10 +87,8 @@ def response(
     chosen, begun = _speeds(model, speeds, start, stop, points)
     _check(method, modal_damping, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
-    linear, notes = about_equilibrium(model, _spread(chosen))
-    first = mean_state(
-        System(model, load=model.mean_load(direction_of(chosen[-1])).of_kind("static")), float(chosen[-1])
-    )
+    speed = float(chosen[-1])
+    state, first = about_mean(model, _spread(chosen), speed)
     orders, weak = orders_of(first)
     orders, left = _within(orders, chosen, fmax)
     fastest = float(np.max(np.abs(chosen)))
@@ -99,12 +96,13 @@ def response(
     # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
     top = max((order.frequency_at(fastest) for order in orders if not order.minor), default=highest)
     left += _beyond_mesh(orders, top, fastest)
-    linear, few = serving(linear, top / (2.0 * np.pi))
-    speed = float(chosen[-1])
+    served, few = serving(model, top / (2.0 * np.pi))
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
-        plan = plan_up_to(at_speed(linear, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
-        setup, orders = _discretised(first, linear, plan, orders)
+        plan = plan_up_to(served, at_speed(state, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
+        setup, orders = _discretised(
+            first, linear_system(served, [speed], plan, state=first.with_tangents(state)), orders
+        )
         system = setup.system
         modes, w = damped_modes(system, damped_up_to(system, highest), speed)
         plant = Plant(system, setup.lines, (modes, w, zeta))
@@ -180,7 +178,7 @@ def response(
             *weak,
             *setup.notes,
             *_between_nodes(setup),
-            *notes,
+            *state.notes,
             *([begun] if begun else []),
             *body_notes(system),
             *rolling_notes(model, rolls=False),
@@ -222,9 +220,8 @@ def _spread(speeds: np.ndarray) -> list[float]:
     return [float(speed) for speed in speeds[at]]
 
 
-def _discretised(first: Setup, linear: Model, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:
-    """The same state on another mesh, with the orders of the same names."""
-    system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
+def _discretised(first: Setup, system: System, orders: list[Order]) -> tuple[Setup, list[Order]]:
+    """The same mean state as the linear system has it, with the orders of the same names."""
     setup = replace(first, system=system, lines=contact_lines(system))
     names = {order.name for order in orders}
     return setup, [order for order in orders_of(setup)[0] if order.name in names]

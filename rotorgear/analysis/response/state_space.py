@@ -23,13 +23,13 @@ from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_in_si
+from rotorgear.analysis.common.request import check_request, missed, speed_in_si
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.response.ports import Ports
-from rotorgear.analysis.static.mean_state import mean_state
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.mean_state import about_mean
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -107,7 +107,7 @@ def state_space(
     zeta = modal_damping + model.damping.modal_ratio
     progress(0.02, "discretisation")
     aim = None if elements is not None else accuracy
-    system, notes = linear_system(model, turns, fmax, elements, aim)
+    system, notes = frf_system(model, turns, fmax, elements, aim)
     if full and system.n > _LARGEST:
         raise AnalysisError(
             f"a full state space of {system.n} degrees of freedom is dense in {2 * system.n} states; leave 'full' out for a "
@@ -178,14 +178,14 @@ def state_space(
     )
 
 
-def linear_system(
+def frf_system(
     model: Model, turns: float, fmax: float, elements: int | None, accuracy: float | None = None
 ) -> tuple[System, tuple[str, ...]]:
     """The system about its equilibrium at a speed in rad/s, meshed as `frf` meshes it up to a frequency in Hz; and notes."""
-    linear, notes = about_equilibrium(model, [turns or None])
-    first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
-    plan = plan_up_to(at_speed(linear, turns), MARGIN * fmax, elements, accuracy)
-    return System(linear, plan=plan, load=first.system.load.of_kind("dynamic")), (*first.notes, *notes)
+    state, first = about_mean(model, [turns or None], turns)
+    plan = plan_up_to(model, at_speed(state, turns), MARGIN * fmax, elements, accuracy)
+    system = linear_system(model, [turns], plan, state=first.with_tangents(state))
+    return system, (*first.notes, *state.notes)
 
 
 def _groups(system: System, turns: float) -> np.ndarray:

@@ -29,7 +29,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from rotorgear.analysis.rig.learnt import SPRINGS
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.model.model import Model
@@ -119,7 +119,7 @@ def springs_of(model: Model, system: System, speed: float = 0.0) -> dict[str, li
 
     Where a law is linearised about an equilibrium, or a mesh has the stiffness of its load, any number may change any spring.
     """
-    if about_equilibrium(model, [speed or None])[0] is not model:
+    if not system.state.is_flow:
         return {}
     if any(isinstance(mesh.stiffness, str) for mesh in model.meshes.values()):
         return {}
@@ -142,8 +142,7 @@ def _of_spring(system: System, groups: list[ElementGroup], X: NDArray[np.float64
 
 def system_of(model: Model, plan: Plan, speed: float = 0.0) -> System:
     """The linear system of a model about its equilibrium at a speed in rad/s, 0 at standstill, on the mesh of a plan."""
-    linear, _ = about_equilibrium(model, [speed or None])
-    return System(linear, plan=plan)
+    return linear_system(model, [speed or None], plan)
 
 
 def frequency_derivatives(changes: list[Changes], eigenvalues: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -15,9 +15,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, forms_of
-from rotorgear.analysis.static.tangent import about_equilibrium, with_maps_of
+from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.spreads import Spreads
@@ -37,33 +36,16 @@ _NOTHING = 1e-13
 _KEPT = 96
 
 
-def system_at(model: Model, speed: float | None, plan: Plan) -> System:
-    """The linear system of a model at a speed of the reference shaft, about its equilibrium, on the mesh of a plan."""
-    linear, _ = about_equilibrium(model, [speed])
-    return System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
-
-
-def neighbour(near: Model, model: Model, speed: float | None) -> Model:
-    """A model with the face maps of another one next to it, as they are at a speed of the reference shaft."""
-    linear, _ = about_equilibrium(near, [speed])
-    return with_maps_of(linear, model)
-
-
-def sample_at(spreads: Spreads, z: NDArray[np.float64], speed: float | None) -> Model:
-    """The model at z (p,), with the face maps of the nominal one."""
-    return neighbour(spreads.numbers.model, spreads.at(z), speed)
-
-
 def sampled_system(spreads: Spreads, z: NDArray[np.float64], speed: float | None, plan: Plan) -> System:
-    """`system_at` of the model at z (p,)."""
-    linear = _linear_at(spreads, tuple(map(float, z)), speed)
-    return System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
+    """The linear system of the model at z (p,) about its equilibrium, with the face maps of the nominal one."""
+    model = sample_at(spreads, tuple(map(float, z)))
+    return linear_system(model, [speed], plan, beside=state_at(spreads.numbers.model, [speed]))
 
 
 @lru_cache(maxsize=_KEPT)
-def _linear_at(spreads: Spreads, z: tuple[float, ...], speed: float | None) -> Model:
-    """The linear model at z: where its equilibrium is that of loaded teeth, it takes longer than all else of a sample."""
-    return about_equilibrium(sample_at(spreads, np.array(z), speed), [speed])[0]
+def sample_at(spreads: Spreads, z: tuple[float, ...]) -> Model:
+    """The model at z (p,), kept with its states: where that is of loaded teeth, it takes longer than all else of a sample."""
+    return spreads.at(np.array(z))
 
 
 @dataclass(frozen=True)
@@ -139,7 +121,7 @@ def family_of(
     spreads: Spreads, speed: float | None, plan: Plan, V: NDArray[np.float64], progress: Progress = silent
 ) -> Family:
     """Return the family over a basis V (n, r)."""
-    nominal = forms_of(system_at(spreads.numbers.model, speed, plan), speed or 0.0, V)
+    nominal = forms_of(linear_system(spreads.numbers.model, [speed], plan), speed or 0.0, V)
     bare = Family(spreads, speed, plan, V, nominal, None)
     trials = np.random.default_rng(0).uniform(-0.7, 0.7, (_TRIALS, len(spreads))) * spreads.reach
     if not _adds_up(bare, trials[0]):

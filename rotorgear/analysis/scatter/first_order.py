@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.family import sample_at
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS
 from rotorgear.analysis.scatter.samples import Study, shares_at
 
@@ -50,7 +49,6 @@ def share_slopes(study: Study) -> NDArray[np.float64]:
         for j in range(len(spreads)):
             z = np.zeros(len(spreads))
             z[j] = _STATIC_STEP
-            sides = (sample_at(spreads, side * z, study.family.speed) for side in (1.0, -1.0))
-            above, below = (shares_at(model, study.family.speed, study.shared) for model in sides)
+            above, below = (shares_at(study, side * z) for side in (1.0, -1.0))
             found[:, j] = (above - below) / (2.0 * _STATIC_STEP)
     return found

@@ -175,7 +175,7 @@ def _share_bands(
 
     if not study.shared:
         return ()
-    nominal = shares_at(study.family.spreads.numbers.model, study.family.speed, study.shared)
+    nominal = shares_at(study, np.zeros(len(study.family.spreads)))
     found = []
     for k, (gear, mesh) in enumerate(study.shared):
         seen = values["shares"][:, k]

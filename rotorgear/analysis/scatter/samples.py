@@ -18,6 +18,7 @@ from rotorgear.analysis.scatter.family import Family, sample_at
 from rotorgear.analysis.scatter.forms import MASS, STIFFNESS, FormNames
 from rotorgear.analysis.scatter.modes import FormModes, modes_of, overlaps, times
 from rotorgear.analysis.static.shares import load_shares
+from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.static.static import solved
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
@@ -83,7 +84,7 @@ def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float6
         modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
         followed, own, held = _followed(study, modes)
         taken = participations(study.names, study.lines, forms, modes, signs(study.family))
-        shares = _shares(study, z)
+        shares = shares_at(study, z)
     except (RotorgearError, np.linalg.LinAlgError):
         # A sample beyond what the model can be: counted and said, not hidden.
         return nothing
@@ -211,13 +212,12 @@ def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: fl
     return float(ratio[np.argmin(np.abs(ratio))])
 
 
-def _shares(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
+def shares_at(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Load shares of the model at z (p,), with the face maps of the nominal one, (s,); NaN of one that it has not."""
     if not study.shared:
         return np.zeros(0)
-    return shares_at(sample_at(study.family.spreads, z, study.family.speed), study.family.speed, study.shared)
-
-
-def shares_at(model: Model, speed: float | None, wanted: tuple[tuple[str, str], ...]) -> NDArray[np.float64]:
-    """Load shares of a model, (s,); NaN of one that it has not."""
-    found = load_shares(solved(model, Plan(1), speed, silent).equilibrium)
-    return np.array([found.get(key, np.nan) for key in wanted])
+    family = study.family
+    nominal = state_at(family.spreads.numbers.model, [family.speed])
+    model = sample_at(family.spreads, tuple(map(float, z)))
+    found = load_shares(solved(model, Plan(1), family.speed, silent, nominal).equilibrium)
+    return np.array([found.get(key, np.nan) for key in study.shared])

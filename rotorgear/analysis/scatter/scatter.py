@@ -21,15 +21,15 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.scatter.basis import basis_of, nominal_modes, whole_modes, with_shapes
-from rotorgear.analysis.scatter.family import Family, family_of, system_at
+from rotorgear.analysis.scatter.family import Family, family_of
 from rotorgear.analysis.scatter.first_order import frequency_slopes, share_slopes
 from rotorgear.analysis.scatter.forms import FormNames
 from rotorgear.analysis.scatter.gather import Sampled, gathered
 from rotorgear.analysis.scatter.modes import modes_of
 from rotorgear.analysis.scatter.samples import SPARE, Study, groups_of, run_samples
 from rotorgear.analysis.static.shares import load_shares
+from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.analysis.static.static import solved
-from rotorgear.analysis.static.tangent import about_equilibrium, shared_maps
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -167,7 +167,7 @@ def scatter(
         *(() if sharing else ("load sharing of meshes: ask for it (--sharing)",)),
         *(
             f"face maps of {name} for each sample: all keep those of the model"
-            for name in shared_maps(about_equilibrium(model, [at])[0])
+            for name in state_at(model, [at]).shared_maps
         ),
     )
     progress(1.0, "done")
@@ -261,7 +261,7 @@ def _study(
 ) -> tuple[Study, float, int, tuple[str, ...]]:
     """What the samples are asked, the error of its basis, at how many samples it was judged, notes on what is out of reach."""
     model = spreads.numbers.model
-    system = system_at(model, speed, plan)
+    system = linear_system(model, [speed], plan)
     values, X, rigid = nominal_modes(system, speed, _WIDE * (modes + SPARE))
     if rigid >= len(values):
         raise AnalysisError("the model has no elastic mode")

@@ -14,8 +14,8 @@ import numpy as np
 from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.standards.rules import trial_unbalance
-from rotorgear.analysis.static.mean_state import mean_state
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.mean_state import about_mean
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.steady.modal import NodeTable
@@ -54,13 +54,12 @@ def plant_up_to(
     low, top = ends
     speed = direction * top
     tangents = direction * np.linspace(low or 0.1 * top, top, _TANGENTS)
-    linear, notes = about_equilibrium(model, [float(x) for x in tangents])
-    first = mean_state(System(model, load=model.mean_load(direction).of_kind("static")), speed)
-    plan = plan_up_to(at_speed(linear, speed), MARGIN * frequency / (2.0 * np.pi), None, None)
-    system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
+    state, first = about_mean(model, [float(x) for x in tangents], speed)
+    plan = plan_up_to(model, at_speed(state, speed), MARGIN * frequency / (2.0 * np.pi), None, None)
+    system = linear_system(model, [speed], plan, state=first.with_tangents(state))
     zeta = model.damping.modal_ratio
     damping = (*damped_modes(system, damped_up_to(system, frequency), speed), zeta) if zeta else None
-    return Plant(system, contact_lines(system), damping), (*first.notes, *notes)
+    return Plant(system, contact_lines(system), damping), (*first.notes, *state.notes)
 
 
 def antinodes(system: System, shaft: str, nodes: NodeTable, shape: np.ndarray) -> Antinodes:

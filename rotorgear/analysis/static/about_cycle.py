@@ -1,4 +1,4 @@
-"""The model about the mean state of its loaded teeth over their mesh cycles, which all linear analyses take.
+"""The state about the mean of its loaded teeth over their mesh cycles, which all linear analyses take.
 
 A mesh alone at the force of the torque flow has another stiffness than one that shares its load with others: helices, branches
 and loops are solved together (`cycle.py`), and each contact then has its mean tangent in that state.
@@ -7,13 +7,15 @@ and loops are solved together (`cycle.py`), and each contact then has its mean t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.mesh_force import MeshForce
+from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
-from rotorgear.model.parts.helix_state import HelixState
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
 
 # A helix that carries less than this share of the force of the torque flow is as good as open, as between two shafts that are
 # held: its tangent would be that of a few newtons, which the rounding of the map decides.
@@ -30,41 +32,39 @@ def state_speed(model: Model, speeds: Sequence[float | None]) -> float:
     return operating if not asked or operating * min(asked, key=abs) > 0.0 else asked[0]
 
 
-def about_cycle(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
-    """Return the model about the mean state of its loaded teeth, and a sentence where there is no such state.
+def about_cycle(model: Model, speeds: Sequence[float | None], state: State) -> State:
+    """Return the state about the mean of the loaded teeth over their mesh cycles, with a note where there is no such mean.
 
-    A model without loaded teeth (`stiffness = "tooth_fe"`), or that nothing loads, comes back as it is.
+    Without loaded teeth (`stiffness = "tooth_fe"`), or where nothing loads them, it is the one given.
 
     Args:
-        model: a checked model, its meshes about the loads along their faces.
+        model: a checked model.
         speeds: as for `state_speed`.
+        state: about the loads along the faces.
     """
-    teeth = [name for name, mesh in model.meshes.items() if mesh.stiffness == "tooth_fe" and not mesh.helix_states]
-    if not teeth:
-        return model, ()
+    teeth = [name for name, mesh in model.meshes.items() if mesh.stiffness == "tooth_fe"]
+    if not teeth or not state.applied:
+        return state
     speed = state_speed(model, speeds)
-    load = model.mean_load(-1 if speed < 0.0 else 1).of_kind("static")
-    if not load.applied:
-        return model, ()
+    flow = state.of_kind("static")
     try:
-        equilibrium, joint = over_cycle(equilibrate(System(model, load=load), speed), speed)
+        equilibrium, joint = over_cycle(equilibrate(flow_system(model).with_state(flow), speed), speed)
     except AnalysisError as error:
         where = ", ".join(f"meshes.{name}" for name in teeth)
         reason = str(error).rstrip(".")
-        return model, (
+        why = (
             f"{where}: the mean state of the loaded teeth over the mesh cycle, for which there is no solution ({reason}); the "
-            "tangent at the force of the torque flow is taken",
+            "tangent at the force of the torque flow is taken"
         )
+        return replace(state, notes=(*state.notes, why))
     if joint is None:
-        return model, ()
-    meshes = dict(model.meshes)
-    for name in teeth:
-        if states := _states_of(equilibrium, name, [abs(force.normal_force) for force in load.forces]):
-            meshes[name] = meshes[name].about_cycle(states)
-    return model.model_copy(update={"meshes": meshes}), ()
+        return state
+    carried = [abs(force.normal_force) for force in flow.forces]
+    cycle = {name: found for name in teeth if (found := _cycle_of(equilibrium, name, carried))}
+    return replace(state, cycle=cycle).of_kind("dynamic")
 
 
-def _states_of(equilibrium: Equilibrated, mesh: str, flow: Sequence[float]) -> tuple[HelixState, ...]:
+def _cycle_of(equilibrium: Equilibrated, mesh: str, flow: Sequence[float]) -> tuple[MeshForce, ...]:
     """State of each helix of a mesh, given all forces (N) of the torque flow; none where one carries nothing or has no state."""
     found = []
     for state, closed, carried in zip(equilibrium.lines.states, equilibrium.closed, flow, strict=True):
@@ -72,14 +72,5 @@ def _states_of(equilibrium: Equilibrated, mesh: str, flow: Sequence[float]) -> t
             continue
         if not closed or state.start is None or state.normal_force <= _CARRIES * carried:
             return ()
-        found.append(
-            HelixState(
-                force=state.normal_force,
-                torque_sense=state.torque_sense,
-                pinion_drives=state.pinion_drives,
-                stiffness=state.contact.stiffness,
-                start=state.start,
-                face=state.face,
-            )
-        )
+        found.append(state)
     return tuple(found)

@@ -21,8 +21,11 @@ from rotorgear.analysis.static.about_cycle import state_speed
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import ConvergenceError
 from rotorgear.gears.stiffness.face_load import FaceLoad
+from rotorgear.model.layout.state import State
+from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
+from rotorgear.system.flow_system import flow_system
 from rotorgear.system.system import System
 
 # The misalignment rests when it changes by no more than this share of itself and of the approach. The next pass of Newton's
@@ -38,7 +41,7 @@ class AlongFaces:
     """An equilibrium with the loads along its faces.
 
     Attributes:
-        equilibrium: of the structure; the meshes of its model are about the state found.
+        equilibrium: of the structure; the state of its system knows the loads along the faces.
         faces: of each contact that feels the tilt of its shafts and carries, else None.
         passes: how often the faces were asked; 0 where none is.
     """
@@ -69,8 +72,8 @@ def equilibrate_along_faces(system: System, speed: float, progress: Progress = s
             else None
             for contact in range(len(feels))
         )
-        load = equilibrium.system.load.about_faces(faces)
-        equilibrium = equilibrate(equilibrium.system.with_load(load), speed)
+        load = equilibrium.system.state.about_faces(faces)
+        equilibrium = equilibrate(equilibrium.system.with_state(load), speed)
         changes = [
             abs(f - face.misalignment) / (abs(face.misalignment) + face.force / face.static.stiffness)
             for f, face in zip(misalignments(equilibrium), faces, strict=True)
@@ -85,17 +88,15 @@ def equilibrate_along_faces(system: System, speed: float, progress: Progress = s
 
 
 def _settled(equilibrium: Equilibrated, faces: tuple[FaceLoad | None, ...]) -> Equilibrated:
-    """The equilibrium with a model whose meshes are about the loads along their faces, so that all maps are of such teeth."""
+    """The equilibrium with a state that knows the loads along the faces, so that all maps are of such teeth."""
     system = equilibrium.system
-    meshes = dict(system.model.meshes)
+    found: dict[str, tuple[FaceLoad, ...]] = {}
     for name in dict.fromkeys(equilibrium.lines.names):
-        found = [face for face, mesh in zip(faces, equilibrium.lines.names, strict=True) if mesh == name]
-        carrying = tuple(face for face in found if face is not None)
-        if len(carrying) == len(found):  # an open helix has no state to be about
-            meshes[name] = meshes[name].about(carrying)
-    model = system.model.model_copy(update={"meshes": meshes})
-    load = replace(system.load, layout=model.layout)
-    return replace(equilibrium, system=System(model, plan=system.plan, load=load))
+        own = [face for face, mesh in zip(faces, equilibrium.lines.names, strict=True) if mesh == name]
+        carrying = tuple(face for face in own if face is not None)
+        if len(carrying) == len(own):  # an open helix has no state to be about
+            found[name] = carrying
+    return replace(equilibrium, system=system.with_state(replace(system.state, faces=found)))
 
 
 def _face_load(equilibrium: Equilibrated, contact: int, stiffness: float) -> FaceLoad:
@@ -113,8 +114,9 @@ def decided_by_loads(equilibrium: Equilibrated) -> bool:
     Then the force is the same at all positions, and the mean approach and moment are those of the `FaceLoad` of each contact.
     """
     lines = equilibrium.lines
-    meshes = [equilibrium.system.layout.mesh(name).part for name in lines.names]
-    if any(mesh.stiffness == "tooth_fe" and not mesh.face_loads for mesh in meshes):
+    meshes = equilibrium.system.model.meshes
+    known = equilibrium.system.state.faces
+    if any(meshes[name].stiffness == "tooth_fe" and name not in known for name in lines.names):
         return False
     # What gaps would change of the forces, dF/dg = K (V^T (K + V K V^T)^-1 V K) - K, is rounding.
     k = np.where(equilibrium.closed, lines.stiffness, 0.0)
@@ -131,33 +133,43 @@ def misalignments(equilibrium: Equilibrated) -> np.ndarray:
     return np.asarray(given - width * (equilibrium.lines.tilt.T @ equilibrium.q))
 
 
-def about_faces(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
-    """Return the model about the loads along its faces in the static equilibrium, and a sentence on each such mesh.
+def along_faces(model: Model, speeds: Sequence[float | None], state: State) -> State:
+    """Return the state about the loads along the faces in the static equilibrium, with a note on each such mesh.
 
-    A model whose meshes feel no tilt, or that nothing loads, comes back as it is.
+    Where no mesh feels a tilt, or nothing loads them, it is the one given.
 
     Args:
         model: a checked model.
         speeds: of the reference shaft in rad/s, of one sense, as for `state_speed`.
+        state: that of the torque flow, with the films and springs in place of bearings that the equilibrium is to have.
 
     Raises:
         What `equilibrate_along_faces` raises.
     """
     tilted = [name for name, mesh in model.meshes.items() if mesh.tilt]
-    if any(mesh.face_loads for mesh in model.meshes.values()):
-        return model, ()  # it is about such a state already
+    if not tilted or not state.applied:
+        return state
     speed = state_speed(model, speeds)
-    load = model.mean_load(-1 if speed < 0.0 else 1).of_kind("static") if tilted else None
-    if load is None or not load.applied:
-        return model, ()
-    settled = equilibrate_along_faces(System(model, load=load), speed).equilibrium.system.model
-    notes = []
-    for name in tilted:
-        faces = settled.layout.mesh(name).part.face_loads
-        if faces:
-            askew = " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in faces)
-            notes.append(
-                f"meshes.{name}: the load moves along the face; it is linear about the static equilibrium with its shafts, "
-                f"misaligned by {askew} over the face"
-            )
-    return settled, tuple(notes)
+    films = tuple(state.films.items())
+    key = ("along faces", speed, state.direction, films, tuple(state.mapped_at.items()))
+    if key in model.states and not state.tangents:
+        return model.states[key]
+    settled = equilibrate_along_faces(flow_system(model).with_state(state.of_kind("static")), speed)
+    faces = settled.equilibrium.system.state.faces
+    notes = [
+        f"meshes.{name}: the load moves along the face; it is linear about the static equilibrium with its shafts, misaligned by "
+        + " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in faces[name])
+        + " over the face"
+        for name in tilted
+        if name in faces
+    ]
+    found = replace(
+        torque_flow(model.layout, state.direction, faces),
+        tangents=state.tangents,
+        films=state.films,
+        mapped_at=state.mapped_at,
+        notes=(*state.notes, *notes),
+    )
+    if not state.tangents:
+        model.states[key] = found
+    return found

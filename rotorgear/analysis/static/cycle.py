@@ -31,8 +31,7 @@ from rotorgear.analysis.static.contact_curves import Curve, FaceCurve, FaceTable
 from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.layout.mean_load import MeshForce
-from rotorgear.model.parts.helix_state import FaceState
+from rotorgear.model.layout.mesh_force import FaceState, MeshForce
 from rotorgear.solvers.sparse.newton import Settled, settle
 from rotorgear.system.local_faces import face_law
 from rotorgear.system.system import System
@@ -71,9 +70,9 @@ def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, J
         joint = joint_state(equilibrium)
         if joint is None:
             return equilibrium, None
-        load = equilibrium.system.load.about_cycle(joint.force, joint.stiffness, joint.start, joint.faces)
+        load = equilibrium.system.state.about_cycle(joint.force, joint.stiffness, joint.start, joint.faces)
         closed = np.where(joint.own >= 0, joint.force > 0.0, equilibrium.closed)
-        settled = equilibrate(equilibrium.system.with_load(load), speed, closed, equilibrium.laws)
+        settled = equilibrate(equilibrium.system.with_state(load), speed, closed, equilibrium.laws)
         change = float(np.abs(settled.force - equilibrium.force).max())
         equilibrium = settled
         if not equilibrium.laws or change <= _AGREED * float(np.abs(settled.force).max()):
@@ -90,7 +89,7 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     Raises:
         AnalysisError: a position has no equilibrium.
     """
-    load = equilibrium.system.load
+    load = equilibrium.system.state
     lines = equilibrium.lines
     face_maps = tuple(load.face_map(state, near=True) for state in lines.states)
     maps = tuple(

@@ -58,9 +58,9 @@ def torsion_sentence(parts: tuple[str, ...]) -> tuple[str, ...]:
 
 def _mean(system: System, speed: float) -> Equilibrated | None:
     """The mean state without the torsional springs to ground; None where there are none, or they have to hold the loads."""
-    if not system.load.applied or not without_torsion_to_ground(system, system.groups_at(speed))[1]:
+    if not system.state.applied or not without_torsion_to_ground(system, system.groups_at(speed))[1]:
         return None
     try:
-        return equilibrate(system.with_load(system.load.of_kind("static")), speed)
+        return equilibrate(system.with_state(system.state.of_kind("static")), speed)
     except AnalysisError:
         return None

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.model.parts.helix_state import FaceState
+from rotorgear.model.layout.mesh_force import FaceState
 from rotorgear.system.local_faces import face_law
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces.registry import law_of
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
 
 # Of the highest speed: where a lower end is looked for.
 _SHARES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
@@ -44,7 +44,7 @@ def lowest_speed(model: Model, given: float | str | None, top: float, least: flo
     films = needs_rotation(model)
     if not films:
         return least, ""
-    system = System(model, load=model.mean_load(-1 if top < 0.0 else 1).of_kind("static"))
+    system = flow_system(model, direction=-1 if top < 0.0 else 1, kind="static")
     tried = ([least] if least else []) + [share * top for share in _SHARES if abs(share * top) > abs(least)]
 
     def carries(speed: float) -> bool:

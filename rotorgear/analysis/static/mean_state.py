@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
-from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.common.request import direction_of
+from rotorgear.analysis.static.along_faces import along_faces
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.ground import torsion_sentence
 from rotorgear.analysis.static.joint_state import JointState
 from rotorgear.analysis.static.solve import equilibrate
+from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.state import State
+from rotorgear.model.model import Model
 from rotorgear.system.contacts import ContactLines, contact_lines
+from rotorgear.system.flow_system import flow_system
 from rotorgear.system.system import System
 
 
@@ -31,6 +37,28 @@ class Setup:
     notes: tuple[str, ...]
     joint: JointState | None = None
 
+    def with_tangents(self, state: State) -> State:
+        """The mean state for small motions about it, with the tangents of laws of another state."""
+        return replace(self.system.state.of_kind("dynamic"), tangents=state.tangents)
+
+
+def about_mean(model: Model, speeds: Sequence[float | None], at: float) -> tuple[State, Setup]:
+    """What a linear response stands on: the state about the equilibria at some speeds, and the mean state at one of them.
+
+    Modes for the mesh are about the first one. The response is about the second, with the tangents of the first over speed:
+    `with_tangents` puts the two together.
+
+    Args:
+        model: a checked model.
+        speeds: of the reference shaft in rad/s, as of `state_at`.
+        at: speed of the mean state in rad/s.
+
+    Raises:
+        AnalysisError: there is no equilibrium, or some contact is open in it.
+    """
+    system = flow_system(model, direction=direction_of(at), kind="static")
+    return state_at(model, speeds), mean_state(system, at)
+
 
 def mean_state(system: System, speed: float) -> Setup:
     """Flanks and mean forces from statics; without loads, the flanks are assumed and the mean forces are zero.
@@ -38,13 +66,13 @@ def mean_state(system: System, speed: float) -> Setup:
     Raises:
         AnalysisError: some contact is open under the mean loads, so that there is no linear response about it.
     """
-    model, _ = about_faces(system.model, [speed])
-    if model is not system.model:
-        system = System(model, plan=system.plan, load=model.mean_load(system.direction).of_kind(system.load.kind))
+    found = along_faces(system.model, [speed], system.state)
+    if found is not system.state:
+        system = system.with_state(found.of_kind(system.state.kind))
     index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
     operation = system.model.operation
     weight = bool(operation and operation.gravity and any(operation.gravity))
-    if not system.load.forces or not (system.load.applied or index or weight or system.layout.loaded_from_outside):
+    if not system.state.forces or not (system.state.applied or index or weight or system.layout.loaded_from_outside):
         lines = contact_lines(system)
         meshes = system.model.meshes.items()
         varied = [name for name, m in meshes if m.stiffness_variation or not isinstance(m.stiffness, int | float)]
@@ -61,7 +89,7 @@ def mean_state(system: System, speed: float) -> Setup:
             f"meshes.{name} carries nothing under the mean loads, so there is no linear response about them; give more torque or "
             "a smaller index error"
         )
-    settled = equilibrium.system.with_load(equilibrium.system.load.with_forces(equilibrium.force))
+    settled = equilibrium.system.with_state(equilibrium.system.state.with_forces(equilibrium.force))
     return Setup(
         settled,
         contact_lines(settled),

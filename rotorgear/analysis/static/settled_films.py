@@ -1,22 +1,39 @@
-"""The model that motions in time start from: its oil films keep the temperature and the inlet of their mean state."""
+"""The films that motions in time start from: they keep the temperature and the inlet of their mean state."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+from rotorgear.analysis.static.along_faces import along_faces
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.forces.registry import law_of
+from rotorgear.model.layout.state import FilmState, State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
 
 
-def with_settled_films(model: Model, speed: float) -> Model:
-    """The model with its films as they are in the equilibrium at a speed, at one temperature and with one inlet.
+def state_in_time(model: Model, speed: float, direction: int | None = None) -> State:
+    """The state that motions in time start from: films as they are in equilibrium, teeth along their faces with these films.
+
+    Args:
+        model: a checked model. speed: of the reference shaft in rad/s.
+        direction: its sense of rotation; None: that of the operating speed.
+
+    Raises:
+        AnalysisError: there is no equilibrium at that speed.
+    """
+    flow = model.torque_flow(direction)
+    return along_faces(model, [speed], replace(flow, films=settled_films(model, speed)))
+
+
+def settled_films(model: Model, speed: float) -> dict[str, FilmState]:
+    """The films of a model as they are in the equilibrium at a speed, by address: at one temperature and with one inlet.
 
     Motions in time are too fast to warm a film; and where oil flows in is a place of the bearing, which does not turn with the
-    journal: linear analyses take it to stay as well. A model without such films comes back as it is.
+    journal: linear analyses take it to stay as well.
 
     Args:
         model: a checked model. speed: of the reference shaft in rad/s.
@@ -24,33 +41,24 @@ def with_settled_films(model: Model, speed: float) -> Model:
     Raises:
         AnalysisError: there is no equilibrium at that speed.
     """
-    films = [name for name, bearing in model.bearings.items() if bearing.film is not None and bearing.film.settles]
-    elements = [name for name, element in model.nonlinear_elements.items() if _heats(element) or _follows(element)]
-    if not (films or elements) or not speed:
-        return model
-    load = model.mean_load(-1 if speed < 0.0 else 1).of_kind("static")
-    equilibrium, _ = over_cycle(equilibrate(System(model, load=load), speed), speed)
-    found: dict[str, Any] = {state.part.part: state.part.law.settled(state.d) for state in equilibrium.laws}
-    bearings = dict(model.bearings)
-    for name in films:
-        bearing = bearings[name]
-        key = "journal" if bearing.journal is not None else "thrust"
-        film: Any = bearing.film
-        law = found[f"bearings.{name}"]
-        kept = {"inlet_temperature": law.temperature, "heat_share": 0.0} if film.heats else {}
-        if film.follows:
-            kept["inlet"] = law.inlet
-        bearings[name] = bearing.model_copy(update={key: film.model_copy(update=kept)})
-    others = dict(model.nonlinear_elements)
-    for name in elements:
-        law = found[f"nonlinear_elements.{name}"]
-        own = {**others[name].parameters}
-        if _heats(others[name]):
-            own |= {"viscosity": law.viscosity, "heat_share": 0.0}
-        if _follows(others[name]):
-            own |= {"follows": False, "inlet": law.inlet}
-        others[name] = others[name].model_copy(update={"parameters": own})
-    return model.model_copy(update={"bearings": bearings, "nonlinear_elements": others})
+    films = {
+        f"bearings.{name}": (bearing.film.heats, bearing.film.follows)
+        for name, bearing in model.bearings.items()
+        if bearing.film is not None and bearing.film.settles
+    } | {
+        f"nonlinear_elements.{name}": (_heats(element), _follows(element))
+        for name, element in model.nonlinear_elements.items()
+        if _heats(element) or _follows(element)
+    }
+    if not films or not speed:
+        return {}
+    system = flow_system(model, direction=-1 if speed < 0.0 else 1, kind="static")
+    equilibrium, _ = over_cycle(equilibrate(system, speed), speed)
+    laws: dict[str, Any] = {state.part.part: state.part.law.settled(state.d) for state in equilibrium.laws}
+    return {
+        address: FilmState(laws[address].temperature if heats else None, laws[address].inlet if follows else None)
+        for address, (heats, follows) in films.items()
+    }
 
 
 def _heats(element: NonlinearElement) -> bool:

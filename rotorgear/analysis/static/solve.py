@@ -88,12 +88,12 @@ def equilibrate(
     Raises:
         AnalysisError: no loads, a motion that nothing holds and the loads push, or flanks that can't be settled.
     """
-    closed = np.ones(len(system.load.forces), bool) if closed is None else closed
+    closed = np.ones(len(system.state.forces), bool) if closed is None else closed
     tried: set[tuple[object, ...]] = set()
     while True:
-        state = (tuple(force.torque_sense for force in system.load.forces), tuple(closed))
+        state = (tuple(force.torque_sense for force in system.state.forces), tuple(closed))
         if state in tried:
-            names = ", ".join(dict.fromkeys(force.contact.mesh for force in system.load.forces))
+            names = ", ".join(dict.fromkeys(force.contact.mesh for force in system.state.forces))
             raise AnalysisError(
                 f"no set of flanks carries the loads: meshes {names} open and close in turn; check index errors and loads"
             )
@@ -121,9 +121,9 @@ def _released(
     try:
         _solve(system, speed, opened, near)
     except _PushedMotionError:
-        mesh = system.load.forces[worst].contact.mesh
+        mesh = system.state.forces[worst].contact.mesh
         opened[worst] = True
-        return system.with_load(system.load.on_other_flank(mesh)), opened
+        return system.with_state(system.state.on_other_flank(mesh)), opened
     return system, opened
 
 

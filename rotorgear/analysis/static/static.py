@@ -33,10 +33,11 @@ from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
-from rotorgear.model.layout.mean_load import MeanLoad
+from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.steady.static import LoopAssembly, MeshFace, StaticResult
+from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
@@ -99,9 +100,16 @@ def static(
     return result
 
 
-def solved(model: Model, plan: Plan, speed: float | None, progress: Progress) -> AlongFaces:
-    """The equilibrium on a mesh, with loaded teeth over the mesh cycle where they need it; errors are those of `static`."""
-    system = System(model, plan=plan, load=model.mean_load(direction_of(speed)).of_kind("static"))
+def solved(
+    model: Model, plan: Plan, speed: float | None, progress: Progress, beside: State | None = None
+) -> AlongFaces:
+    """The equilibrium on a mesh, with loaded teeth over the mesh cycle where they need it; errors are those of `static`.
+
+    `beside` is a state of a model next to this one, whose face maps serve, as in `state_at`.
+    """
+    system = flow_system(model, plan, direction=direction_of(speed), kind="static")
+    if beside is not None:
+        system = system.with_state(replace(system.state, mapped_at=beside.shared_maps))
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
     found = equilibrate_along_faces(system, speed or 0.0, part_of(progress, 0.1, 0.4))
@@ -133,7 +141,7 @@ def _check_loaded(system: System) -> None:
     gravity = model.operation.gravity if model.operation else None
     index = any(mesh.index_error or mesh.helix_index_error for mesh in model.meshes.values())
     outside = system.layout.loaded_from_outside
-    if not system.load.applied and not (gravity and any(gravity)) and not index and not outside:
+    if not system.state.applied and not (gravity and any(gravity)) and not index and not outside:
         raise AnalysisError(
             "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"
         )
@@ -186,9 +194,9 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         parameter_unit=change.unit,
         force_derivative=change.force,
         share_derivative=share_change,
-        mesh_phase=phases_in_pitches(system.load),
+        mesh_phase=phases_in_pitches(system.state),
         assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
-        torque={item.name: item.torque for item in system.load.applied},
+        torque={item.name: item.torque for item in system.state.applied},
         load_force={load.address: load.constant for load in system.layout.external_loads},
         point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, nodes, moved).items()},
         imbalance=imbalance(equilibrium),
@@ -266,7 +274,7 @@ def _face_warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[str]:
     return list(dict.fromkeys(notes))
 
 
-def phases_in_pitches(load: MeanLoad) -> dict[str, float]:
+def phases_in_pitches(load: State) -> dict[str, float]:
     """Phase of each mesh in pitches, 0 to 1; NaN where teeth are missing."""
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
 
@@ -298,7 +306,7 @@ def _warnings(equilibrium: Equilibrated) -> list[str]:
     notes = []
     flow = {
         (force.contact.mesh, force.contact.helix): force.torque_sense
-        for force in equilibrium.system.model.mean_load(equilibrium.system.direction).forces
+        for force in equilibrium.system.model.torque_flow(equilibrium.system.direction).forces
     }
     for state, closed in zip(equilibrium.lines.states, equilibrium.closed, strict=True):
         contact = state.contact

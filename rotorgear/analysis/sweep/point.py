@@ -9,9 +9,8 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.notes import left_out
-from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
-from rotorgear.analysis.static.settled_films import with_settled_films
+from rotorgear.analysis.static.settled_films import state_in_time
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Reduced, Wanted
 from rotorgear.analysis.transient.notes import transient_left_out
@@ -24,8 +23,8 @@ from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium,
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
+from rotorgear.system.flow_system import flow_system
 from rotorgear.system.local import LocalModel, local_model
-from rotorgear.system.system import System
 
 _KEPT = 1000  # states at rest
 # Systems with casings are reduced from this many dofs on; below, there is nothing to gain.
@@ -134,8 +133,7 @@ class PointMaker:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
     def _still(self, model: Model, speed: float) -> Still | Large:
-        warm = with_settled_films(model, speed)
-        system = System(about_faces(warm, [speed])[0], plan=plan_in_time(self._elements))
+        system = flow_system(model, plan_in_time(self._elements)).with_state(state_in_time(model, speed))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)

@@ -137,7 +137,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
     force = 0.0
     sense = 1
     if applied_torques(model.layout)[0]:
-        forces = model.mean_load().of_mesh(mesh.name)
+        forces = model.torque_flow().of_mesh(mesh.name)
         force = sum(force.normal_force for force in forces) / len(forces)
         sense = forces[0].torque_sense
     given = mesh.part.stiffness

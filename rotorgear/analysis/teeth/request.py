@@ -119,7 +119,7 @@ def _load(model: Model, mesh: MeshLayout, given: float | str | None) -> tuple[Me
         return MeshLoad(torque, force, force / cosine, "given"), 1 if torque > 0.0 else -1
     if not applied_torques(model.layout)[0]:
         return None, 1
-    forces = model.mean_load().of_mesh(mesh.name)
+    forces = model.torque_flow().of_mesh(mesh.name)
     normal = sum(force.normal_force for force in forces)
     sense = forces[0].torque_sense
     if not normal:

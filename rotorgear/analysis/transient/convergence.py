@@ -16,7 +16,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.results.motion.transient import TransientResult
-from rotorgear.system.system import System
+from rotorgear.system.flow_system import flow_system
 
 STEPS = (40, 80, 160, 320, 640)
 ACCURACIES = (1e-2, 1e-3, 1e-4)
@@ -59,7 +59,7 @@ def transient_convergence_study(
     """
     if not model.meshes:
         raise AnalysisError("the convergence study of a transient compares contact forces: the model has no mesh")
-    system = System(model, plan=plan_in_time())
+    system = flow_system(model, plan_in_time())
     fixed: dict[str, Any] = {"speed": speed, "discard": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
     if time is None:
         # The mesh frequencies stand in any transient: the shortest one, without damping by modes, which Newmark can't take.

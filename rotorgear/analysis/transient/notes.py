@@ -38,7 +38,7 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     still = [name for name in meshes if _excites_nothing(local, name)]
     if still:
         notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
-    for name, helices in system.load.curves.items():
+    for name, helices in system.state.curves.items():
         curve = helices[0]
         if law_of[f"meshes.{name}"].known_up_to < np.inf:
             continue
@@ -54,13 +54,13 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
             notes.append(
                 f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
             )
-    for state in system.load.forces:
+    for state in system.state.forces:
         name = state.contact.mesh
         along = law_of[f"meshes.{name}"].components == 2
-        of_teeth = system.load.face_map(state) if along else system.load.contact_map(state)
+        of_teeth = system.state.face_map(state) if along else system.state.contact_map(state)
         notes += [text for text in map_errors([(name, of_teeth)]) if text not in notes]
     notes += unlike_teeth_left_out(system)
-    tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
+    tilted = list(system.state.faces)
     follow = [name for name in tilted if law_of[f"meshes.{name}"].components == 2]
     stay = [name for name in tilted if name not in follow]
     if stay:

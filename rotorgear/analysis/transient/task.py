@@ -8,10 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.static.ground import springs_about_mean
-from rotorgear.analysis.static.settled_films import with_settled_films
-from rotorgear.analysis.static.tangent import about_state_of
+from rotorgear.analysis.static.settled_films import state_in_time
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
 from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of
@@ -22,6 +20,7 @@ from rotorgear.progress import Progress
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.time.local_system import Integrator, state_at_rest
 from rotorgear.solvers.time.run import Schedule
+from rotorgear.system.flow_system import flow_system
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
 
@@ -54,13 +53,15 @@ def prepare(
     Raises:
         AnalysisError: nothing is free to move, or the speed makes no sense.
     """
-    given = model if isinstance(model, System) else System(model, plan=plan_in_time(elements))
+    given = model if isinstance(model, System) else flow_system(model, plan_in_time(elements))
     rotation = rotation_of(given, speed)
     largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
     direction = -1 if largest < 0.0 else 1
     if direction != given.direction:
-        given = given.with_load(given.model.mean_load(direction))
-    given = about_state_of(given, about_faces(with_settled_films(given.model, largest), [largest])[0])
+        given = given.with_state(given.model.torque_flow(direction))
+    found = state_in_time(given.model, largest, direction)
+    # Forces and flanks of a given state stay where the equilibrium says nothing of the teeth.
+    given = given.with_state(found if found.faces else replace(given.state, films=found.films))
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
@@ -81,7 +82,7 @@ def damped(model: Model | System, modal_damping: float | None) -> Model | System
     given = model.model if isinstance(model, System) else model
     damping = given.damping.model_copy(update={"modal_ratio": modal_damping})
     changed = given.model_copy(update={"damping": damping})
-    return System(changed, plan=model.plan, load=model.load) if isinstance(model, System) else changed
+    return flow_system(changed, model.plan).with_state(model.state) if isinstance(model, System) else changed
 
 
 def run_task(

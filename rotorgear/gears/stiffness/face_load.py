@@ -32,7 +32,7 @@ class FaceSpring:
 _PLACES = 41
 
 
-@dataclass(frozen=True, eq=False)  # a state of its own: models that hold one are compared by what their files say
+@dataclass(frozen=True, eq=False)  # it holds arrays
 class FaceLoad:
     """One helix under its mean load, along the flank normal.
 

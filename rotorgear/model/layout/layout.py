@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class Layout:
-    """What follows from the parts of a model alone. What depends on loads is a `MeanLoad`.
+    """What follows from the parts of a model alone. What depends on loads is a `State`.
 
     Attributes:
         model: the parts; those that the layout is asked for must be in order.

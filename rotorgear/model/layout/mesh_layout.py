@@ -10,7 +10,7 @@ transverse plane for one helix. Here the two are brought to one `MeshStiffness` 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -250,14 +250,15 @@ class MeshLayout:
             return self.teeth
         return replace(self.teeth, first_flank=self.pinion.flank_of("right"), second_flank=self.gear.flank_of("right"))
 
-    def helix_teeth(self, helix: int, sense: int = 1) -> ToothPair:
-        """The teeth of one helix as contact runs over them, with the misalignment of the state that the mesh is about.
+    def helix_teeth(self, helix: int, sense: int = 1, misalignment: float | None = None) -> ToothPair:
+        """The teeth of one helix as contact runs over them.
 
-        `sense` is that of the torque on the pinion about +z. Raises what `teeth` raises.
+        `sense` is that of the torque on the pinion about +z; `misalignment` (m) that of a state with tilted shafts, None for that
+        of the file. Raises what `teeth` raises.
         """
         teeth = self.working_teeth(sense)
-        if self.part.face_loads:
-            teeth = replace(teeth, misalignment=self.part.face_loads[helix].misalignment)
+        if misalignment is not None:
+            teeth = replace(teeth, misalignment=misalignment)
         return teeth if self.helix_senses(sense)[helix] > 0 else mirrored(teeth)
 
     def face_load(
@@ -337,7 +338,12 @@ class MeshLayout:
         return (first, -first)[: self.helices]
 
     def helix_stiffness(
-        self, normal_force: float | None = None, positions: int = POSITIONS, name: str | None = None, sense: int = 1
+        self,
+        normal_force: float | None = None,
+        positions: int = POSITIONS,
+        name: str | None = None,
+        sense: int = 1,
+        misalignments: Sequence[float] | None = None,
     ) -> tuple[MeshStiffness, ...]:
         """Stiffness of each helix over one mesh period, each counted from where its own teeth touch at the pitch point.
 
@@ -346,6 +352,7 @@ class MeshLayout:
             positions: how many positions of one mesh period, for a stiffness model.
             name: a stiffness model in place of what the file says.
             sense: of the torque on the pinion about +z; it matters where flanks differ along the face.
+            misalignments: of each helix (m) in a state with tilted shafts; None for that of the file.
 
         Raises:
             AnalysisError: teeth or a load that the stiffness model can't do.
@@ -364,23 +371,25 @@ class MeshLayout:
             return (one,) * self.helices
         try:
             return tuple(
-                mesh_stiffness(given, self.helix_teeth(helix, sense), load, positions) for helix in range(self.helices)
+                mesh_stiffness(given, self.helix_teeth(helix, sense, f), load, positions)
+                for helix, f in enumerate(misalignments or (None,) * self.helices)
             )
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
-    def face_map(self, helix: int, normal_force: float, sense: int = 1, near: bool = False) -> FaceMap | None:
-        """(F, M)(delta, tilt, u) of one helix about the state along its face; None where it has none, or no loaded teeth.
+    def face_map(
+        self, helix: int, normal_force: float, asked: tuple[float, ...], sense: int = 1, near: bool = False
+    ) -> FaceMap | None:
+        """(F, M)(delta, tilt, u) of one helix at some misalignments (m), falling; None where its teeth are not loaded ones.
 
-        Arguments and errors as of `contact_map`.
+        Other arguments and errors as of `contact_map`.
         """
-        if self.part.stiffness != "tooth_fe" or not self.part.face_loads or not normal_force:
+        if self.part.stiffness != "tooth_fe" or not normal_force:
             return None
         from rotorgear.gears.maps.face_map import face_map
 
         teeth = self.working_teeth(sense)
         given = self.part.misalignment
-        asked = self.map_misalignments(helix)
         load = float(f"{normal_force:.12g}")
         try:
             if self.helix_senses(sense)[helix] > 0:
@@ -389,29 +398,13 @@ class MeshLayout:
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
-    def map_misalignments(self, helix: int) -> tuple[float, ...]:
-        """Misalignments (m), falling, of the face map of a helix: about its state, or those of models next to this one."""
-        from rotorgear.gears.maps.face_map import holds, misalignments
-
-        face = self.part.face_loads[helix]
-        if self.part.map_misalignments and holds(self.part.map_misalignments[helix], face.misalignment):
-            return self.part.map_misalignments[helix]
-        return misalignments(face.misalignment, self.part.misalignment, face.force / face.static.stiffness)
-
-    def coast_map(self, helix: int, normal_force: float, sense: int) -> ContactMap | None:
-        """F(delta, u) of the flanks behind working ones that a torque of this sense about +z presses.
-
-        Flanks that the shafts close on one side of the teeth they open on the other: the misalignment changes its sign. Arguments
-        and errors as of `contact_map`.
-        """
-        behind = MeshLayout(self.name, self.part.coasting, self.pinion, self.gear, self._train_of)
-        return behind.contact_map(helix, normal_force, -sense)
-
-    def contact_map(self, helix: int, normal_force: float, sense: int = 1, near: bool = False) -> ContactMap | None:
+    def contact_map(
+        self, helix: int, normal_force: float, sense: int = 1, near: bool = False, misalignment: float | None = None
+    ) -> ContactMap | None:
         """F(delta, u) of one helix about a mean force (N) along the flank normal; None where its teeth are not loaded ones.
 
-        `sense` is that of the torque on the pinion about +z; `near` gives the map for linear analyses. Raises what
-        `rotorgear.gears.maps.contact_map` raises.
+        `sense` is that of the torque on the pinion about +z; `near` gives the map for linear analyses; `misalignment` as of
+        `helix_teeth`. Raises what `rotorgear.gears.maps.contact_map` raises.
         """
         if self.part.stiffness != "tooth_fe" or not normal_force:
             return None
@@ -419,7 +412,7 @@ class MeshLayout:
 
         try:
             # Rounding of the torque flow must not make another load: equal meshes are solved once.
-            return contact_map(self.helix_teeth(helix, sense), float(f"{normal_force:.12g}"), near=near)
+            return contact_map(self.helix_teeth(helix, sense, misalignment), float(f"{normal_force:.12g}"), near=near)
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 

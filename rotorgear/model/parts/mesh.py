@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field
 
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.parts.fields import (
@@ -22,10 +21,6 @@ from rotorgear.model.parts.fields import (
 )
 from rotorgear.model.parts.flank import ToothFeTable
 from rotorgear.model.parts.stiffness_field import StiffnessValue
-
-if TYPE_CHECKING:
-    from rotorgear.gears.stiffness.face_load import FaceLoad
-    from rotorgear.model.parts.helix_state import HelixState
 
 
 class Mesh(Part):
@@ -119,55 +114,7 @@ class Mesh(Part):
         "given value; default: the mean deflection",
     )
 
-    # How each helix carries along its face in the static equilibrium; no file gives it, and a linear analysis is about it.
-    _face_loads: tuple[FaceLoad, ...] = PrivateAttr(())
-
-    @property
-    def face_loads(self) -> tuple[FaceLoad, ...]:
-        """State of each helix along its face that the mesh is about; empty where none was looked for."""
-        return self._face_loads
-
-    @property
-    def coasting(self) -> Mesh:
-        """The mesh as its coast flanks see it: askew the other way where the working ones are about a state along their faces."""
-        turned = tuple(replace(face, misalignment=-face.misalignment) for face in self._face_loads)
-        return self.about(turned)
-
-    def about(self, face_loads: tuple[FaceLoad, ...]) -> Mesh:
-        """The same mesh about a state of its helices along their faces."""
-        settled = self.model_copy()
-        settled._face_loads = face_loads
-        return settled
-
     @property
     def rubs(self) -> bool:
         """Whether its flanks have sliding friction, by a coefficient or by the viscosity of the oil."""
         return bool(self.friction_coefficient or self.lubricant_viscosity)
-
-    # Where each helix is solved for its face map, where models next to each other share one: no file gives it either.
-    _map_misalignments: tuple[tuple[float, ...], ...] = PrivateAttr(())
-
-    @property
-    def map_misalignments(self) -> tuple[tuple[float, ...], ...]:
-        """Misalignments (m) of the face map of each helix, falling; empty where they are those about its own state."""
-        return self._map_misalignments
-
-    def mapped_at(self, misalignments: tuple[tuple[float, ...], ...]) -> Mesh:
-        """The same mesh with face maps at these misalignments (m) of each helix, as long as its states lie among them."""
-        shared = self.model_copy()
-        shared._map_misalignments = misalignments
-        return shared
-
-    # The mean state of each helix over the mesh cycle, from all loaded teeth together; a linear analysis is about it.
-    _helix_states: tuple[HelixState, ...] = PrivateAttr(())
-
-    @property
-    def helix_states(self) -> tuple[HelixState, ...]:
-        """Mean state of each helix over the mesh cycle that the mesh is about; empty where none was looked for."""
-        return self._helix_states
-
-    def about_cycle(self, states: tuple[HelixState, ...]) -> Mesh:
-        """The same mesh about the mean state of its helices over the mesh cycle."""
-        settled = self.model_copy()
-        settled._helix_states = states
-        return settled

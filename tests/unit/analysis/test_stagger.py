@@ -130,7 +130,7 @@ def test_each_helix_answers_as_in_a_model_of_two_helical_pairs(
     shafts: dict[str, Any] | None, stagger: float, direction: int
 ) -> None:
     one = herringbone("potential_energy", stagger, shafts)
-    phase = one.mean_load(direction).phases["pair"]
+    phase = one.torque_flow(direction).phases["pair"]
     assert phase is not None
     # A quarter of a pitch ahead about the pinion's own sense of rotation lies behind when everything turns back.
     other = two_helical("potential_energy", (phase, phase + direction * 2.0 * np.pi * stagger), shafts)

@@ -16,7 +16,7 @@ Approach = Callable[[np.ndarray, np.ndarray], np.ndarray]  # delta(F, u)
 def written(approach: Approach, periods: int = 1) -> Callable[..., ContactMap | None]:
     """Stands in for MeshLayout.contact_map: every helix has the map delta(F, u)."""
 
-    def contact_map(mesh: MeshLayout, helix: int, normal_force: float, *_: object) -> ContactMap | None:
+    def contact_map(mesh: MeshLayout, helix: int, normal_force: float, *_: object, **__: object) -> ContactMap | None:
         if not normal_force:
             return None
         u = np.arange(128 * periods) / 128

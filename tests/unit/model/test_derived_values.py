@@ -20,7 +20,7 @@ def asked(model: Model) -> Model:
     """The model after it was asked for everything that it derives."""
     assert all(gear.geometry for gear in model.gears.values())
     assert all(mesh.pair and mesh.contacts for mesh in model.layout.meshes)
-    assert model.mean_load(1).phases
+    assert model.torque_flow(1).phases
     return model
 
 
@@ -40,8 +40,8 @@ def test_a_copy_of_a_model_with_another_gear_has_its_train_contacts_and_forces(p
     changed = model.model_copy(update={"gears": fresh.gears})
     assert changed.layout.train.ratio("output") == fresh.layout.train.ratio("output") == -25 / 71
     assert changed.layout.mesh("stage").contacts == fresh.layout.mesh("stage").contacts
-    assert changed.mean_load().forces == fresh.mean_load().forces
-    assert changed.mean_load().forces != model.mean_load().forces
+    assert changed.torque_flow().forces == fresh.torque_flow().forces
+    assert changed.torque_flow().forces != model.torque_flow().forces
 
 
 @pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, lambda model: pickle.loads(pickle.dumps(model))])
@@ -50,7 +50,7 @@ def test_copies_carry_fields_only(pair: Data, twin: Any) -> None:
     other = twin(model)
     assert other.__dict__.keys() == type(model).model_fields.keys()
     assert other == model
-    assert other.mean_load().forces == model.mean_load().forces
+    assert other.torque_flow().forces == model.torque_flow().forces
 
 
 def test_models_and_parts_are_equal_whatever_they_have_derived(pair: Data) -> None:

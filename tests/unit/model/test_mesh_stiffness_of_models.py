@@ -23,7 +23,7 @@ def with_stiffness(data: dict[str, Any], value: Any) -> Model:
 @pytest.mark.parametrize("name", ["iso", "contact_line", "potential_energy"])
 def test_modes_with_a_model_are_those_with_its_mean_typed_in(pair: dict[str, Any], name: str) -> None:
     named = with_stiffness(pair, name)
-    curve = named.mean_load().whole_curve("stage")
+    curve = named.torque_flow().whole_curve("stage")
     typed = with_stiffness(pair, curve.mean_normal)
     got, want = (rg.modal(model, modes=12, elements=2).frequency_hz for model in (named, typed))
     assert got == pytest.approx(want, rel=1e-9, abs=1e-6)
@@ -34,7 +34,7 @@ def test_modes_with_a_model_are_those_with_its_mean_typed_in(pair: dict[str, Any
 
 def test_a_table_over_the_mesh_period_counts_with_its_mean(pair: dict[str, Any]) -> None:
     table = with_stiffness(pair, ["3e8 N/m", "4e8 N/m", 5e8])
-    assert table.mean_load().forces[0].contact.stiffness == pytest.approx(4e8, rel=1e-14)
+    assert table.torque_flow().forces[0].contact.stiffness == pytest.approx(4e8, rel=1e-14)
     assert table.layout.mesh("stage").stiffness().normal == pytest.approx([3e8, 4e8, 5e8], rel=1e-14)
 
 
@@ -66,7 +66,7 @@ def test_a_series_that_makes_no_sense_is_refused(pair: dict[str, Any], series: d
 
 def test_both_helices_of_a_herringbone_share_the_load_and_add_up(split: dict[str, Any]) -> None:
     model = with_stiffness(split, "contact_line")
-    flow = model.mean_load()
+    flow = model.torque_flow()
     for name in model.meshes:
         forces = flow.of_mesh(name)
         curve = flow.whole_curve(name)
@@ -79,7 +79,7 @@ def test_both_helices_of_a_herringbone_share_the_load_and_add_up(split: dict[str
 def test_a_light_load_in_a_loop_is_iterated_with_its_stiffness(split: dict[str, Any]) -> None:
     split["operation"]["power"] = "200 W"  # far below 100 N/mm: c' depends on the load
     model = with_stiffness(split, "iso")
-    flow = model.mean_load()
+    flow = model.torque_flow()
     for name in model.meshes:
         forces = [force.normal_force for force in flow.of_mesh(name)]
         assert model.layout.mesh(name).stiffness(sum(forces) / len(forces)).mean == pytest.approx(
@@ -91,7 +91,7 @@ def test_a_light_load_in_a_loop_is_iterated_with_its_stiffness(split: dict[str, 
 def test_without_a_load_a_model_that_needs_none_still_answers(pair: dict[str, Any]) -> None:
     del pair["operation"]["power"], pair["operation"]["output_shaft"]
     model = with_stiffness(pair, "iso")
-    assert model.mean_load().whole_curve("stage").load is None
+    assert model.torque_flow().whole_curve("stage").load is None
 
 
 def test_the_result_says_which_mean_stiffness_was_taken_at_which_load(pair: dict[str, Any]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import ModelError
-from rotorgear.model.layout.mean_load import MeanLoad
+from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.load import Load
@@ -20,15 +20,15 @@ from rotorgear.model.parts.supports import Coupling, StiffnessMatrix
 Data = dict[str, Any]
 
 
-def flow_of(model: Model, direction: int = 1) -> MeanLoad:
-    return model.mean_load(direction)
+def flow_of(model: Model, direction: int = 1) -> State:
+    return model.torque_flow(direction)
 
 
 def lumped(shaft: str, at: float, radius: float) -> Gear:
     return Gear(shaft=shaft, at=at, kind="spur", base_radius=radius, mass=1, polar_inertia=1, diametral_inertia=1)
 
 
-def torque_balance(model: Model, flow: MeanLoad) -> dict[str, float]:
+def torque_balance(model: Model, flow: State) -> dict[str, float]:
     """Sum of the torques on each shaft about +z: applied ones, and those of its meshes."""
     total = dict.fromkeys(model.shafts, 0.0)
     for item in flow.applied:

@@ -30,9 +30,9 @@ def wheel(**changes: object) -> rg.Model:
 
 def turned(model: rg.Model) -> float:
     """Rotation (rad) of the input shaft by its torque, the output shaft held where its torque acts."""
-    system = rg.System(model, load=model.mean_load(1).of_kind("static"))
+    system = rg.System(model, state=model.torque_flow(1).of_kind("static"))
     K = system.stiffness().toarray()
-    inlet, outlet = (system.nodes.at(item.shaft, item.z) for item in system.load.applied)
+    inlet, outlet = (system.nodes.at(item.shaft, item.z) for item in system.state.applied)
     force = np.zeros(K.shape[0])
     force[system.dofs.column[6 * inlet + 5]] = 300.0
     free = np.delete(np.arange(K.shape[0]), system.dofs.column[6 * outlet + 5])

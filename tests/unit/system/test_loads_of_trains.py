@@ -113,6 +113,6 @@ def test_the_mean_force_of_a_helical_mesh_is_torque_over_its_arm_whichever_gear_
         {},
         operation={"input_shaft": driver, "output_shaft": other, "torque": 100.0, "speed": 50.0},
     )
-    (force,) = System(model).load.forces
+    (force,) = System(model).state.forces
     assert force.normal_force == pytest.approx(100.0 / (radius * math.cos(0.4)), rel=1e-9)
     assert force.pinion_drives is (driver == "one")

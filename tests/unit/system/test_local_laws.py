@@ -192,7 +192,7 @@ def test_teeth_of_the_second_helix_are_ahead_by_the_stagger_where_the_input_turn
     assert (ahead - math.copysign(0.25, speed)) % 1.0 == pytest.approx(0.0, abs=1e-9)
     assert first.order == second.order
     system = System(model)
-    (force, _) = system.load.forces
+    (force, _) = system.state.forces
     whole = system.layout.mesh("pair").stiffness(sense=force.torque_sense)
     for u, k in zip(whole.position, whole.normal, strict=True):
         later = u if driver == "one" else -u

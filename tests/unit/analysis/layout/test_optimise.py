@@ -9,13 +9,13 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.layout.bounds import bounds_of
+from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, total_mass
 from rotorgear.analysis.layout.penalty import frequency_slopes, near_modes
 from rotorgear.analysis.layout.problem import Problem
-from rotorgear.analysis.layout.state import State, total_mass
-from rotorgear.analysis.scatter import family
-from rotorgear.analysis.scatter.family import system_at
 from rotorgear.analysis.scatter.forms import forms_of
 from rotorgear.analysis.scatter.modes import modes_of
+from rotorgear.analysis.static import state_at
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.numbers import numbers_of
 from rotorgear.results.steady.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
@@ -36,14 +36,14 @@ def slopes_of(rotor: rg.Model, address: str, step: float = 2e-3) -> tuple[np.nda
     x = float(numbers.start[0])
     speed = rotor.operation.speed
 
-    def state(value: float) -> State:
-        system = system_at(numbers.at(np.array([value])), speed, PLAN)
+    def state(value: float) -> ModesAtSpeed:
+        system = linear_system(numbers.at(np.array([value])), [speed], PLAN)
         # Strains keep the digits that K of all dofs would lose.
         S = system.strain_factor(speed)
         V = lowest_modes(system.mass, system.stiffness(speed), strain=lambda Y: S @ Y).vectors
         forms = forms_of(system, speed, V)
         modes = modes_of(forms, 8, 1.0, V.shape[1])
-        return State(system, speed, V, forms, modes, np.zeros((0, 8)), np.zeros(0))
+        return ModesAtSpeed(system, speed, V, forms, modes, np.zeros((0, 8)), np.zeros(0))
 
     def quotient(h: float) -> np.ndarray:
         return (state(x + h).hz - state(x - h).hz) / (2.0 * h)
@@ -55,7 +55,7 @@ def slopes_of(rotor: rg.Model, address: str, step: float = 2e-3) -> tuple[np.nda
     X = np.hstack([shapes.real, shapes.imag])
     narrow = 1e-5 * abs(x)
     above, below = (
-        forms_of(system_at(numbers.at(np.array([x + side])), speed, PLAN), speed, X) for side in (narrow, -narrow)
+        forms_of(linear_system(numbers.at(np.array([x + side])), [speed], PLAN), speed, X) for side in (narrow, -narrow)
     )
     C = np.vstack([np.eye(8), 1j * np.eye(8)])
     change = C.conj().T @ ((above - below)[:3] / (2.0 * narrow)) @ C
@@ -243,14 +243,14 @@ def test_deviations_of_a_layout_are_the_bands_of_scatter():
 
 def test_the_mass_of_the_rotors_is_that_of_the_check():
     pair = model("geared_pair")
-    assert total_mass(system_at(pair, None, Plan(1))) == pytest.approx(rg.check(pair).total_mass_kg, rel=1e-12)
+    assert total_mass(linear_system(pair, [None], Plan(1))) == pytest.approx(rg.check(pair).total_mass_kg, rel=1e-12)
 
 
 def test_a_mass_asks_for_no_equilibrium(monkeypatch):
     numbers = numbers_of(model("geared_pair"), "shafts.rotor_1.sections.*.outer_diameter")
     low, high, _ = bounds_of(numbers, {})
     problem = Problem(numbers, low, high, (100.0,), (), PLAN, 150.0, 0.4, 0.4, 1e-3)
-    monkeypatch.setattr(family, "about_equilibrium", None)
+    monkeypatch.setattr(state_at, "_state_at", None)
     mass, slopes = problem.mass(problem.start)
     assert mass == pytest.approx(rg.check(model("geared_pair")).total_mass_kg, rel=1e-12)
     assert np.all(slopes > 0.0)

@@ -170,7 +170,7 @@ def test_of_a_given_list_of_stiffnesses_the_mean_is_taken() -> None:
 def test_of_a_model_of_the_stiffness_the_mean_is_taken(name: str) -> None:
     model = pair({"stiffness": name}.items())
     said = sentence(rg.modal(model, modes=2, elements=1), "the mean stiffness of")
-    (curve,) = System(model).load.curves["pair"]
+    (curve,) = System(model).state.curves["pair"]
     if np.ptp(curve.transverse):
         assert numbers(said)[0] == pytest.approx(100.0 * np.ptp(curve.transverse) / curve.mean, rel=1e-2)
     else:

@@ -12,7 +12,7 @@ import rotorgear as rg
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, unlike_teeth_left_out
 from rotorgear.analysis.response.orders import orders_of
 from rotorgear.analysis.static import about_cycle
-from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.along_faces import along_faces
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.request import rotation_of
@@ -42,8 +42,8 @@ def rippling(monkeypatch: pytest.MonkeyPatch) -> None:
 def write(monkeypatch: pytest.MonkeyPatch, approach: Approach, periods: int = 1) -> None:
     of_teeth = written(approach, periods)
 
-    def contact_map(mesh: MeshLayout, *given: Any) -> ContactMap | None:
-        return of_teeth(mesh, *given) if mesh.part.stiffness == "tooth_fe" else None
+    def contact_map(mesh: MeshLayout, *given: Any, **more: Any) -> ContactMap | None:
+        return of_teeth(mesh, *given, **more) if mesh.part.stiffness == "tooth_fe" else None
 
     monkeypatch.setattr(MeshLayout, "contact_map", contact_map)
 
@@ -58,6 +58,7 @@ def system_of(model: rg.Model) -> System:
 
 def local_of(model: rg.Model) -> LocalModel:
     system = system_of(model)
+    system = system.with_state(along_faces(model, [150.0], system.state))
     return local_model(system, rotation_of(system, None), 150.0)
 
 
@@ -68,7 +69,7 @@ def law_of(local: LocalModel, mesh: str = "pair") -> Any:
 def test_the_mean_tangent_that_is_named_is_the_stiffness_of_modes() -> None:
     said = sentence(rg.modal(loaded(), modes=2, elements=1), "the mean tangent of its loaded teeth over the mesh cycle")
     share, taken = numbers(said)[:2]
-    curve = system_of(loaded()).load.curves["pair"][0].about_load  # of the teeth themselves, whose map is written here
+    curve = system_of(loaded()).state.curves["pair"][0].about_load  # of the teeth themselves, whose map is written here
     assert share == pytest.approx(100.0 * np.ptp(curve.transverse) / curve.mean, rel=0.02)
     assert modes(loaded()) == pytest.approx(modes(pair({"stiffness": taken}.items())), rel=2e-4)
 
@@ -82,7 +83,7 @@ def test_without_a_state_over_the_cycle_the_tangent_at_the_torque_flow_is_taken(
     monkeypatch.setattr(about_cycle, "over_cycle", fails)
     found = rg.modal(loaded(), modes=8, elements=1, error_estimate=False)
     assert says(found, "for which there is no solution (no luck); the tangent at the force of the torque flow is taken")
-    (force,) = loaded().mean_load(1).forces
+    (force,) = loaded().torque_flow(1).forces
     assert found.eigenvalues == pytest.approx(modes(pair({"stiffness": force.contact.stiffness}.items())), rel=1e-9)
 
 
@@ -134,11 +135,11 @@ def test_teeth_whose_place_is_not_known_begin_with_tooth_0_whatever_the_angle() 
         place = [0.15 + 0.15 * np.cos(angle), 0.15 * np.sin(angle)]
         model = train(**{"meshes.bc.phase": "10 deg", "shafts.three.position": place})
         assert says(unlike_teeth_left_out(system_of(model)), "begin with tooth 0 in each, whatever the angle")
-        load = model.mean_load(1)
+        load = model.torque_flow(1)
         return [load.path_phase(force.contact) for force in load.forces]
 
     assert begins(0.0) == pytest.approx(begins(1.0), abs=1e-12)
-    known = [train(**{"shafts.three.position": place}).mean_load(1) for place in ([0.3, 0.0], [0.15, 0.15])]
+    known = [train(**{"shafts.three.position": place}).torque_flow(1) for place in ([0.3, 0.0], [0.15, 0.15])]
     assert not list(unlike_teeth_left_out(system_of(train())))
     assert known[0].path_phase(known[0].forces[1].contact) != known[1].path_phase(known[1].forces[1].contact)
 
@@ -152,7 +153,7 @@ def test_cycles_that_are_taken_one_at_a_time_do_not_know_each_others_ripple(monk
             return written(ripple(K, 0.1 if mesh.name == "first" else a))(mesh, *given)
 
         monkeypatch.setattr(MeshLayout, "contact_map", contact_map)
-        setup = mean_state(System(model, 1, load=model.mean_load(1).of_kind("static")), 100.0)
+        setup = mean_state(System(model, 1, state=model.torque_flow(1).of_kind("static")), 100.0)
         said = sentence(setup.notes, "what the cycles of meshes")
         assert "first; second" in said or "second; first" in said
         return {order.name: order.force for order in orders_of(setup)[0]}
@@ -274,7 +275,7 @@ def test_what_a_stiffness_model_does_not_know_does_not_act_in_time(name: str) ->
     law = law_of(local)
     at = np.linspace(0.0, 2.0 * np.pi / 24, 9)
     force = np.array([[law.evaluate(d, angle=angle).force[0] for angle in at] for d in (5e-6, 1e-5, 5e-5)])
-    (curve,) = local.system.load.curves["pair"]
+    (curve,) = local.system.state.curves["pair"]
     if np.ptp(curve.transverse):
         assert np.ptp(force[0]) > 0.05 * force[0].mean()
     else:
@@ -323,9 +324,7 @@ def tilting(**mesh: Any) -> rg.Model:
 
 def test_meshes_that_stand_askew_resist_a_tilt_by_their_tangent_also_where_they_part() -> None:
     """What resists a tilt is in K of the structure, whatever the law of the contact does, and the coast flanks know no tilt."""
-    local, plain = (
-        local_of(about_faces(model, [150.0])[0]) for model in (tilting(backlash=1e-4), pair({"backlash": 1e-4}.items()))
-    )
+    local, plain = (local_of(model) for model in (tilting(backlash=1e-4), pair({"backlash": 1e-4}.items())))
     said = transient_left_out(local)
     assert says(
         said, "how the load moves along the face of pair in time", "resist a tilt by the tangent about it, even where"

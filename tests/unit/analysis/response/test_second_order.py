@@ -51,7 +51,7 @@ def test_what_is_left_out_is_of_the_size_that_is_printed(q: float, a: float, mon
     model = pair()
     zeta = 0.05
     w = q * W_N
-    phase = model.mean_load().phases["m"]
+    phase = model.torque_flow().phases["m"]
     assert phase is not None
     result = rg.response(model, speeds=[w / 24.0], modal_damping=zeta)
     peak = next(peak for peak in result.largest if peak.quantity == "approach")

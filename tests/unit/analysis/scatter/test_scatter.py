@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.scatter import family
-from rotorgear.analysis.scatter.family import family_of, system_at
+from rotorgear.analysis.scatter.family import family_of
 from rotorgear.analysis.scatter.forms import FormNames, forms_of
 from rotorgear.analysis.scatter.modes import modes_of, overlaps
+from rotorgear.analysis.static import state_at
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import ModelError
 from rotorgear.gears.geometry.flank_tolerance import cumulative_pitch_tolerance
 from rotorgear.model.numbers import numbers_of
@@ -85,7 +87,7 @@ def test_slopes_are_those_of_whole_solutions_with_rotation():
 def test_modes_of_forms_are_those_of_the_damped_solver_without_damping():
     rotor = model("jeffcott").with_({"bearings.*.damping": None, "supports.air": None})
     speed = 600.0
-    system = system_at(rotor, speed, Plan(2))
+    system = linear_system(rotor, [speed], Plan(2))
     forms = forms_of(system, speed, np.eye(system.n))
     found = modes_of(forms, 8, 1.0, system.n)
     reference = rg.modal(system, speed=speed, modes=9)
@@ -122,7 +124,7 @@ def test_forward_and_backward_whirl_take_part_in_unbalance_as_their_sense_says()
 
     rotor = model("jeffcott")
     for speed in (600.0, -600.0):
-        system = system_at(rotor, speed, Plan(2))
+        system = linear_system(rotor, [speed], Plan(2))
         forms = forms_of(system, speed, np.eye(system.n))
         found = modes_of(forms, 8, 1.0, system.n)
         lines = tuple(line for line in excitation_orders(rotor) if line.name == "shaft rotor 1x")
@@ -138,7 +140,7 @@ def test_forward_and_backward_whirl_take_part_in_unbalance_as_their_sense_says()
 
 def test_forms_summed_over_numbers_are_those_of_whole_systems_and_numbers_that_meet_are_found_out():
     pair = model("geared_pair")
-    system = system_at(pair, 100.0, Plan(1))
+    system = linear_system(pair, [100.0], Plan(1))
     V = np.eye(system.n)[:, ::5]
     apart = spreads_of(
         pair, {"bearings.*.stiffness": Scatter(sigma="10 %"), "meshes.*.stiffness": Scatter(sigma="5 %")}
@@ -151,7 +153,7 @@ def test_forms_summed_over_numbers_are_those_of_whole_systems_and_numbers_that_m
         model("jeffcott"),
         {"disks.disk.width": Scatter(sigma="5 %"), "disks.disk.outer_diameter": Scatter(sigma="5 %")},
     )
-    rotor = system_at(model("jeffcott"), 100.0, Plan(1))
+    rotor = linear_system(model("jeffcott"), [100.0], Plan(1))
     assert family_of(meeting, 100.0, Plan(1), np.eye(rotor.n)).terms is None
 
 
@@ -177,16 +179,16 @@ def test_numbers_that_meet_are_found_out_by_one_system_for_each_and_one_for_all(
         model("jeffcott"),
         {"disks.disk.width": Scatter(sigma="5 %"), "disks.disk.outer_diameter": Scatter(sigma="5 %")},
     )
-    rotor = system_at(model("jeffcott"), 100.0, Plan(1))
+    rotor = linear_system(model("jeffcott"), [100.0], Plan(1))
     taken = []
-    linearised = family.about_equilibrium
+    found_there = state_at._state_at
 
-    def counted(model: rg.Model, speeds: list[float | None]) -> tuple[rg.Model, tuple[str, ...]]:
+    def counted(model: rg.Model, *rest: Any) -> Any:
         if model is not meeting.numbers.model:
             taken.append(model)
-        return linearised(model, speeds)
+        return found_there(model, *rest)
 
-    monkeypatch.setattr(family, "about_equilibrium", counted)
+    monkeypatch.setattr(state_at, "_state_at", counted)
     found = family_of(meeting, 100.0, Plan(1), np.eye(rotor.n))
     assert found.terms is None
     assert len(taken) == len(meeting) + 1

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.state_at import state_at
 from tests.unit.analysis.geared import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
@@ -46,9 +46,8 @@ def test_all_analyses_take_the_same_mean_tangent(pair: rg.Model) -> None:
 
 
 def test_helices_that_carry_unlike_shares_have_stiffnesses_of_their_own(pair: rg.Model) -> None:
-    linear, _ = about_equilibrium(pair, [None])
-    flow = pair.mean_load(1).forces
-    settled = linear.mean_load(1).forces
+    flow = pair.torque_flow(1).forces
+    settled = state_at(pair, [None]).forces
     assert flow[0].contact.stiffness == pytest.approx(flow[1].contact.stiffness, rel=1e-9)
     heavy = 0 if settled[0].normal_force > settled[1].normal_force else 1
     assert settled[heavy].contact.stiffness > 1.003 * settled[1 - heavy].contact.stiffness
@@ -62,6 +61,5 @@ def test_a_mesh_between_held_shafts_has_the_tangent_of_the_torque_flow(tmp_path:
     # A web at the end of the face lets the rim tilt, so that light contacts touch there only.
     web = {"rim_thickness": "8 mm", "web_thickness": "4 mm", "web_position": "6 mm"}
     model = rg.load(path).with_({"motions": ["torsion"], "supports": supports, "gears.wheel.body": web})
-    linear, _ = about_equilibrium(model, [None])
-    expected = model.mean_load(1).forces[0].contact.stiffness
-    assert linear.mean_load(1).forces[0].contact.stiffness == pytest.approx(expected, rel=1e-9)
+    expected = model.torque_flow(1).forces[0].contact.stiffness
+    assert state_at(model, [None]).forces[0].contact.stiffness == pytest.approx(expected, rel=1e-9)

@@ -10,9 +10,9 @@ import pytest
 from scipy.optimize import brentq
 
 import rotorgear as rg
-from rotorgear.analysis.static.along_faces import about_faces, equilibrate_along_faces
+from rotorgear.analysis.static.along_faces import along_faces, equilibrate_along_faces
 from rotorgear.analysis.static.mean_state import mean_state
-from rotorgear.analysis.static.tangent import with_maps_of
+from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.task import prepare
 from rotorgear.errors import ModelError
@@ -142,15 +142,16 @@ def test_the_misalignment_found_as_a_given_one_on_rigid_shafts_is_the_same_state
 def test_a_linear_model_about_the_state_has_its_forces_and_its_tangent() -> None:
     model = overhung()
     found = rg.static(model)
-    linear, notes = about_faces(model, [100.0])
-    assert "misaligned by" in notes[0]
-    setup = mean_state(System(linear, load=linear.mean_load().of_kind("static")), 100.0)
+    state = along_faces(model, [100.0], model.torque_flow())
+    assert "misaligned by" in state.notes[0]
+    setup = mean_state(System(model, state=state.of_kind("static")), 100.0)
     assert setup.mean_force == pytest.approx(found.mesh_force, rel=1e-6)
     face = uniform_line(STIFFNESS, WIDTH, float(found.mesh_force[0]), found.faces[0].misalignment_m)
     assert setup.lines.stiffness == pytest.approx([face.static.stiffness], rel=1e-6)
     assert setup.lines.tilt_stiffness == pytest.approx([face.static.tilt_stiffness], rel=1e-6)
     # About a state it stays there, however often it is asked.
-    assert about_faces(linear, [100.0])[0] is linear
+    assert along_faces(model, [100.0], model.torque_flow()) is state
+    assert state_at(model, [100.0]).forces == state.forces
 
 
 def test_a_mesh_that_feels_no_tilt_is_as_before() -> None:
@@ -158,7 +159,7 @@ def test_a_mesh_that_feels_no_tilt_is_as_before() -> None:
     result = rg.static(model)
     assert result.faces == ()
     assert result.passes == 0
-    assert about_faces(model, [None])[0] is model
+    assert along_faces(model, [None], model.torque_flow()) is model.torque_flow()
     assert rg.static(model, tilt=True).faces[0].face_load_factor is not None
 
 
@@ -184,7 +185,7 @@ def pinion() -> rg.Model:
 
 def test_teeth_of_an_overhung_pinion_rest_with_their_shafts() -> None:
     model = pinion()
-    found = equilibrate_along_faces(System(model, load=model.mean_load().of_kind("static")), 100.0)
+    found = equilibrate_along_faces(System(model, state=model.torque_flow().of_kind("static")), 100.0)
     face = found.faces[0]
     assert face is not None
     assert found.passes <= 10
@@ -200,16 +201,16 @@ def test_models_next_to_each_other_share_the_misalignments_of_their_maps() -> No
     model = pinion()
     assert model.operation is not None
     speed = model.operation.speed
-    about, _ = about_faces(model, [speed])
-    stiffer = with_maps_of(about, model.with_("bearings.input_left.stiffness.radial", 1.65e8))
-    beside, _ = about_faces(stiffer, [speed])
-    shared = about.layout.mesh("stage").map_misalignments(0)
-    assert beside.meshes["stage"].face_loads[0].misalignment != about.meshes["stage"].face_loads[0].misalignment
-    assert beside.layout.mesh("stage").map_misalignments(0) == shared
+    about = along_faces(model, [speed], model.torque_flow())
+    stiffer = model.with_("bearings.input_left.stiffness.radial", 1.65e8)
+    beside = along_faces(stiffer, [speed], replace(stiffer.torque_flow(), mapped_at=about.shared_maps))
+    contact = about.forces[0].contact
+    shared = about.map_misalignments(contact)
+    assert beside.faces["stage"][0].misalignment != about.faces["stage"][0].misalignment
+    assert beside.map_misalignments(contact) == shared
     # A state beyond the second outermost of them has a map of its own.
     away = tuple(f + shared[0] - shared[-1] for f in shared)
-    far = about.model_copy(update={"meshes": {"stage": about.meshes["stage"].mapped_at((away,))}})
-    assert far.layout.mesh("stage").map_misalignments(0) == shared
+    assert replace(about, mapped_at={"stage": (away,)}).map_misalignments(contact) == shared
 
 
 @pytest.mark.long
@@ -230,7 +231,7 @@ def test_statics_and_response_of_an_overhung_pinion_are_about_one_state() -> Non
 @pytest.mark.long
 def test_shafts_and_teeth_rest_at_every_position_of_the_cycle() -> None:
     """The moment of the teeth and the tilt of the shafts: each position solved by itself, with the misaligned pair alone."""
-    setup = mean_state(System(pinion(), load=pinion().mean_load().of_kind("static")), 100.0)
+    setup = mean_state(System(pinion(), state=pinion().torque_flow().of_kind("static")), 100.0)
     joint = setup.joint
     assert joint is not None
     (cycle,) = joint.cycles
@@ -290,12 +291,12 @@ def test_teeth_on_rigid_shafts_carry_as_the_pair_alone() -> None:
 def test_a_transient_of_loaded_teeth_rests_on_their_map_at_the_misalignment_of_the_equilibrium() -> None:
     task = prepare(pinion(), None, None)
     system = task.local.system
-    force = system.load.forces[0]
+    force = system.state.forces[0]
     assert force.face is not None
     moved = system.dofs.expand(task.rest.q)
     approach, tilt = task.local.parts[0].columns.T @ moved
     teeth = pinion().layout.mesh("stage").teeth
-    u = np.array([(system.load.phase(force.contact) or 0.0) / (2.0 * np.pi)])
+    u = np.array([(system.state.phase(force.contact) or 0.0) / (2.0 * np.pi)])
     taken = loaded_cycle(replace(teeth, misalignment=-teeth.width * float(tilt)), force.normal_force, u)[1]
     assert approach == pytest.approx(float(taken.deflection[0]), rel=2e-3)
     assert task.rest.force[1] == pytest.approx(float(taken.moment[0]), rel=2e-3)
@@ -319,7 +320,7 @@ def test_helical_teeth_of_the_other_hand_turned_backwards_carry_alike() -> None:
     mirror = model.with_({"gears.pinion.hand": "left", "gears.wheel.hand": "right"})
     found = []
     for one, direction in ((model, 1), (mirror, -1)):
-        system = System(one, load=one.mean_load(direction).of_kind("static"))
+        system = System(one, state=one.torque_flow(direction).of_kind("static"))
         face = equilibrate_along_faces(system, direction * 311.0).faces[0]
         assert face is not None
         # The overhang bends away from the mesh: the end of the face towards the bearings carries more, whatever the hand.

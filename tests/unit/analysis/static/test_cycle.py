@@ -60,8 +60,8 @@ def herringbone(axial: float, stagger: float = 0.5, **operation: Any) -> rg.Mode
 
 
 def joint_of(model: rg.Model) -> tuple[Equilibrated, JointState]:
-    load = model.mean_load(1).of_kind("static")
-    equilibrium, joint = over_cycle(equilibrate(System(model, load=load), 100.0), 100.0)
+    load = model.torque_flow(1).of_kind("static")
+    equilibrium, joint = over_cycle(equilibrate(System(model, state=load), 100.0), 100.0)
     assert joint is not None
     return equilibrium, joint
 

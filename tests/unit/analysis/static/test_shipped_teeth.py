@@ -23,7 +23,9 @@ def test_there_are_models_with_loaded_teeth() -> None:
 @pytest.mark.parametrize("name", LOADED)
 def test_the_contact_of_a_shipped_model_converges_at_five_times_the_load(name: str) -> None:
     model = rg.load(MODELS / name)
-    states = [state for state in model.mean_load(1).forces if model.meshes[state.contact.mesh].stiffness == "tooth_fe"]
+    states = [
+        state for state in model.torque_flow(1).forces if model.meshes[state.contact.mesh].stiffness == "tooth_fe"
+    ]
     for state in states:
         found = model.layout.mesh(state.contact.mesh).contact_map(
             state.contact.helix, state.normal_force, state.torque_sense
@@ -78,7 +80,7 @@ def test_a_tooth_of_a_middle_gear_comes_into_its_second_mesh_after_its_turn(
     The teeth of b push against a with their backs and against c with their fronts, half a pitch apart without backlash.
     """
     model = train().with_({"shafts.three.position": list(place), "operation.speed": speed})
-    load = model.mean_load(1 if speed > 0.0 else -1)
+    load = model.torque_flow(1 if speed > 0.0 else -1)
     turns = []
     for name in ("ab", "bc"):
         contact = load.of_mesh(name)[0].contact

@@ -35,7 +35,7 @@ def mesh_of(text: str, **options: Any) -> rg.MeshResult:
 def deflection_of_rotor_model(text: str) -> float:
     """Approach of the flanks along the normal in the rotor model under the torque of the file, mean of the helices."""
     model = rg.loads(text)
-    system = System(model, elements=2, load=model.mean_load().of_kind("static"))
+    system = System(model, elements=2, state=model.torque_flow().of_kind("static"))
     K = system.stiffness()
     groups = [group for group in system.groups if group.part == "meshes.pair"]
     # Both shafts are driven against each other by torques in balance; the free rotation is held by a soft spring.
@@ -56,7 +56,7 @@ def contact_alone(text: str) -> list[MeshCycle]:
     """Each helix of a mesh at many even positions, under the mean force of the helices."""
     model = rg.loads(text)
     pair = model.layout.mesh("pair")
-    forces = [force.normal_force for force in model.mean_load().of_mesh("pair")]
+    forces = [force.normal_force for force in model.torque_flow().of_mesh("pair")]
     load = float(np.mean(forces) * np.cos(pair.pinion.base_helix_angle))
     u = np.arange(256 if pair.pinion.hand else 2048) / (256 if pair.pinion.hand else 2048)
     return [loaded_cycle(pair.helix_teeth(helix), load, u)[1] for helix in range(pair.helices)]
@@ -92,7 +92,7 @@ def test_statics_press_the_teeth_together_as_loaded_contact_does(helix: float, k
 def test_small_motions_meet_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
     found = rg.mesh(model, estimate=False)
-    force = System(model).load.of_mesh("pair")[0]
+    force = System(model).state.of_mesh("pair")[0]
     assert force.contact.stiffness == pytest.approx(found.mean_tangent_stiffness, rel=1e-9)
 
 
@@ -266,9 +266,9 @@ def test_the_result_is_plain_json() -> None:
 
 def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
-    state = mean_state(System(model, load=model.mean_load().of_kind("static")), 100.0)
+    state = mean_state(System(model, state=model.torque_flow().of_kind("static")), 100.0)
     found = rg.mesh(model, estimate=False)
-    tangent = state.system.load.of_mesh("pair")[0].contact.stiffness
+    tangent = state.system.state.of_mesh("pair")[0].contact.stiffness
     (alone,) = contact_alone(pair_file(mesh=NAMED))
     assert tangent == pytest.approx(float(alone.tangent.mean()), rel=5e-4)
     assert tangent == pytest.approx(found.mean_tangent_stiffness, rel=1e-3)  # of 64 positions
@@ -281,7 +281,7 @@ def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
     for number in ("5.63e8 N/m", "1.2e9 N/m"):
         text = text.replace(f'stiffness = "{number}"', f'stiffness = "tooth_fe"\n{PREVIEW}')
     model = rg.loads(text)
-    flow = model.mean_load()
+    flow = model.torque_flow()
     assert set(flow.curves) == {"stage_1a", "stage_1b", "stage_2a", "stage_2b"}
     assert flow.whole_curve("stage_1a").mean == pytest.approx(flow.whole_curve("stage_1b").mean, rel=1e-6)
     torque = 2.5e6 / (16350 * np.pi / 30.0)

@@ -47,7 +47,7 @@ SHORT = (("bare", 2000.0), ("relieved", 4000.0))
 def test_a_response_and_a_transient_at_a_crawl_are_the_static_contact(change: str, torque: float) -> None:
     """Harmonics of the approach of a lone spur pair, against the contact solved at even positions without any map."""
     model = pair(CHANGES[change], torque)
-    (force,) = model.mean_load(1).forces
+    (force,) = model.torque_flow(1).forces
     teeth = model.layout.mesh("m").helix_teeth(0)
     static = loaded_cycle(teeth, force.normal_force, np.arange(RECORDS) / RECORDS)[1].deflection
     expected = 2.0 * np.abs(np.fft.rfft(static))[1:6] / RECORDS
@@ -77,7 +77,7 @@ def test_a_response_and_a_transient_at_a_crawl_are_the_static_contact(change: st
 def test_at_a_crawl_the_approach_is_that_of_the_static_contact(change: str, torque: float) -> None:
     """The force of a single mesh follows from the torque alone: at each position the map is solved for it by itself."""
     model = pair(CHANGES[change], torque)
-    load = model.mean_load(1)
+    load = model.torque_flow(1)
     (force,) = load.forces
     teeth = load.contact_map(force)
     assert teeth is not None

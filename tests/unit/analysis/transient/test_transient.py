@@ -325,7 +325,7 @@ def test_a_stiffness_model_shakes_the_pair_with_its_curve() -> None:
     system = System(model)
     local = local_model(system, Rotation.constant(model.operation.speed), model.operation.speed).local
     law = local.forces.laws[0]
-    curve = system.load.whole_curve("pair")
+    curve = system.state.whole_curve("pair")
     normal = curve.transverse / np.cos(0.0) ** 2
     k = [
         law.evaluate([1e-5], angle=(2.0 * np.pi * u - law.phase) / law.order, speed=100.0).in_displacement[0, 0]
@@ -346,7 +346,7 @@ def test_a_pair_under_torque_stands_in_equilibrium_at_any_stiffness() -> None:
                 meshes__pair__backlash="40 um",
                 meshes__pair__transmission_error=[{"harmonic": 1, "amplitude": "3 um"}],
             )
-            system = System(model, load=model.mean_load(int(direction)))
+            system = System(model, state=model.torque_flow(int(direction)))
             local = local_model(system, Rotation.constant(direction), direction).local
             rest = equilibrium(local)
             assert rest.converged, factor

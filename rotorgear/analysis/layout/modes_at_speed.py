@@ -9,14 +9,11 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.basis import with_shapes
-from rotorgear.analysis.scatter.family import system_at
 from rotorgear.analysis.scatter.forms import FormNames, forms_of
 from rotorgear.analysis.scatter.modes import FormModes, modes_of
 from rotorgear.analysis.scatter.samples import participations, spin_signs
-from rotorgear.model.model import Model
 from rotorgear.results.steady.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 # A motion softer than this share of the first elastic frequency is rigid.
@@ -27,7 +24,7 @@ _SOME = 0.5
 
 
 @dataclass(frozen=True)
-class State:
+class ModesAtSpeed:
     """Modes at one speed.
 
     Attributes:
@@ -57,21 +54,19 @@ class State:
 
 
 def state_of(
-    model: Model,
+    system: System,
     speed: float,
-    plan: Plan,
     lines: tuple[ExcitationOrder, ...],
     below_hz: float,
     *,
     margin: float,
     least: float,
-) -> State:
-    """Return all modes up to a frequency, and what excites them.
+) -> ModesAtSpeed:
+    """Return all modes of a linear system up to a frequency, and what excites them.
 
     Modes of K and M carry the rotating ones to some 1e-5 in frequency. Those that may count, near a line with some participation,
     are sharpened: one step of inverse iteration of each joins the shapes, which leaves the square of that.
     """
-    system = system_at(model, speed, plan)
     strain = system.strain_factor(speed)
     found = lowest_modes(system.mass, system.stiffness(speed), below=2.0 * np.pi * below_hz, strain=strain)
     count = len(found.eigenvalues)
@@ -81,10 +76,10 @@ def state_of(
     names = FormNames.of(system.model)
     senses = spin_signs(system.model, speed)
 
-    def over(V: NDArray[np.float64]) -> State:
+    def over(V: NDArray[np.float64]) -> ModesAtSpeed:
         forms = forms_of(system, speed, V)
         modes = modes_of(forms, count, softest, V.shape[1])
-        return State(system, speed, V, forms, modes, participations(names, lines, forms, modes, senses), hz)
+        return ModesAtSpeed(system, speed, V, forms, modes, participations(names, lines, forms, modes, senses), hz)
 
     rough = over(found.vectors)
     if not speed:
@@ -97,7 +92,7 @@ def state_of(
     return over(with_shapes(system.mass, found.vectors, np.hstack([steps.real, steps.imag])))
 
 
-def _step(system: System, speed: float, state: State, k: int) -> NDArray[np.complex128]:
+def _step(system: System, speed: float, state: ModesAtSpeed, k: int) -> NDArray[np.complex128]:
     """Inverse iteration of a mode, Q(w)^-1 (2 w M - i W G) phi, (n,)."""
     from scipy.sparse.linalg import splu
 

@@ -1,0 +1,170 @@
+"""The state that linear analyses are about: what laws, faces and loaded teeth are in the static equilibrium at some speeds.
+
+A nonlinear element, or a bearing given by its rolling elements alone, has the stiffness dF/dd and the damping dF/dv of its law
+at the static equilibrium under the loads, at rest but for the rotation. What does not depend on speed becomes one stiffness; what
+does, such as the film of a journal bearing, a table over speed. Meshes have the stiffness of their mean load: the tangent at that
+load where a stiffness model knows it; loaded teeth their mean tangent over the mesh cycle, all contacts of the gearbox in
+equilibrium together (`about_cycle.py`); those that feel the tilt of their shafts are about the load along their faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rotorgear.model.layout.spring import Spring, constant_spring, given_spring
+from rotorgear.model.layout.state import State
+from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.nonlinear_element import NonlinearElement
+from rotorgear.model.parts.supports import Bearing
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.system.flow_system import flow_system
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.analysis.static.solve import LawState
+
+# Tangents that change less over speed are one stiffness.
+_CONSTANT = 1e-9
+
+
+def state_at(
+    model: Model,
+    speeds: Sequence[float | None],
+    *,
+    direction: int | None = None,
+    near: Sequence[LawState] = (),
+    beside: State | None = None,
+    springs: Mapping[str, Spring] | None = None,
+) -> State:
+    """Return the state about the static equilibrium, found once; `notes` has a sentence on each part that is linear about it.
+
+    Of a model without parts that an equilibrium decides about it is that of the torque flow.
+
+    Args:
+        model: a checked model.
+        speeds: of the reference shaft in rad/s, of one sense, at which tangents are taken; None stands for standstill, where
+            films have none, so that the operating speed serves.
+        direction: +1 or -1, sense about +z in which the reference shaft turns; None: that of the speeds, else of the model.
+        near: the laws in a known equilibrium near the first of them, from which it is looked for.
+        beside: a state of a model next to this one, whose face maps serve as long as this state lies among their misalignments.
+            They take nearly all the time of an equilibrium. And a map is known to a few thousandths of its tangents only: were
+            each model on a map of its own, the difference of two would be off by as much.
+        springs: address -> what takes the place of a bearing in the equilibrium and about it.
+
+    Raises:
+        AnalysisError: there is no equilibrium at one of the speeds.
+    """
+    turning = [speed for speed in speeds if speed]
+    sense = direction or (int(np.sign(min(turning, key=abs))) if turning else model.layout.direction)
+    mapped_at = beside.shared_maps if beside else {}
+    if springs:
+        return _state_at(model, speeds, replace(model.torque_flow(sense), tangents=springs, mapped_at=mapped_at), near)
+    key = (tuple(speeds), sense, tuple(sorted(mapped_at.items())))
+    if key not in model.states:
+        flow = model.torque_flow(sense)
+        model.states[key] = _state_at(model, speeds, replace(flow, mapped_at=mapped_at) if mapped_at else flow, near)
+    return model.states[key]
+
+
+def linear_system(
+    model: Model | System,
+    speeds: Sequence[float | None],
+    plan: Plan | None = None,
+    *,
+    state: State | None = None,
+    beside: State | None = None,
+) -> System:
+    """The linear system of a model about its equilibrium at some speeds, as `state_at` has them, on the mesh of a plan.
+
+    `state` is the one about that equilibrium where it is known already. A system that is assembled keeps its mesh, its sense of
+    rotation, and the state that it is about where an equilibrium found that.
+    """
+    if not isinstance(model, System):
+        return System(model, plan=plan, state=state or state_at(model, speeds, beside=beside))
+    if not model.state.is_flow:
+        return model
+    found = state_at(model.model, speeds, direction=model.direction)
+    if found.is_flow:
+        return model
+    # Its own flanks and forces stay where the equilibrium says nothing of the meshes.
+    if not (found.faces or found.cycle):
+        found = replace(model.state, tangents=found.tangents, notes=found.notes)
+    return model.with_state(found)
+
+
+def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: Sequence[LawState]) -> State:
+    """The state about the equilibrium, from that of the torque flow."""
+    notes = [
+        f"the law of nonlinear_elements.{name}: the stiffness given beside it is taken"
+        for name, element in model.nonlinear_elements.items()
+        if element.is_given
+    ]
+    laws = {f"bearings.{name}": bearing for name, bearing in model.bearings.items() if not bearing.is_linear} | {
+        f"nonlinear_elements.{name}": element
+        for name, element in model.nonlinear_elements.items()
+        if not element.is_given
+    }
+    wanted = sorted(laws.keys() - state.tangents.keys())
+    # Most models have none of these parts: what finds an equilibrium is loaded for the others only.
+    if any(mesh.tilt for mesh in model.meshes.values()):
+        from rotorgear.analysis.static.along_faces import along_faces
+
+        state = along_faces(model, speeds, state)
+    if any(mesh.stiffness == "tooth_fe" for mesh in model.meshes.values()):
+        from rotorgear.analysis.static.about_cycle import about_cycle
+
+        state = about_cycle(model, speeds, state)
+    notes += state.notes
+    if not wanted:
+        return replace(state, notes=tuple(notes)) if notes else state
+    from rotorgear.analysis.static.law_states import law_rows
+    from rotorgear.analysis.static.solve import equilibrate
+
+    operating = model.operation.speed if model.operation else None
+    at = sorted({(operating or 0.0) if speed is None else float(speed) for speed in speeds}, key=abs)
+    system = flow_system(model).with_state(state.of_kind("static"))
+    # Each begins where the one before stands.
+    found: list[dict[str, LawState]] = []
+    for speed in at:
+        near = equilibrate(system, speed, near=near).laws
+        found.append({law.part.part: law for law in near})
+    tangents = {part: _tangent(model, part, laws[part], at, [laws[part] for laws in found]) for part in wanted}
+    where = " to ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in dict.fromkeys((at[0], at[-1])))
+    notes.append(f"what is not linear of {', '.join(wanted)}: linearised about the static equilibrium at {where} rpm")
+    for speed, there in {at[0]: found[0], at[-1]: found[-1]}.items():
+        turning = f" at {speed * RPM_PER_RAD_S:.6g} rpm" if len(at) > 1 else ""
+        notes += [f"{row.sentence}{turning}" for row in law_rows(there[part] for part in wanted)]
+    return replace(state, tangents={**state.tangents, **tangents}, notes=tuple(notes))
+
+
+def _tangent(
+    model: Model,
+    part: str,
+    owner: Bearing | NonlinearElement,
+    speeds: Sequence[float],
+    states: Sequence[LawState],
+) -> Spring:
+    """The spring that a law is about its equilibria at some speeds of the reference shaft."""
+    given = given_spring(owner).damping[0]
+    used = [DOF_NAMES.index(d) for d in owner.directions] if isinstance(owner, NonlinearElement) else None
+    stiffness = np.array([_six(state.stiffness, used) for state in states])
+    damping = np.array([given + _six(state.damping, used) for state in states])
+    ratio = abs(float(model.layout.train.ratio(owner.shaft)))
+    change = max(float(np.abs(A - A[0]).max()) / max(float(np.abs(A[0]).max()), 1e-300) for A in (stiffness, damping))
+    if change <= _CONSTANT or ratio == 0.0:
+        return constant_spring(stiffness[0], damping[0])
+    return Spring(stiffness, damping, ratio * np.abs(np.array(speeds)))
+
+
+def _six(A: np.ndarray, used: list[int] | None) -> np.ndarray:
+    """Tangents (k, k) among the six displacements of a node."""
+    full = np.zeros((6, 6))
+    dofs = list(range(len(A))) if used is None else used
+    full[np.ix_(dofs, dofs)] = A
+    return full
