@@ -244,7 +244,7 @@ class TiltingPads(JournalOil):
             flow += side_flow(h, pressure, dz, step, self.viscosity)
             loss += power_loss(h, pressure, dz, step, self.viscosity, self.radius * self.order * speed)
         z = 0.5 * self.length * (np.arange(self.along) + 0.5) / self.along
-        return FilmField(np.concatenate(angles), z, np.concatenate(gaps), np.concatenate(fields), flow, loss)
+        return FilmField(np.concatenate(angles), np.concatenate(gaps), np.concatenate(fields), flow, loss, z)
 
     @classmethod
     def examples(cls) -> tuple[TiltingPads, ...]:
