@@ -198,10 +198,7 @@ class ThrustFilm(OilFilm):
         dr = (self.outer_radius - self.inner_radius) / self.across
         dt = self.arc / self.around
         r = self.inner_radius + dr * np.arange(self.across + 1)
-        sides = []
-        angles = []
-        gaps = []
-        fields = []
+        nodes = []
         flow = 0.0
         loss = 0.0
         for (side, t, h), (*_, inner) in zip(self.gaps(d, speed), self._each_pad(d, speed), strict=True):
@@ -215,12 +212,9 @@ class ThrustFilm(OilFilm):
             shear = self.viscosity * omega * r / h + 0.5 * h * np.gradient(pressure, dt, axis=0) / r
             moment = trapezoid(trapezoid(shear * r * r, dx=dr, axis=1), dx=dt)
             loss += float(omega * moment)
-            sides.append(np.full(t.size, side))
-            angles.append(t)
-            gaps.append(h)
-            fields.append(pressure)
-        film = (np.concatenate(angles), np.concatenate(gaps), np.concatenate(fields), flow, loss)
-        return ThrustField(*film, side=np.concatenate(sides), radius=r)
+            nodes.append((np.full(t.size, side), t, h, pressure))
+        sides, angles, gaps, fields = (np.concatenate(each) for each in zip(*nodes, strict=True))
+        return ThrustField(angles, gaps, fields, flow, loss, sides, r)
 
     @classmethod
     def examples(cls) -> tuple[ThrustFilm, ...]:

@@ -44,8 +44,8 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
             beside.plot(angle, pressure, "o", color=COLOURS[number], label=label)
         beside.set_ylabel("largest Hertz pressure, MPa")
         beside.legend(frameon=False, fontsize=8)
-        for axis in (inside, beside):
-            axis.set_xlabel("angle from +x, deg")
+    for axis in (inside, beside):
+        axis.set_xlabel("angle from +x, deg")
     rpm = [row.speed * RPM_PER_RAD_S for row in result.over_speed]
     pairs = ((2, 2),) if result.along_shaft else ((0, 0), (0, 1), (1, 0), (1, 1))
     for axis, key, factor, label in (
@@ -83,10 +83,8 @@ def _film(figure: Any, inside: Any, beside: Any, film: OilState) -> None:
         picture = inside.pcolormesh(angle, 1e3 * place, 1e-6 * pressure.T, cmap="viridis", **field)
         beside.plot(angle, 1e6 * gap, color=COLOURS[0], **line)
     figure.colorbar(picture, ax=inside, label="pressure, MPa")
-    inside.set_xlabel("angle from +x, deg")
     inside.set_ylabel(f"{film.place}, mm")
     inside.set_title(f"Pressure, at most {largest:.3g} MPa", fontsize=10)
     beside.set_ylim(bottom=0.0)
-    beside.set_xlabel("angle from +x, deg")
     beside.set_ylabel("gap, um")
     beside.set_title(film.over_gap.format(film), fontsize=10)

@@ -65,7 +65,8 @@ def bearing(
         given = (model.operation.speed if model.operation else None) or 0.0
     own = by_its_law(model, address)
     ratio = float(model.layout.train.ratio(getattr(model, address.partition(".")[0])[address.partition(".")[2]].shaft))
-    if not given and address in _films(own):
+    films = [f"bearings.{one}" for one, bearing in own.bearings.items() if bearing.has_film]
+    if not given and address in films:
         raise AnalysisError(f"{address}: a film carries where its journal turns; give a speed")
     progress(0.0, "equilibrium of the gearbox")
     state = law_at(equilibrium_of(own, given), address)
@@ -119,11 +120,6 @@ def bearing(
         warnings=tuple(notes),
         method="equilibrium of the whole gearbox, Newton's method; tangents of the bearing's law",
     )
-
-
-def _films(model: Model) -> set[str]:
-    """Addresses of bearings that carry by an oil film."""
-    return {f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.has_film}
 
 
 def _told(inside: RollingLoads | OilField | None, here: Carried, shaft_speed: float) -> dict[str, Any]:

@@ -140,8 +140,7 @@ class Bearing(Part):
     @property
     def geometries(self) -> dict[str, BearingGeometry]:
         """Its geometry by the key of its kind; a sound bearing has one, or none and a stiffness."""
-        keys = type(self).model_fields
-        return {key: part for key in keys if isinstance(part := getattr(self, key), BearingGeometry)}
+        return {key: part for key in type(self).model_fields if isinstance(part := getattr(self, key), BearingGeometry)}
 
     @property
     def geometry(self) -> BearingGeometry | None:

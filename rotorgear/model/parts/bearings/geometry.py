@@ -60,8 +60,7 @@ class BearingGeometry(Part):
     @property
     def surrounds(self) -> float:
         """Diameter that surrounds the shaft, in m."""
-        diameter: float = getattr(self, self.ring)
-        return diameter
+        return float(getattr(self, self.ring))
 
     @property
     def play(self) -> float | None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.parts.bearing import BearingSheet, FilmState, OilState
-from rotorgear.results.tables.common import error_words, heading, lines, plain_table, table
+from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -56,7 +56,7 @@ def _number(value: float, size: float, digits: int = 4) -> str:
 
 
 def _state(sheet: BearingSheet) -> Any:
-    shown = [2, 3, 4] if sheet.along_shaft else list(range(len(sheet.bearing_load)))
+    shown = list(range(2 if sheet.along_shaft else 0, len(sheet.bearing_load)))
     names = [_COMPONENTS[i] for i in shown]
     has_damping = bool(np.any(sheet.bearing_damping))
     out = table("", "load", "moves", *(f"K {name}" for name in names), *(f"C {n}" for n in names if has_damping))
@@ -79,10 +79,8 @@ def _largest(sheet: BearingSheet) -> float:
 
 
 def _film(sheet: BearingSheet, film: Any) -> Any:
-    out = plain_table()
+    out = table("", "", left=2)
     out.show_header = False
-    out.add_column("")
-    out.add_column("")
     rows = (
         *_carried(sheet, film),
         ("smallest gap", f"{1e6 * film.minimum_gap:.3f} um"),
@@ -102,11 +100,10 @@ def _carried(sheet: BearingSheet, film: OilState) -> list[tuple[str, str]]:
         return [("load along z", f"{float(sheet.bearing_load[2]):.5g} N")]
     load = float(np.hypot(*sheet.bearing_load[:2]))
     area = 2.0 * float(sheet.geometry["radius"]) * float(sheet.geometry["length"])
-    attitude = math.degrees(film.attitude)
     return [
         ("load W, over L D", f"{load:.5g} N, {1e-6 * load / area:.4g} MPa"),
         ("Sommerfeld number", f"{film.sommerfeld:.5g}"),
-        ("eccentricity", f"{film.eccentricity:.4f} of the clearance, attitude {attitude:.2f} deg"),
+        ("eccentricity", f"{film.eccentricity:.4f} of the clearance, attitude {math.degrees(film.attitude):.2f} deg"),
     ]
 
 
