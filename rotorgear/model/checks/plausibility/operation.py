@@ -86,9 +86,8 @@ def _speed(layout: Layout) -> Iterator[str]:
         runs(gear.shaft, gear.base_radius * speeds[gear.shaft], _FLANKS, f"whose gear '{gear.name}' runs")
     for name, bearing in model.bearings.items():
         if (inside := bearing.geometry) is not None:
-            runs(
-                bearing.shaft, 0.5 * inside.surrounds * speeds[bearing.shaft], inside.fastest, inside.runs.format(name)
-            )
+            value = 0.5 * inside.surrounds * speeds[bearing.shaft]
+            runs(bearing.shaft, value, inside.fastest, inside.runs.format(name))
     if model.has("bending"):
         for name in model.shafts:
             first = _first_bending(layout, name)

@@ -137,7 +137,8 @@ class RollingElements(BearingGeometry):
 
             return RollerBearing(**own, **rollers)
         own |= {"contact_angle": self.contact_angle, "row_distance": self.row_distance or 0.0}
-        own |= {"reference": tuple(linear[:5]), "arrangement": self.arrangement}
+        arrangement = "four-point" if self.kind == "four-point" else self.arrangement
+        own |= {"reference": tuple(linear[:5]), "arrangement": arrangement}
         law: BallBearing | SlicedRollers | TaperedBearing
         if self.kind in ("roller", "tapered"):
             from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
@@ -149,8 +150,6 @@ class RollingElements(BearingGeometry):
 
             if self.clearance_class is not None and self.bore is not None:
                 own["clearance"] = 0.5 * sum(class_clearance(self.bore, self.clearance_class) or (0.0, 0.0))
-            if self.kind == "four-point":
-                own["arrangement"] = "four-point"
             side = -1.0 if self.contact_angle < 0.0 else 1.0
             law = BallBearing(
                 **own,
