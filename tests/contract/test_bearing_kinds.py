@@ -1,4 +1,4 @@
-"""Kinds of bearings answer for themselves: a kind stands in its law, its geometry, its record, and a line each that names them."""
+"""Kinds of bearings answer for themselves: a kind stands in its law, its geometry, its record, and a line each that names it."""
 
 from __future__ import annotations
 

@@ -127,15 +127,12 @@ class RollingElements(BearingGeometry):
             "pitch_diameter": self.pitch_diameter,
             "reference": tuple(linear[:2]),
         }
-        rollers: dict[str, Any] = {
-            "rollers": self.elements,
-            "length": self.length or 0.0,
-            "roller_diameter": self.element_diameter,
-        }
+        if self.kind in ("roller", "tapered"):
+            own |= {"rollers": self.elements, "length": self.length or 0.0, "roller_diameter": self.element_diameter}
         if self.kind == "roller" and (self.slices or 1) == 1:
             from rotorgear.forces.roller_bearing import RollerBearing
 
-            return RollerBearing(**own, **rollers)
+            return RollerBearing(**own)
         own |= {"contact_angle": self.contact_angle, "row_distance": self.row_distance or 0.0}
         arrangement = "four-point" if self.kind == "four-point" else self.arrangement
         own |= {"reference": tuple(linear[:5]), "arrangement": arrangement}
@@ -143,7 +140,7 @@ class RollingElements(BearingGeometry):
         if self.kind in ("roller", "tapered"):
             from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
 
-            own |= {**rollers, "preload": self.preload_displacement, "slices": self.slices or 21}
+            own |= {"preload": self.preload_displacement, "slices": self.slices or 21}
             law = (TaperedBearing if self.kind == "tapered" else SlicedRollers)(**own)
         else:
             from rotorgear.forces.ball_bearing import BallBearing

@@ -96,9 +96,11 @@ class ThrustGeometry(Oil):
                 yield Problem(f"{here}.{key}", f"{getattr(self, key)}", f"{least} to {most} cells")
 
     def judged(self) -> Iterator[Judged]:
-        """The oil and its gap, and the taper."""
-        yield from super().judged()
+        """The oil and its gap, and before its density the taper."""
+        *film, density = super().judged()
+        yield from film
         if self.taper is not None:
             share = self.taper / self.clearance
             words = (f"{self.taper:.4g} m, {share:.3g} of the clearance", f"{_TAPER[0]:g} to {_TAPER[1]:g} of it")
             yield "taper", share, _TAPER, words, ("is its unit right?", "um meant?")
+        yield density
