@@ -14,6 +14,9 @@ from typing import Any
 from pydantic import BaseModel
 
 from rotorgear.model.model import SCHEMA_VERSION, Model
+from rotorgear.model.parts.bearings.journal import JournalGeometry
+from rotorgear.model.parts.bearings.rolling import RollingElements
+from rotorgear.model.parts.bearings.thrust import ThrustGeometry
 from rotorgear.model.parts.bodies import Disk, PointMass
 from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
@@ -29,13 +32,10 @@ from rotorgear.model.parts.supports import (
     Bearing,
     Coupling,
     DampingMatrix,
-    JournalGeometry,
     Pedestal,
-    RollingElements,
     StiffnessMatrix,
     Support,
     TableRow,
-    ThrustGeometry,
 )
 from rotorgear.model.parts.topography import MeasuredGrid, Topography
 from rotorgear.quantity import DIMENSIONS

@@ -1,8 +1,13 @@
-"""Inside a bearing in a state of its law: loads of rolling elements, or the pressure of a film with its flow and loss."""
+"""Inside a bearing in a state of its law: loads of rolling elements, or the pressure of a film with its flow and loss.
+
+A sheet tells of it under the name `told_as`, in records whose values `told` gives by their names.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -19,6 +24,8 @@ class RollingLoads:
         inner_pressure, outer_pressure: largest Hertz pressure at the inner and the outer ring, (z,) Pa.
     """
 
+    told_as: ClassVar[str] = "rolling_elements"
+
     row: np.ndarray
     angle: np.ndarray
     contact_angle: np.ndarray
@@ -27,41 +34,71 @@ class RollingLoads:
     inner_pressure: np.ndarray
     outer_pressure: np.ndarray
 
+    def told(self, law: object, load: np.ndarray, d: np.ndarray, shaft_speed: float) -> Iterator[dict[str, Any]]:
+        """Of each element, row by row and around the shaft.
+
+        Args:
+            law: whose state it is. load: (k,) on it. d: displacements (k,). shaft_speed: in rad/s.
+        """
+        names = [item.name for item in fields(self)]
+        for i in np.lexsort((self.angle, self.row)):
+            yield {name: (int if name == "row" else float)(getattr(self, name)[i]) for name in names}
+
 
 @dataclass(frozen=True)
-class ThrustField:
-    """The films of a thrust bearing in steady running, nodes of all pads one after the other.
+class OilField:
+    """An oil film in steady running, on nodes (t,) around the shaft and (j,) across that.
 
     Attributes:
-        side: +1 or -1, the sense of the push that the pad takes, (t,). angle: (t,) rad, from +x about +z. radius: (j,) m.
-        gap: (t, j) m. pressure: (t, j) Pa.
-        side_flow: oil that leaves at the inner and the outer radius, m^3/s.
-        power_loss: torque on the collar times its speed, W.
+        angle: (t,) rad, from +x about +z, over all pads. gap: (t,) or (t, j) m. pressure: (t, j) Pa.
+        side_flow: oil that leaves at both edges, m^3/s.
+        power_loss: torque on the shaft times its speed, W.
     """
 
-    side: np.ndarray
+    told_as: ClassVar[str]
+
     angle: np.ndarray
-    radius: np.ndarray
     gap: np.ndarray
     pressure: np.ndarray
     side_flow: float
     power_loss: float
 
+    def told(self, law: Any, load: np.ndarray, d: np.ndarray, shaft_speed: float) -> Iterator[dict[str, Any]]:
+        """Its own arrays, its extremes, and its temperature, which is the mean of inlet and outlet."""
+        T = law.temperature
+        yield {
+            **{item.name: getattr(self, item.name) for item in fields(self)},
+            "minimum_gap": float(self.gap.min()),
+            "largest_pressure": float(self.pressure.max()),
+            "film_temperature": T,
+            "outlet_temperature": None if T is None else 2.0 * T - law.inlet_temperature,
+            "film_viscosity": law.viscosity,
+        }
+
 
 @dataclass(frozen=True)
-class FilmField:
-    """The film of a bearing in steady running.
+class FilmField(OilField):
+    """The film around a journal; one gap for all its length.
 
     Attributes:
-        angle: (t,) rad, from +x about +z, over all pads. z: (j,) m from the middle, over one half of the length.
-        gap: (t,) m. pressure: (t, j) Pa.
-        side_flow: oil that leaves at both ends, m^3/s.
-        power_loss: torque on the journal times its speed, W.
+        z: (j,) m from the middle, over one half of the length.
     """
 
-    angle: np.ndarray
+    told_as: ClassVar[str] = "film"
+
     z: np.ndarray
-    gap: np.ndarray
-    pressure: np.ndarray
-    side_flow: float
-    power_loss: float
+
+    def told(self, law: Any, load: np.ndarray, d: np.ndarray, shaft_speed: float) -> Iterator[dict[str, Any]]:
+        """The same, where the journal stands, and Sommerfeld's number."""
+        W = float(np.hypot(*load[:2]))
+        # From the load to the line of centres, positive in the sense of rotation.
+        angle = np.arctan2(d[1], d[0]) - np.arctan2(load[1], load[0])
+        turns = abs(shaft_speed) / (2.0 * np.pi)
+        area = 2.0 * law.radius * law.length
+        for own in super().told(law, load, d, shaft_speed):
+            yield {
+                **own,
+                "eccentricity": float(np.hypot(*d[:2])) / law.clearance,
+                "attitude": float(np.sign(shaft_speed) * (np.mod(angle + np.pi, 2.0 * np.pi) - np.pi)),
+                "sommerfeld": law.viscosity * turns * area / W * (law.radius / law.clearance) ** 2 if W else np.inf,
+            }

@@ -90,7 +90,7 @@ class JournalFilm(JournalOil):
             gap[rows] = h
             flow += side_flow(h, pressure[rows], dz, step, self.viscosity)
             loss += power_loss(h, pressure[rows], dz, step, self.viscosity, self.radius * omega)
-        return FilmField(t, z, gap, pressure, flow, loss)
+        return FilmField(t, gap, pressure, flow, loss, z)
 
     def pressure(self, d: Any, v: Any = (0.0, 0.0), *, speed: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Angles (t,) in rad, places z (j,) in m from the middle, and the pressure (t, j) in Pa over half the length."""

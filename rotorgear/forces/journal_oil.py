@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -19,6 +19,8 @@ _TAYLOR = 41.2
 @dataclass(frozen=True)
 class JournalOil(OilFilm):
     """A journal of radius R in a film of length L."""
+
+    grid: ClassVar[tuple[str, ...]] = ("around", "along")
 
     radius: float = parameter("m", "radius R of the journal", above=0.0)
     length: float = parameter("m", "length L of the bearing", above=0.0)
@@ -37,6 +39,11 @@ class JournalOil(OilFilm):
         """The bearing is not longer than the grid serves."""
         if self.length > 2.0 * _LONGEST * self.radius:
             raise refuse(self, "length", f"at most {_LONGEST:g} diameters, beyond which shafts bend in their bearing")
+
+    @property
+    def cells(self) -> str:
+        """Around the journal and along all of it."""
+        return f"{self.around} x {2 * self.along}"
 
     @property
     def components(self) -> int:

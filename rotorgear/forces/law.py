@@ -60,7 +60,7 @@ from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Column
 from rotorgear.solvers.time.local_forces import Repeats
 
 if TYPE_CHECKING:
-    from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
+    from rotorgear.forces.inside import OilField, RollingLoads
 
 __all__ = ["ForceLaw", "LawValue", "LawValues", "Linearised", "Parameter", "Repeats", "parameter", "refuse"]
 
@@ -188,6 +188,8 @@ class ForceLaw(ABC):
     carries_at_rest: ClassVar[bool] = True
     # Whether its force has kinks at many places, as a film has wherever a node of its grid begins to cavitate.
     many_kinks: ClassVar[bool] = False
+    # Names of the parameters that say how many cells its grid has each way; a law that is a formula has none.
+    grid: ClassVar[tuple[str, ...]] = ()
     # Name of the parameter that holds the turns of the law's shaft for each turn of the reference; a model file fills it in.
     shaft_ratio: ClassVar[str] = ""
 
@@ -275,13 +277,16 @@ class ForceLaw(ABC):
         """The law as it stays for small motions about displacements d (k,): an inlet that statics place stays there then."""
         return self
 
+    @property
+    def cells(self) -> str:
+        """Cells of its grid each way, as they are printed."""
+        return " x ".join(str(getattr(self, key)) for key in self.grid)
+
     def rough(self) -> ForceLaw:
         """A law of about the same stiffness that costs less, for what no result depends on."""
         return self
 
-    def inside(
-        self, d: Any, *, angle: float = 0.0, speed: float = 0.0
-    ) -> RollingLoads | FilmField | ThrustField | None:
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads | OilField | None:
         """What a bearing looks like inside at displacements d (k,); None for laws that know nothing of it."""
         return None
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from rotorgear.forces.inside import FilmField, ThrustField
+from rotorgear.forces.inside import OilField
 from rotorgear.forces.law import ForceLaw, parameter
 from rotorgear.forces.oil import CELSIUS, film_temperature, oil_temperature, oil_viscosity
 
@@ -48,7 +48,7 @@ class OilFilm(ForceLaw):
         return 1
 
     @abstractmethod
-    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> FilmField | ThrustField:
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> OilField:
         """Pressure, gap, side flow and power loss with the shaft at rest at displacements d (k,)."""
 
     @property

@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.inside import ThrustField
+from rotorgear.forces.inside import OilField
 from rotorgear.forces.law import Linearised, parameter, refuse
 from rotorgear.forces.oil_film import TURN, OilFilm
 from rotorgear.forces.thrust_pressure import FIRST, PADS, balanced_pad, force, gap_at, schedule, sector_film
@@ -27,10 +27,25 @@ _TAYLOR = 1000.0  # Reynolds' number rho omega r h / mu up to which films of thr
 
 
 @dataclass(frozen=True)
+class ThrustField(OilField):
+    """The films in steady running, nodes of all pads one after the other.
+
+    Attributes:
+        side: +1 or -1, the sense of the push that the pad takes, (t,). radius: (j,) m.
+    """
+
+    told_as: ClassVar[str] = "thrust_film"
+
+    side: np.ndarray
+    radius: np.ndarray
+
+
+@dataclass(frozen=True)
 class ThrustFilm(OilFilm):
     """Thrust bearing of sector pads: five displacements of the collar, of which those along x and y press on nothing."""
 
     title: ClassVar[str] = "thrust bearing"
+    grid: ClassVar[tuple[str, ...]] = ("around", "across")
 
     inner_radius: float = parameter("m", "inner radius r_i of the pads", above=0.0)
     outer_radius: float = parameter("m", "outer radius r_o of the pads", above=0.0)
@@ -183,10 +198,7 @@ class ThrustFilm(OilFilm):
         dr = (self.outer_radius - self.inner_radius) / self.across
         dt = self.arc / self.around
         r = self.inner_radius + dr * np.arange(self.across + 1)
-        sides = []
-        angles = []
-        gaps = []
-        fields = []
+        nodes = []
         flow = 0.0
         loss = 0.0
         for (side, t, h), (*_, inner) in zip(self.gaps(d, speed), self._each_pad(d, speed), strict=True):
@@ -200,13 +212,9 @@ class ThrustFilm(OilFilm):
             shear = self.viscosity * omega * r / h + 0.5 * h * np.gradient(pressure, dt, axis=0) / r
             moment = trapezoid(trapezoid(shear * r * r, dx=dr, axis=1), dx=dt)
             loss += float(omega * moment)
-            sides.append(np.full(t.size, side))
-            angles.append(t)
-            gaps.append(h)
-            fields.append(pressure)
-        return ThrustField(
-            np.concatenate(sides), np.concatenate(angles), r, np.concatenate(gaps), np.concatenate(fields), flow, loss
-        )
+            nodes.append((np.full(t.size, side), t, h, pressure))
+        sides, angles, gaps, fields = (np.concatenate(each) for each in zip(*nodes, strict=True))
+        return ThrustField(angles, gaps, fields, flow, loss, sides, r)
 
     @classmethod
     def examples(cls) -> tuple[ThrustFilm, ...]:

@@ -229,22 +229,19 @@ class TiltingPads(JournalOil):
         own = self.pad_clearance
         step = self.radius * self.arc / around
         dz = 0.5 * self.length / self.along
-        angles = []
-        gaps = []
-        fields = []
+        nodes = []
         flow = 0.0
         loss = 0.0
         for pad, (e_r, _, _, _, eta, pressure) in enumerate(self._each_pad(np.asarray(d, float), speed)):
             start, extent, q = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
             t = start + extent * np.arange(1, around) / around
             h = own - (float(e_r @ d) + self.preload * own) * np.cos(t - q) - float(eta) * np.sin(t - q)
-            angles.append(t)
-            gaps.append(h)
-            fields.append(pressure)
+            nodes.append((t, h, pressure))
             flow += side_flow(h, pressure, dz, step, self.viscosity)
             loss += power_loss(h, pressure, dz, step, self.viscosity, self.radius * self.order * speed)
         z = 0.5 * self.length * (np.arange(self.along) + 0.5) / self.along
-        return FilmField(np.concatenate(angles), z, np.concatenate(gaps), np.concatenate(fields), flow, loss)
+        angles, gaps, fields = (np.concatenate(each) for each in zip(*nodes, strict=True))
+        return FilmField(angles, gaps, fields, flow, loss, z)
 
     @classmethod
     def examples(cls) -> tuple[TiltingPads, ...]:

@@ -12,8 +12,8 @@ from tests.paths import ROOT
 
 PACKAGE = ROOT / "rotorgear"
 LAWS = {registry.law_of(name).__name__ for name in registry.names()}
-# The parts of a model are made into laws here, and nowhere else.
-MADE_IN = re.compile(r"system/(local|local_\w+)\.py")
+# The parts of a model are made into laws here, bearings by their geometry, and nowhere else.
+MADE_IN = re.compile(r"(system/(local|local_\w+)|model/parts/bearings/\w+)\.py")
 WORDS = re.compile(r"\b(flanks?|mesh(es)?|teeth|tooth|bearings?|gears?|pinions?)\b", re.IGNORECASE)
 
 

@@ -25,12 +25,12 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.static.solve import Equilibrated, LawState
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
+from rotorgear.forces.inside import OilField, RollingLoads
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.parts.bearing import BearingSheet, BearingSpeed, FilmState, RollingElementRow, ThrustState
+from rotorgear.results.parts.bearing import BearingSheet, BearingSpeed
 
 # Of the operating speed, where no speeds are given.
 _SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
@@ -65,7 +65,8 @@ def bearing(
         given = (model.operation.speed if model.operation else None) or 0.0
     own = by_its_law(model, address)
     ratio = float(model.layout.train.ratio(getattr(model, address.partition(".")[0])[address.partition(".")[2]].shaft))
-    if not given and address in _films(own):
+    films = [f"bearings.{one}" for one, bearing in own.bearings.items() if bearing.has_film]
+    if not given and address in films:
         raise AnalysisError(f"{address}: a film carries where its journal turns; give a speed")
     progress(0.0, "equilibrium of the gearbox")
     state = law_at(equilibrium_of(own, given), address)
@@ -108,9 +109,7 @@ def bearing(
         bearing_stiffness=here.stiffness,
         bearing_damping=here.damping,
         averaged=bool(law.cycle()) and bool(given),
-        rolling_elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
-        film=_film(inside, here, ratio * given) if isinstance(inside, FilmField) else None,
-        thrust_film=_thrust(inside, here) if isinstance(inside, ThrustField) else None,
+        **_told(inside, here, ratio * given),
         over_speed=tuple(rows),
         threshold_speed=threshold[0] if threshold else None,
         threshold_frequency_hz=threshold[1] if threshold else None,
@@ -123,56 +122,14 @@ def bearing(
     )
 
 
-def _films(model: Model) -> set[str]:
-    """Addresses of bearings that carry by an oil film."""
-    return {f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.has_film}
-
-
-def _elements(inside: RollingLoads) -> tuple[RollingElementRow, ...]:
-    order = np.lexsort((inside.angle, inside.row))
-    columns = (getattr(inside, item.name)[order] for item in fields(inside))
-    return tuple(RollingElementRow(int(row), *map(float, rest)) for row, *rest in zip(*columns, strict=True))
-
-
-def _film(inside: FilmField, here: Carried, shaft_speed: float) -> FilmState:
-    law: Any = here.law
-    W = float(np.hypot(*here.force[:2]))
-    # From the load to the line of centres, positive in the sense of rotation.
-    angle = np.arctan2(here.d[1], here.d[0]) - np.arctan2(here.force[1], here.force[0])
-    attitude = float(np.sign(shaft_speed) * (np.mod(angle + np.pi, 2.0 * np.pi) - np.pi))
-    turns = abs(shaft_speed) / (2.0 * np.pi)
-    area = 2.0 * law.radius * law.length
-    return FilmState(
-        eccentricity=float(np.hypot(*here.d[:2])) / law.clearance,
-        attitude=attitude,
-        minimum_gap=float(inside.gap.min()),
-        sommerfeld=law.viscosity * turns * area / W * (law.radius / law.clearance) ** 2 if W else np.inf,
-        largest_pressure=float(inside.pressure.max()),
-        side_flow=inside.side_flow,
-        power_loss=inside.power_loss,
-        **_heat(law),
-        angle=inside.angle,
-        z=inside.z,
-        gap=inside.gap,
-        pressure=inside.pressure,
-    )
-
-
-def _heat(law: Any) -> dict[str, Any]:
-    """Viscosity of a film, with its temperature and that of the oil that leaves; T is the mean of inlet and outlet."""
-    T = law.temperature
-    outlet = None if T is None else 2.0 * T - law.inlet_temperature
-    return {"film_temperature": T, "outlet_temperature": outlet, "film_viscosity": law.viscosity}
-
-
-def _thrust(inside: ThrustField, here: Carried) -> ThrustState:
-    own = {item.name: getattr(inside, item.name) for item in fields(inside)}
-    return ThrustState(
-        minimum_gap=float(inside.gap.min()),
-        largest_pressure=float(inside.pressure.max()),
-        **_heat(here.law),
-        **own,
-    )
+def _told(inside: RollingLoads | OilField | None, here: Carried, shaft_speed: float) -> dict[str, Any]:
+    """What the sheet says of the inside, under its name there."""
+    if inside is None:
+        return {}
+    declared = BearingSheet.declarations[inside.told_as]
+    assert declared.record is not None
+    records = tuple(declared.record(**row) for row in inside.told(here.law, here.force, here.d, shaft_speed))
+    return {inside.told_as: records if declared.axes else records[0]}
 
 
 def _states(model: Model, speeds: list[float], progress: Progress) -> tuple[dict[float, Equilibrated], list[str]]:
@@ -232,7 +189,7 @@ def _left_out(model: Model, address: str, law: object, inside: object) -> list[s
     notes = [f"{address}: {text}" for text in law.left_out()]  # type: ignore[attr-defined]
     if table == "bearings" and model.bearings[name].stiffness is not None:
         notes.append(f"{address}: the stiffness given beside its rolling elements, which carry here")
-    if isinstance(inside, FilmField | ThrustField):
+    if isinstance(inside, OilField):
         notes.append(
             "oil in streamers where the film has broken: friction is that of a film that is whole, the most it can be"
         )

@@ -61,7 +61,7 @@ def bearing_convergence_study(
     progress(0.0, "equilibrium of the gearbox")
     state = law_at(equilibrium_of(by_its_law(model, address), given), address)
     law = state.part.law
-    film = hasattr(law, "around")
+    film = bool(law.grid)
     if not film and not (law.cycle() and given):
         raise AnalysisError(
             f"{address}: its law is a formula without a grid or turning elements; there is nothing to refine"
@@ -92,8 +92,8 @@ def bearing_convergence_study(
         return Judged(state.d.size, changes(here, truth, "d", "stiffness", "damping"), estimate)
 
     if film:
-        settings = [Setting(f"{_cells(on_grid(law, g))} cells", "grid", g, {"fineness": g}) for g in _GRIDS]
-        words = f"the film on {_cells(on_grid(law, _FINEST_GRID))} cells"
+        settings = [Setting(f"{on_grid(law, g).cells} cells", "grid", g, {"fineness": g}) for g in _GRIDS]
+        words = f"the film on {on_grid(law, _FINEST_GRID).cells} cells"
     else:
         settings = [Setting(f"{n} positions in a pitch", "positions", float(n), {"fineness": n}) for n in _POINTS]
         words = f"means over {_FINEST_POINTS} positions in a pitch"
@@ -108,8 +108,3 @@ def bearing_convergence_study(
         compared="displacements, stiffness and damping",
         resolution=_ROUNDING,
     )
-
-
-def _cells(film: Any) -> str:
-    """Cells of a grid each way: around a journal and along all of it, or along a thrust pad and across it."""
-    return f"{film.around} x {film.across if hasattr(film, 'across') else 2 * film.along}"

@@ -15,6 +15,7 @@ from rotorgear.analysis.static.solve import Equilibrated, LawState, equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
+from rotorgear.model.parts.supports import Bearing
 from rotorgear.quantity import nearest
 from rotorgear.solvers.sparse.newton import ROUNDING
 from rotorgear.system.flow_system import flow_system
@@ -52,9 +53,9 @@ def address_of(model: Model, name: str | None) -> str:
         return own[0]
     known = ", ".join(address.partition(".")[2] for address in laws) or "none"
     if name in model.bearings:
+        *kinds, last = (f"{kind} = {{...}}" for kind in Bearing.kinds())
         raise AnalysisError(
-            f"bearings.{name}: a stiffness given by hand has no sheet; "
-            "give rolling = {...}, journal = {...} or thrust = {...}"
+            f"bearings.{name}: a stiffness given by hand has no sheet; give {', '.join(kinds)} or {last}"
         )
     guess = nearest(name or "", [address.partition(".")[2] for address in laws])
     hint = f"did you mean '{guess}'?" if guess else f"those with a law are: {known}"
@@ -132,12 +133,8 @@ def relative(difference: np.ndarray, of: np.ndarray) -> float:
 
 def on_grid(law: ForceLaw, factor: float) -> ForceLaw:
     """A film on a grid with so many times the cells each way, within the bounds of its law; other laws have none."""
-    if not hasattr(law, "around"):
-        return law
     cells = {}
-    for key in ("around", "along", "across"):
-        if key not in law.declared():
-            continue
+    for key in law.grid:
         about = law.declared()[key]
         cells[key] = int(np.clip(round(factor * getattr(law, key)), about.least, about.most))
-    return replace(law, **cells)
+    return replace(law, **cells) if cells else law

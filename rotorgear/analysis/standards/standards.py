@@ -23,7 +23,6 @@ from rotorgear.analysis.standards.unbalance import UnbalanceResponse, antinodes,
 from rotorgear.analysis.static.lowest_speed import needs_rotation
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.model.parts.supports import Bearing
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -287,21 +286,12 @@ class _Lateral:
                 f"{response.rpm(peak):.5g} rpm"
             )
             limits = [(rules.VIBRATION.name, "peak to peak", 1e6 * rules.vibration_limit(rpm))]
-            if (play := _diametral_clearance(bearing)) is not None:
+            if (play := bearing.geometry.play if bearing.geometry else None) is not None:
                 limits.append((rules.CLEARANCE.name, "major axis", 1e6 * rules.CLEARANCE_SHARE * play))
             self.checks += [
                 RuleCheck(rule, f"bearings.{name}", what, "um", size, limit, _verdict(size <= limit), note)
                 for rule, what, limit in limits
             ]
-
-
-def _diametral_clearance(bearing: Bearing) -> float | None:
-    """Whole play of a bearing along a diameter in m; None where the model knows none."""
-    if bearing.journal is not None:
-        return 2.0 * bearing.journal.clearance
-    if bearing.rolling is not None and bearing.rolling.clearance > 0.0:
-        return bearing.rolling.clearance
-    return None
 
 
 def _stability(model: Model, running: ModalResult) -> Iterator[RuleCheck]:

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from itertools import pairwise
 
 from rotorgear.errors import Problem
-from rotorgear.forces.clearance_classes import class_clearance
-from rotorgear.forces.designations import inner_geometry
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
     Bearing,
     DampingMatrix,
-    JournalGeometry,
-    Oil,
     Pedestal,
-    RollingElements,
     StiffnessMatrix,
     TableRow,
-    ThrustGeometry,
 )
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import RPM_PER_RAD_S, millimetres
@@ -99,7 +92,8 @@ def matrices(model: Tables) -> Iterator[Problem]:
 
 def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
     if bearing.stiffness is None and not bearing.table and not bearing.has_law:
-        text = "stiffness (with damping), a table over speed, rolling elements, a journal, or a thrust bearing"
+        *nouns, last = (kind.noun for kind in Bearing.kinds().values())
+        text = f"stiffness (with damping), a table over speed, {', '.join(nouns)}, or {last}"
         yield Problem(address, "neither stiffness nor table", text)
     elif bearing.stiffness is not None and bearing.table:
         yield Problem(address, "stiffness and table", "one of the two")
@@ -107,127 +101,10 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         yield Problem(f"{address}.damping", "damping beside a table", "damping in the rows of the table")
     yield from six_by_six(address, bearing.stiffness, bearing.damping)
     yield from _table(address, bearing.table)
-    if bearing.rolling:
-        yield from _rolling(address, bearing, bearing.rolling)
-    if bearing.journal:
-        yield from _journal(address, bearing, bearing.journal)
-    if bearing.thrust:
-        yield from _thrust(address, bearing, bearing.thrust)
+    for kind, geometry in bearing.geometries.items():
+        yield from geometry.problems(f"{address}.{kind}", bearing.beside(kind))
     if bearing.pedestal:
         yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
-
-
-def _oil(here: str, film: Oil) -> Iterator[Problem]:
-    """A viscosity, or a grade with the temperature at which the oil flows in."""
-    if film.viscosity is not None and film.oil is not None:
-        yield Problem(f"{here}.viscosity", "viscosity and oil", "one of the two")
-    elif film.viscosity == 0.0:
-        yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
-    elif film.viscosity is None and film.oil is None:
-        yield Problem(here, "neither viscosity nor oil", "a viscosity such as '0.02 Pa s', or an oil such as 'VG 46'")
-    if film.oil is not None and film.inlet_temperature is None:
-        yield Problem(f"{here}.inlet_temperature", "no temperature beside the oil", "a temperature such as '45 degC'")
-    if film.oil is None and (film.inlet_temperature is not None or film.heat_share != 1.0):
-        key = "inlet_temperature" if film.inlet_temperature is not None else "heat_share"
-        yield Problem(
-            f"{here}.{key}", "heat of a film of given viscosity", "an oil such as 'VG 46' in place of the viscosity"
-        )
-    if film.heat_share > 1.0:
-        yield Problem(f"{here}.heat_share", f"{film.heat_share:g}", "a share from 0 to 1")
-
-
-def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterator[Problem]:
-    """An oil film alone in its bearing, with lobes that fit, on a grid that serves."""
-    here = f"{address}.journal"
-    beside = [key for key in ("stiffness", "damping", "rolling") if getattr(bearing, key) is not None]
-    if beside or bearing.table:
-        wanted = "a journal alone; what holds the shaft along z is a support or a bearing of its own"
-        yield Problem(here, f"a journal beside {beside[0] if beside else 'a table'}", wanted)
-    yield from _oil(here, journal)
-    if journal.length > 2.0 * journal.diameter:
-        got = f"{millimetres(journal.length)} on a diameter of {millimetres(journal.diameter)}"
-        yield Problem(f"{here}.length", got, "at most two diameters, beyond which shafts bend in their bearing")
-    if journal.clearance > 0.1 * journal.diameter:
-        got = f"{millimetres(journal.clearance)} on a diameter of {millimetres(journal.diameter)}"
-        yield Problem(f"{here}.clearance", got, "a film that is thin: at most a tenth of the diameter, 1e-3 as a rule")
-    for key, most in (("lobes", 8), ("around", 2000), ("along", 200)):
-        if getattr(journal, key) > most:
-            yield Problem(f"{here}.{key}", f"{getattr(journal, key)}", f"at most {most}")
-    for key, least in (("around", 24), ("along", 2)):
-        if getattr(journal, key) < least:
-            yield Problem(f"{here}.{key}", f"{getattr(journal, key)}", f"at least {least} cells")
-    yield from _pads(here, journal)
-    if journal.lobes == 1 and (
-        (journal.preload and not journal.pads)
-        or journal.lobe_arc is not None
-        or journal.lobe_at
-        or journal.offset != 0.5
-    ):
-        yield Problem(f"{here}.lobes", "keys of lobes in a plain bearing", "2 lobes or more beside them")
-    if journal.lobes > 1 and journal.inlet is not None:
-        yield Problem(f"{here}.inlet", "an inlet", "none beside lobes: oil comes in between them")
-    if not 0.0 <= journal.preload < 1.0:
-        yield Problem(f"{here}.preload", f"{journal.preload:g}", "a share from 0 to below 1")
-    if journal.offset > 1.0:
-        yield Problem(f"{here}.offset", f"{journal.offset:g}", "a share of the arc from 0 to 1")
-    arc = 0.0 if journal.lobe_arc is None else journal.lobe_arc
-    if not 0.0 <= journal.lobes * arc <= 2.0 * math.pi * (1.0 + 1e-9) or (journal.lobe_arc is not None and not arc):
-        got = f"{journal.lobes} of {math.degrees(arc):.6g} deg"
-        yield Problem(f"{here}.lobe_arc", got, "lobes that fit on 360 deg")
-
-
-def _thrust(address: str, bearing: Bearing, thrust: ThrustGeometry) -> Iterator[Problem]:
-    """Films along the shaft alone in their bearing, with pads that fit and carry."""
-    here = f"{address}.thrust"
-    beside = [key for key in ("stiffness", "damping", "rolling", "journal") if getattr(bearing, key) is not None]
-    if beside or bearing.table:
-        wanted = "a thrust bearing alone; what holds the shaft across is a bearing of its own, at the same place"
-        yield Problem(here, f"a thrust bearing beside {beside[0] if beside else 'a table'}", wanted)
-    yield from _oil(here, thrust)
-    if thrust.inner_diameter >= thrust.outer_diameter:
-        wanted = f"less than the outer diameter of {millimetres(thrust.outer_diameter)}"
-        yield Problem(f"{here}.inner_diameter", millimetres(thrust.inner_diameter), wanted)
-    if thrust.clearance > 0.05 * thrust.outer_diameter:
-        wanted = "a film that is thin: at most a twentieth of the outer diameter, 1e-3 as a rule"
-        yield Problem(f"{here}.clearance", millimetres(thrust.clearance), wanted)
-    if not 1 <= thrust.pads <= 40:
-        yield Problem(f"{here}.pads", str(thrust.pads), "1 to 40 pads")
-    elif thrust.pad_arc is not None and not 0.0 < thrust.pads * thrust.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
-        got = f"{thrust.pads} of {math.degrees(thrust.pad_arc):.6g} deg"
-        yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
-    if (thrust.taper is None) == (thrust.pivot is None):
-        got = "neither taper nor pivot" if thrust.taper is None else "taper and pivot"
-        yield Problem(here, got, "a taper of fixed pads, or the pivot of tilting ones")
-    if thrust.pivot is not None and not 0.0 < thrust.pivot < 1.0:
-        yield Problem(f"{here}.pivot", f"{thrust.pivot:g}", "a share of the arc between 0 and 1")
-    if not 0.0 < thrust.taper_share <= 1.0:
-        yield Problem(f"{here}.taper_share", f"{thrust.taper_share:g}", "a share of the arc above 0, up to 1")
-    if not thrust.whirl_ratio:
-        yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")
-    for key, least, most in (("around", 6, 400), ("across", 4, 200)):
-        if not least <= getattr(thrust, key) <= most:
-            yield Problem(f"{here}.{key}", f"{getattr(thrust, key)}", f"{least} to {most} cells")
-
-
-def _pads(here: str, journal: JournalGeometry) -> Iterator[Problem]:
-    """Tilting pads that fit, with their keys beside them and none of fixed bearings."""
-    if not journal.pads:
-        if journal.pads == 0:
-            yield Problem(f"{here}.pads", "0", "2 pads or more, or none of this key in a fixed bearing")
-        elif journal.pad_arc is not None or journal.pad_at or journal.pivot != 0.5 or journal.whirl_ratio != 1.0:
-            yield Problem(f"{here}.pads", "keys of pads in a fixed bearing", "the number of pads beside them")
-        return
-    if not 2 <= journal.pads <= 12:
-        yield Problem(f"{here}.pads", str(journal.pads), "2 to 12 pads")
-    if journal.lobes > 1 or journal.inlet is not None:
-        yield Problem(f"{here}.pads", "pads beside lobes or an inlet", "one of them: oil comes in between pads")
-    if journal.pad_arc is not None and not 0.0 < journal.pads * journal.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
-        got = f"{journal.pads} of {math.degrees(journal.pad_arc):.6g} deg"
-        yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
-    if not 0.0 < journal.pivot < 1.0:
-        yield Problem(f"{here}.pivot", f"{journal.pivot:g}", "a share of the arc between 0 and 1")
-    if not journal.whirl_ratio:
-        yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")
 
 
 def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
@@ -238,84 +115,6 @@ def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
         yield Problem(f"{address}.table", f"speeds of {rpm} rpm", wanted)
     for number, row in enumerate(table):
         yield from six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
-
-
-def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterator[Problem]:
-    """Rolling elements that fit into their bearing, beside a stiffness that the linear analyses take."""
-    here = f"{address}.rolling"
-    if bearing.table or (bearing.stiffness and bearing.stiffness.given & {"matrix", "xy", "yx"}):
-        wanted = "stiffness along x, y, axial and tilt beside them"
-        yield Problem(here, "rolling elements beside a table or cross terms", wanted)
-    if rolling.elements < 3:
-        yield Problem(f"{here}.elements", str(rolling.elements), "at least 3")
-    if rolling.elements * rolling.element_diameter > math.pi * rolling.pitch_diameter:
-        text = f"{rolling.elements} of {millimetres(rolling.element_diameter)}"
-        wanted = f"elements that fit on a circle of {millimetres(rolling.pitch_diameter)}"
-        yield Problem(f"{here}.element_diameter", text, wanted)
-    rollers = rolling.kind in ("roller", "tapered")
-    known = inner_geometry(rolling.designation) if rolling.designation is not None else None
-    for key, value in known.keys.items() if known is not None else ():
-        given = getattr(rolling, key)
-        if key != "contact_angle" and given != value and not (isinstance(given, float) and math.isclose(given, value)):
-            wanted = f"{value if key == 'kind' else f'{value:.6g}'} as {rolling.designation} has it, or no designation"
-            yield Problem(f"{here}.{key}", f"{given} beside designation = '{rolling.designation}'", wanted)
-    if rollers != (rolling.length is not None):
-        got = "a roller without length" if rollers else "a length of balls"
-        yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
-    if rolling.kind == "roller" and rolling.contact_angle:
-        yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
-    yield from _rows(here, rolling)
-    yield from _fit(here, rolling)
-    for key in ("inner_groove", "outer_groove"):
-        if getattr(rolling, key) <= 0.5:
-            wanted = "more than 0.5: a groove is wider than its ball"
-            yield Problem(f"{here}.{key}", f"{getattr(rolling, key):g}", wanted)
-    if not abs(rolling.contact_angle) < 1.4:
-        angle = f"{math.degrees(rolling.contact_angle):.6g} deg"
-        yield Problem(f"{here}.contact_angle", angle, "an angle below 80 deg")
-    reach = 2.0 * (rolling.inner_groove + rolling.outer_groove - 1.0) * rolling.element_diameter
-    if not rollers and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
-        wanted = f"less than {millimetres(reach)}: the balls would fall out"
-        yield Problem(f"{here}.clearance", millimetres(rolling.clearance), wanted)
-
-
-def _rows(here: str, rolling: RollingElements) -> Iterator[Problem]:
-    """Rows with the contact angle that makes them press, and slices of rollers."""
-    if rolling.kind in ("tapered", "four-point") and not rolling.contact_angle:
-        yield Problem(
-            f"{here}.contact_angle", "0", f"an angle of a {rolling.kind} bearing, such as '15 deg' or '35 deg'"
-        )
-    pair = rolling.arrangement != "single"
-    if pair and (rolling.kind not in ("ball", "tapered") or not rolling.contact_angle):
-        wanted = "a pair of angular contact ball or tapered roller bearings, with their contact_angle"
-        yield Problem(
-            f"{here}.arrangement", f"{rolling.arrangement} of a {rolling.kind} bearing without an angle", wanted
-        )
-    if (pair or rolling.kind == "four-point") and rolling.contact_angle < 0.0:
-        angle = f"{math.degrees(rolling.contact_angle):.6g} deg"
-        yield Problem(f"{here}.contact_angle", angle, "a positive angle: the arrangement has the sides")
-    if pair != (rolling.row_distance is not None):
-        got = "a pair without a distance" if pair else "a distance of one row"
-        yield Problem(f"{here}.row_distance", got, "the distance of the two rows beside an arrangement O, X or tandem")
-    if rolling.slices is not None and not (rolling.kind in ("roller", "tapered") and 1 <= rolling.slices <= 200):
-        yield Problem(f"{here}.slices", f"{rolling.slices} of a {rolling.kind} bearing", "1 to 200 slices of a roller")
-
-
-def _fit(here: str, rolling: RollingElements) -> Iterator[Problem]:
-    """A clearance class with its bore, and a preload of a bearing that can take one."""
-    if rolling.clearance_class is not None:
-        if rolling.kind != "ball" or rolling.contact_angle or rolling.clearance:
-            wanted = "the class of a deep groove ball bearing alone, or a clearance"
-            yield Problem(f"{here}.clearance_class", rolling.clearance_class, wanted)
-        if rolling.bore is None or class_clearance(rolling.bore, rolling.clearance_class) is None:
-            got = "no bore" if rolling.bore is None else millimetres(rolling.bore)
-            yield Problem(f"{here}.bore", got, "a bore above 10 to 120 mm, which the table of classes has")
-    elif rolling.bore is not None:
-        yield Problem(f"{here}.bore", millimetres(rolling.bore), "a clearance_class beside it, which it is for")
-    if (rolling.preload_displacement or rolling.preload_force) and not rolling.contact_angle:
-        yield Problem(here, "a preload without a contact angle", "a contact_angle, along which it presses")
-    if rolling.preload_displacement and rolling.preload_force:
-        yield Problem(here, "preload_displacement and preload_force", "one of the two")
 
 
 def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:

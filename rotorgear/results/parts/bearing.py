@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Iterator
+from typing import ClassVar
+
 import numpy as np
 
 from rotorgear.results.result import ModelResult
@@ -20,8 +24,23 @@ class RollingElementRow(Record):
     outer_pressure: float = of("largest Hertz pressure at the outer ring", "Pa", json="outer_pressure_pa")
 
 
+# Angles in deg (t,), places across them in m (j,), gap in m (t,) and pressure in Pa (t, j) of a part of a film.
+Patch = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+# Steps of the grid: a leap from one pad to the next.
+_APART = 1.5
+
+
 class OilState(Record):
-    """What every oil film has under its load."""
+    """What every oil film has under its load.
+
+    `along_shaft`: whether it carries along the shaft, not across. `place`: what the grid is counted by beside angles. `smooth`:
+    whether pressure and gap are drawn from node to node, not node by node. `over_gap`: what stands over the picture of the gap.
+    """
+
+    along_shaft: ClassVar[bool] = False
+    place: ClassVar[str] = "z"
+    smooth: ClassVar[bool] = False
+    over_gap: ClassVar[str] = "Film: eccentricity {0.eccentricity:.3f} of the clearance"
 
     largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
     power_loss: float = of("power loss", "W", json="power_loss_w")
@@ -35,6 +54,10 @@ class OilState(Record):
         note="; `null` where the viscosity is given",
     )
     film_viscosity: float = of("dynamic viscosity of the film", "Pa s", json="film_viscosity_pa_s")
+
+    @abstractmethod
+    def patches(self) -> Iterator[Patch]:
+        """The film in parts that are drawn each as one."""
 
 
 class FilmState(OilState):
@@ -57,9 +80,22 @@ class FilmState(OilState):
         "pressure", "Pa", "angle", "place", json="pressure_pa", note=", symmetric about the middle"
     )
 
+    def patches(self) -> Iterator[Patch]:
+        """All of it, both halves, around the circle."""
+        angle = np.degrees(self.angle) % 360.0
+        order = np.argsort(angle)
+        field = self.pressure[order]
+        z = np.concatenate([-self.z[::-1], self.z])
+        yield angle[order], z, self.gap[order], np.hstack([field[:, ::-1], field])
+
 
 class ThrustState(OilState):
     """The films of a thrust bearing under its load. Angles are from +x about +z."""
+
+    along_shaft: ClassVar[bool] = True
+    place: ClassVar[str] = "radius"
+    smooth: ClassVar[bool] = True
+    over_gap: ClassVar[str] = "Least gap over the radius"
 
     minimum_gap: float = of("smallest gap of the films", "m", json="minimum_gap_m")
     side_flow: float = of("oil that leaves at the inner and the outer radius", "m^3/s", json="side_flow_m3_per_s")
@@ -68,6 +104,16 @@ class ThrustState(OilState):
     radius: np.ndarray = of("radius of the grid", "m", "radius", json="radius_m")
     gap: np.ndarray = of("gap of the films", "m", "angle", "radius", json="gap_m")
     pressure: np.ndarray = of("pressure", "Pa", "angle", "radius", json="pressure_pa")
+
+    def patches(self) -> Iterator[Patch]:
+        """The pads of the side that carries more, each with its least gap over the radius."""
+        carried = {side: float(self.pressure[self.side == side].sum()) for side in np.unique(self.side)}
+        own = self.side == max(carried, key=lambda side: carried[side])
+        angle = np.degrees(self.angle[own])
+        # From pad to pad the angle leaps over the groove.
+        steps = np.diff(angle)
+        for pad in np.split(np.arange(angle.size), np.flatnonzero(steps > _APART * np.median(steps)) + 1):
+            yield angle[pad], self.radius, self.gap[own][pad].min(axis=1), self.pressure[own][pad]
 
 
 class BearingSpeed(Record):
@@ -107,9 +153,15 @@ class BearingSheet(ModelResult, kind="bearing"):
     bearing_stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
     bearing_damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
     averaged: bool = of("whether these are means over a pitch of its rolling elements")
-    rolling_elements: tuple[RollingElementRow, ...] = of("rolling elements", "", "element", record=RollingElementRow)
-    film: FilmState | None = of("film", record=FilmState, note="; `null` in a rolling bearing")
-    thrust_film: ThrustState | None = of("films of a thrust bearing", record=ThrustState, note="; `null` in any other")
+    rolling_elements: tuple[RollingElementRow, ...] = of(
+        "rolling elements", "", "element", record=RollingElementRow, default=(), kw_only=True
+    )
+    film: FilmState | None = of(
+        "film", record=FilmState, note="; `null` in a rolling bearing", default=None, kw_only=True
+    )
+    thrust_film: ThrustState | None = of(
+        "films of a thrust bearing", record=ThrustState, note="; `null` in any other", default=None, kw_only=True
+    )
     over_speed: tuple[BearingSpeed, ...] = of("over speed", "", "speed", record=BearingSpeed)
     threshold_speed: float | None = of(
         "speed at which the gearbox begins to whirl",
@@ -127,6 +179,16 @@ class BearingSheet(ModelResult, kind="bearing"):
         form=".0e",
     )
     cpu_seconds: float = of("CPU time of the bearing at one speed and load", "s", form=".4f")
+
+    @property
+    def oil(self) -> OilState | None:
+        """Its oil film, of whatever kind; None in a rolling bearing."""
+        return self.film or self.thrust_film
+
+    @property
+    def along_shaft(self) -> bool:
+        """Whether it carries along its shaft, and nothing across."""
+        return self.oil is not None and self.oil.along_shaft
 
     @derived("largest load of a rolling element", "N", json="largest_element_load_n")
     def largest_element_load(self) -> float | None:

@@ -7,29 +7,15 @@ from collections.abc import Iterator
 
 from rotorgear.model.checks.plausibility.sentence import ASK, GRAVITY, mass_of, outside, said
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.supports import Bearing, RollingElements, StiffnessMatrix
+from rotorgear.model.parts.bearings.geometry import BearingGeometry
+from rotorgear.model.parts.shaft import Shaft
+from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
 
 # Sag of a rotor on its bearings in m; stiffness of a bearing in N/m that nothing reaches.
 _SAG = 1e-3
 _STIFFEST = 1e12
-# Radial clearance over radius of a film; viscosity in Pa s; temperature of an inlet in K; density of oils in kg/m^3.
-_FILM = (1e-4, 0.02)
-_VISCOSITY = (5e-5, 3.0)
-_CELSIUS = 273.15
-_INLET = (233.15, 423.15)
-_OIL = (500.0, 2000.0)
-# Depth of the taper of thrust pads over their clearance.
-_TAPER = (0.02, 50.0)
-# What surrounds a shaft over its diameters; damping of a bearing over the critical one.
-_FITS = {"rolling": (0.3, 12.0), "journal": (0.3, 3.0), "thrust": (0.3, 12.0)}
+# Damping of a bearing over the critical one.
 _OVERDAMPED = 1e3
-# Of the diameter of an element: clearance and preload; share of its circle that the elements of a row fill; length of a roller.
-_CLEARANCE = 0.05
-_PRESSED = 0.02
-_FILLED = (0.15, 1.0)
-_LONG = (0.2, 30.0)
-# Preload over elements times diameter squared in Pa: some five times the static capacity.
-_PRELOAD = 3e8
 # Twist of a coupling under the torque of the operating point in rad.
 _TWIST = 0.5
 
@@ -45,55 +31,23 @@ def bearings(layout: Layout) -> Iterator[str]:
         yield from _stiffness(f"{address}.stiffness", matrix, weight)
         if bearing.pedestal is not None:
             yield from _stiffness(f"{address}.pedestal.stiffness", bearing.pedestal.stiffness, weight, given=True)
-        if bearing.rolling:
-            yield from _rolling(f"{address}.rolling", bearing.rolling)
-        yield from _films(address, bearing)
-        yield from _fits(address, bearing, layout)
+        for kind, geometry in bearing.geometries.items():
+            for key, value, usual, words, slips in geometry.judged():
+                yield from outside(f"{address}.{kind}.{key}", value, usual, words, slips)
+            yield from _fits(f"{address}.{kind}.{geometry.ring}", geometry, layout.model.shafts[bearing.shaft])
         yield from _dampers(address, bearing, weights[bearing.shaft] / GRAVITY)
 
 
-def _films(address: str, bearing: Bearing) -> Iterator[str]:
-    """Gap, viscosity and density of oil films."""
-    for key in ("journal", "thrust"):
-        film = getattr(bearing, key)
-        if film is None:
-            continue
-        radius = 0.5 * (film.diameter if key == "journal" else film.outer_diameter)
-        share = film.clearance / radius
-        words = (f"{film.clearance:.4g} m, {share:.2g} of the radius", f"{_FILM[0]:g} to {_FILM[1]:g}")
-        yield from outside(f"{address}.{key}.clearance", share, _FILM, words, ("is its unit right?", "um meant?"))
-        if film.viscosity is not None:
-            words = (f"{film.viscosity:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
-            slips = ("is its unit right?", "mPa s (cP) meant?")
-            yield from outside(f"{address}.{key}.viscosity", film.viscosity, _VISCOSITY, words, slips)
-        if film.inlet_temperature is not None:
-            words = (f"{film.inlet_temperature - _CELSIUS:.4g} degC", "-40 to 150 degC")
-            slips = ("degC meant, not K?", "is its unit right?")
-            yield from outside(f"{address}.{key}.inlet_temperature", film.inlet_temperature, _INLET, words, slips)
-        if key == "thrust" and film.taper is not None:
-            share = film.taper / film.clearance
-            words = (f"{film.taper:.4g} m, {share:.3g} of the clearance", f"{_TAPER[0]:g} to {_TAPER[1]:g} of it")
-            yield from outside(f"{address}.thrust.taper", share, _TAPER, words, ("is its unit right?", "um meant?"))
-        words = (f"{film.density:.4g} kg/m^3", f"{_OIL[0]:g} to {_OIL[1]:g} kg/m^3")
-        yield from outside(
-            f"{address}.{key}.density", film.density, _OIL, words, ("g/cm^3 meant?", "is its unit right?")
-        )
-
-
-def _fits(address: str, bearing: Bearing, layout: Layout) -> Iterator[str]:
+def _fits(address: str, geometry: BearingGeometry, shaft: Shaft) -> Iterator[str]:
     """Size of what surrounds the shaft against the shaft."""
-    sections = layout.model.shafts[bearing.shaft].sections
-    sizes = (("rolling", "pitch_diameter"), ("journal", "diameter"), ("thrust", "outer_diameter"))
-    for key, name in sizes if sections else ():
-        part = getattr(bearing, key)
-        if part is None:
-            continue
-        thick = max(section.outer_diameter for section in sections)
-        thin = min(section.outer_diameter for section in sections)
-        share = (_FITS[key][0] * thin, _FITS[key][1] * thick)
-        size = getattr(part, name)
-        words = (f"{size:.4g} m on a shaft of {thin:.4g} to {thick:.4g} m", f"{share[0]:.2g} to {share[1]:.2g} m")
-        yield from outside(f"{address}.{key}.{name}", size, share, words, ("is its unit right?", "mm meant?"))
+    if not shaft.sections:
+        return
+    thick = max(section.outer_diameter for section in shaft.sections)
+    thin = min(section.outer_diameter for section in shaft.sections)
+    size = geometry.surrounds
+    share = (geometry.fits[0] * thin, geometry.fits[1] * thick)
+    words = (f"{size:.4g} m on a shaft of {thin:.4g} to {thick:.4g} m", f"{share[0]:.2g} to {share[1]:.2g} m")
+    yield from outside(address, size, share, words, ("is its unit right?", "mm meant?"))
 
 
 def _dampers(address: str, bearing: Bearing, mass: float) -> Iterator[str]:
@@ -128,31 +82,6 @@ def _stiffness(address: str, matrix: StiffnessMatrix | None, weight: float, give
         sag = "no stiffness across" if softest == 0.0 else f"{softest:.4g} N/m, on which its rotor sags by"
         amount = "" if softest == 0.0 else f" {1e3 * weight / softest:.3g} mm"
         yield said(address, f"{sag}{amount}", "1e6 to 1e10 N/m", "N/mm or N/um meant?")
-
-
-def _rolling(address: str, rolling: RollingElements) -> Iterator[str]:
-    """Clearance, preload, number and length of rolling elements against their diameter."""
-    size = rolling.element_diameter
-    for key, value, most in (
-        ("clearance", rolling.clearance, _CLEARANCE),
-        ("preload_displacement", rolling.preload_displacement, _PRESSED),
-    ):
-        words = (f"{value:.4g} m", f"up to {most:g} of the diameter of an element")
-        yield from outside(f"{address}.{key}", value, (0.0, most * size), words, ("", "um meant?"))
-    filled = rolling.elements * size / (math.pi * rolling.pitch_diameter)
-    words = (f"{size:.4g} m, of which {rolling.elements} fill {filled:.2g} of their circle", "0.15 to 1 of it")
-    yield from outside(f"{address}.element_diameter", filled, _FILLED, words, ASK)
-    pressure = rolling.preload_force / (rolling.elements * size**2)
-    words = (
-        f"{rolling.preload_force:.4g} N, {1e-6 * pressure:.3g} MPa on the squares of the diameters",
-        "up to 300 MPa",
-    )
-    yield from outside(f"{address}.preload_force", pressure, (0.0, _PRELOAD), words, ("", "is its unit right?"))
-    if rolling.length is not None:
-        words = (f"{rolling.length:.4g} m, {rolling.length / size:.3g} diameters", f"{_LONG[0]:g} to {_LONG[1]:g}")
-        yield from outside(
-            f"{address}.length", rolling.length / size, _LONG, words, ("is its unit right?", "mm meant?")
-        )
 
 
 def couplings(layout: Layout) -> Iterator[str]:

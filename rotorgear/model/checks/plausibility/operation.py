@@ -17,10 +17,9 @@ from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.operation import Operation
 from rotorgear.quantity import RPM_PER_RAD_S
 
-# Surface of a shaft, of a film, and gears at their base circles, in m/s; speed times pitch diameter of rolling elements in m/s.
+# Surface of a shaft, and gears at their base circles, in m/s.
 _SURFACE = 600.0
 _FLANKS = 400.0
-_ROLLS = 200.0
 # Speed over the first bending frequency of a shaft on its bearings.
 _SUPERCRITICAL = 60.0
 # Shear stress of the thinnest part of a shaft in Pa under its torque; stress along a shaft under a force, and by its own weight.
@@ -86,12 +85,9 @@ def _speed(layout: Layout) -> Iterator[str]:
     for gear in layout.gears:
         runs(gear.shaft, gear.base_radius * speeds[gear.shaft], _FLANKS, f"whose gear '{gear.name}' runs")
     for name, bearing in model.bearings.items():
-        speed = speeds[bearing.shaft]
-        if bearing.rolling:
-            runs(bearing.shaft, 0.5 * bearing.rolling.pitch_diameter * speed, _ROLLS, f"whose bearing '{name}' rolls")
-        if bearing.film is not None:
-            film = bearing.journal.diameter if bearing.journal else bearing.film.outer_diameter  # type: ignore[union-attr]
-            runs(bearing.shaft, 0.5 * film * speed, _FLANKS, f"which in bearing '{name}' runs")
+        if (inside := bearing.geometry) is not None:
+            value = 0.5 * inside.surrounds * speeds[bearing.shaft]
+            runs(bearing.shaft, value, inside.fastest, inside.runs.format(name))
     if model.has("bending"):
         for name in model.shafts:
             first = _first_bending(layout, name)

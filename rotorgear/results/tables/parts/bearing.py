@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.parts.bearing import BearingSheet, OilState
-from rotorgear.results.tables.common import error_words, heading, lines, plain_table, table
+from rotorgear.results.parts.bearing import BearingSheet, FilmState, OilState
+from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -27,10 +27,8 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
     own = f", its shaft at {sheet.shaft_speed * RPM_PER_RAD_S:.6g} rpm" if sheet.shaft_speed != sheet.speed else ""
     parts: list[Any] = [heading(f"{sheet.bearing}: {sheet.law}", f", {turns}{own}")]
     parts += ["", _state(sheet)]
-    if sheet.film is not None:
-        parts += ["", _film(sheet)]
-    if sheet.thrust_film is not None:
-        parts += ["", _thrust(sheet)]
+    if sheet.oil is not None:
+        parts += ["", _film(sheet, sheet.oil)]
     if sheet.rolling_elements:
         parts += ["", _elements(sheet)]
     if sheet.over_speed:
@@ -49,8 +47,7 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
 
 
 def _finer(sheet: BearingSheet) -> str:
-    grid = sheet.film is not None or sheet.thrust_film is not None
-    return "on a grid of twice the cells" if grid else "with twice the positions in a pitch"
+    return "on a grid of twice the cells" if sheet.oil is not None else "with twice the positions in a pitch"
 
 
 def _number(value: float, size: float, digits: int = 4) -> str:
@@ -59,8 +56,7 @@ def _number(value: float, size: float, digits: int = 4) -> str:
 
 
 def _state(sheet: BearingSheet) -> Any:
-    # A thrust bearing carries nothing across the shaft.
-    shown = [2, 3, 4] if sheet.thrust_film is not None else list(range(len(sheet.bearing_load)))
+    shown = list(range(2 if sheet.along_shaft else 0, len(sheet.bearing_load)))
     names = [_COMPONENTS[i] for i in shown]
     has_damping = bool(np.any(sheet.bearing_damping))
     out = table("", "load", "moves", *(f"K {name}" for name in names), *(f"C {n}" for n in names if has_damping))
@@ -82,48 +78,33 @@ def _largest(sheet: BearingSheet) -> float:
     return float(np.abs(sheet.bearing_displacement).max(initial=0.0))
 
 
-def _film(sheet: BearingSheet) -> Any:
-    film = sheet.film
-    assert film is not None
-    out = plain_table()
+def _film(sheet: BearingSheet, film: Any) -> Any:
+    out = table("", "", left=2)
     out.show_header = False
-    out.add_column("")
-    out.add_column("")
+    rows = (
+        *_carried(sheet, film),
+        ("smallest gap", f"{1e6 * film.minimum_gap:.3f} um"),
+        ("largest pressure", f"{1e-6 * film.largest_pressure:.4g} MPa"),
+        ("side flow", f"{6e4 * film.side_flow:.4g} l/min"),
+        ("power loss", f"{film.power_loss:.5g} W"),
+        *_heat(film),
+    )
+    for label, value in rows:
+        out.add_row(label, value)
+    return out
+
+
+def _carried(sheet: BearingSheet, film: OilState) -> list[tuple[str, str]]:
+    """The load, and where a journal stands under it."""
+    if not isinstance(film, FilmState):
+        return [("load along z", f"{float(sheet.bearing_load[2]):.5g} N")]
     load = float(np.hypot(*sheet.bearing_load[:2]))
     area = 2.0 * float(sheet.geometry["radius"]) * float(sheet.geometry["length"])
-    rows = (
+    return [
         ("load W, over L D", f"{load:.5g} N, {1e-6 * load / area:.4g} MPa"),
         ("Sommerfeld number", f"{film.sommerfeld:.5g}"),
         ("eccentricity", f"{film.eccentricity:.4f} of the clearance, attitude {math.degrees(film.attitude):.2f} deg"),
-        ("smallest gap", f"{1e6 * film.minimum_gap:.3f} um"),
-        ("largest pressure", f"{1e-6 * film.largest_pressure:.4g} MPa"),
-        ("side flow", f"{6e4 * film.side_flow:.4g} l/min"),
-        ("power loss", f"{film.power_loss:.5g} W"),
-        *_heat(film),
-    )
-    for label, value in rows:
-        out.add_row(label, value)
-    return out
-
-
-def _thrust(sheet: BearingSheet) -> Any:
-    film = sheet.thrust_film
-    assert film is not None
-    out = plain_table()
-    out.show_header = False
-    out.add_column("")
-    out.add_column("")
-    rows = (
-        ("load along z", f"{float(sheet.bearing_load[2]):.5g} N"),
-        ("smallest gap", f"{1e6 * film.minimum_gap:.3f} um"),
-        ("largest pressure", f"{1e-6 * film.largest_pressure:.4g} MPa"),
-        ("side flow", f"{6e4 * film.side_flow:.4g} l/min"),
-        ("power loss", f"{film.power_loss:.5g} W"),
-        *_heat(film),
-    )
-    for label, value in rows:
-        out.add_row(label, value)
-    return out
+    ]
 
 
 def _heat(film: OilState) -> list[tuple[str, str]]:
@@ -167,9 +148,8 @@ def _elements(sheet: BearingSheet) -> Any:
 def _speeds(sheet: BearingSheet) -> Any:
     """Across the shaft; all components are in the JSON."""
     has_damping = any(np.any(row.damping) for row in sheet.over_speed)
-    along = sheet.thrust_film is not None
-    names = ("zz",) if along else ("xx", "xy", "yx", "yy")
-    own = slice(2, 3) if along else slice(0, 2)
+    names = ("zz",) if sheet.along_shaft else ("xx", "xy", "yx", "yy")
+    own = slice(2, 3) if sheet.along_shaft else slice(0, 2)
     told = any(row.log_decrement is not None for row in sheet.over_speed)
     out = table(
         "rpm",

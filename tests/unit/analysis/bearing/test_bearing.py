@@ -10,7 +10,7 @@ from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.system.local_bearings import journal_law
+from rotorgear.system.local_bearings import bearing_law
 from tests.disk_in_bearing import disk_in_bearing
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
@@ -176,7 +176,8 @@ def test_a_split_torque_gearbox_stands_in_its_films_at_its_own_loads_and_runs_st
     for row in found.laws:
         name = row.part.removeprefix("bearings.")
         assert found.bearing_force[name][:2] == pytest.approx(-row.force, rel=1e-6)
-        law = journal_law(model.bearings[name].journal, float(model.layout.train.ratio(model.bearings[name].shaft)))
+        bearing = model.bearings[name]
+        law = bearing_law(bearing, float(model.layout.train.ratio(bearing.shaft)), 1.0)
         there = law.settled(row.displacement).evaluate(row.displacement, speed=speed)
         np.testing.assert_allclose(there.force, row.force, rtol=0.0, atol=1e-6 * np.abs(row.force).max())
         np.testing.assert_allclose(there.in_displacement, row.stiffness, rtol=1e-12)

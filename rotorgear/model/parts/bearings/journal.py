@@ -1,0 +1,155 @@
+"""Journal bearings in oil: plain, with lobes, or of tilting pads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from rotorgear.errors import Problem
+from rotorgear.model.parts.bearings.oil import Oil
+from rotorgear.model.parts.fields import Angle, PositiveLength, Ratio, Whole
+from rotorgear.quantity import millimetres
+
+if TYPE_CHECKING:
+    from rotorgear.forces.journal_film import JournalFilm
+    from rotorgear.forces.tilting_pads import TiltingPads
+
+
+class JournalGeometry(Oil):
+    """A journal bearing with its oil film: plain, with lobes, or of tilting pads."""
+
+    noun: ClassVar[str] = "a journal"
+    others: ClassVar[str] = "what holds the shaft along z is a support or a bearing of its own"
+    ring: ClassVar[str] = "diameter"
+    fits: ClassVar[tuple[float, float]] = (0.3, 3.0)
+
+    diameter: PositiveLength = Field(description="diameter of the journal")
+    length: PositiveLength = Field(description="length of the bearing, up to two diameters")
+    clearance: PositiveLength = Field(
+        description="radial clearance; of lobes where the gap of the centred journal is least"
+    )
+    cavitation: Literal["reynolds", "half_sommerfeld"] = Field(
+        "reynolds",
+        description="how the film cavitates; reynolds: pressure and its slope vanish together; half_sommerfeld: negative "
+        "pressures of the full film are cut",
+    )
+    inlet: Angle | None = Field(
+        None,
+        description="angle of the oil inlet of a plain bearing, from +x about +z; default: where the gap is widest in the "
+        "static equilibrium at the speed",
+    )
+    lobes: Whole = Field(1, description="number of lobes; 1: a plain bearing")
+    lobe_arc: Angle | None = Field(None, description="extent of a lobe; default: its share of the circle")
+    lobe_at: Angle = Field(0.0, description="angle of the middle of the first lobe, from +x about +z")
+    preload: Ratio = Field(
+        0.0, description="preload of lobes or pads: 1 - clearance over (radius of lobe or pad - journal radius)"
+    )
+    offset: Ratio = Field(
+        0.5,
+        description="where in a lobe the gap of the centred journal is least, as a share of its arc in the sense of rotation; "
+        "0.5: symmetric; 1 with two lobes: offset halves",
+    )
+    pads: Whole | None = Field(None, description="number of tilting pads; default: none, a bearing that is fixed")
+    pad_arc: Angle | None = Field(None, description="extent of a tilting pad; default: 0.8 of its share of the circle")
+    pad_at: Angle = Field(0.0, description="angle of the pivot of the first pad, from +x about +z")
+    pivot: Ratio = Field(0.5, description="where in a pad its pivot is, as a share of its arc in the sense of rotation")
+    whirl_ratio: Ratio = Field(
+        1.0,
+        description="frequency over the speed of the journal at which stiffness and damping of tilting pads are taken; 1: "
+        "synchronous",
+    )
+    around: Whole = Field(240, description="cells of the grid around the circle")
+    along: Whole = Field(12, description="cells of the grid over half the length")
+
+    @property
+    def follows(self) -> bool:
+        """Whether the oil flows in where the gap is widest: a plain bearing whose inlet is not given."""
+        return self.inlet is None and self.lobes == 1 and self.pads is None
+
+    @property
+    def play(self) -> float:
+        """Twice the radial clearance."""
+        return 2.0 * self.clearance
+
+    def law(self, ratio: float, sense: float, linear: Sequence[float]) -> JournalFilm | TiltingPads:
+        """Its film."""
+        same = ("length", "clearance", "preload", "cavitation", "around", "along")
+        own = self.oil_parameters() | {key: getattr(self, key) for key in same}
+        own |= {"radius": 0.5 * self.diameter, "order": ratio}
+        if self.pads:
+            from rotorgear.forces.tilting_pads import TiltingPads
+
+            return TiltingPads(
+                **own,
+                pads=self.pads,
+                arc=self.pad_arc or 0.8 * 2.0 * math.pi / self.pads,
+                at=self.pad_at,
+                pivot=self.pivot if sense > 0.0 else 1.0 - self.pivot,
+                whirl_ratio=self.whirl_ratio,
+            )
+        from rotorgear.forces.journal_film import JournalFilm
+
+        return JournalFilm(
+            **own,
+            lobes=self.lobes,
+            arc=self.lobe_arc or 0.0,
+            at=self.lobe_at,
+            offset=self.offset if sense > 0.0 else 1.0 - self.offset,
+            inlet=self.inlet or 0.0,
+            follows=self.inlet is None and self.lobes == 1,
+        )
+
+    def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
+        """Lobes or pads that fit, on a grid that serves."""
+        yield from super().problems(here, beside)
+        if self.length > 2.0 * self.diameter:
+            got = f"{millimetres(self.length)} on a diameter of {millimetres(self.diameter)}"
+            yield Problem(f"{here}.length", got, "at most two diameters, beyond which shafts bend in their bearing")
+        if self.clearance > 0.1 * self.diameter:
+            got = f"{millimetres(self.clearance)} on a diameter of {millimetres(self.diameter)}"
+            wanted = "a film that is thin: at most a tenth of the diameter, 1e-3 as a rule"
+            yield Problem(f"{here}.clearance", got, wanted)
+        for key, most in (("lobes", 8), ("around", 2000), ("along", 200)):
+            if getattr(self, key) > most:
+                yield Problem(f"{here}.{key}", f"{getattr(self, key)}", f"at most {most}")
+        for key, least in (("around", 24), ("along", 2)):
+            if getattr(self, key) < least:
+                yield Problem(f"{here}.{key}", f"{getattr(self, key)}", f"at least {least} cells")
+        yield from self._pads(here)
+        if self.lobes == 1 and (
+            (self.preload and not self.pads) or self.lobe_arc is not None or self.lobe_at or self.offset != 0.5
+        ):
+            yield Problem(f"{here}.lobes", "keys of lobes in a plain bearing", "2 lobes or more beside them")
+        if self.lobes > 1 and self.inlet is not None:
+            yield Problem(f"{here}.inlet", "an inlet", "none beside lobes: oil comes in between them")
+        if not 0.0 <= self.preload < 1.0:
+            yield Problem(f"{here}.preload", f"{self.preload:g}", "a share from 0 to below 1")
+        if self.offset > 1.0:
+            yield Problem(f"{here}.offset", f"{self.offset:g}", "a share of the arc from 0 to 1")
+        arc = 0.0 if self.lobe_arc is None else self.lobe_arc
+        if not 0.0 <= self.lobes * arc <= 2.0 * math.pi * (1.0 + 1e-9) or (self.lobe_arc is not None and not arc):
+            got = f"{self.lobes} of {math.degrees(arc):.6g} deg"
+            yield Problem(f"{here}.lobe_arc", got, "lobes that fit on 360 deg")
+
+    def _pads(self, here: str) -> Iterator[Problem]:
+        """Tilting pads that fit, with their keys beside them and none of fixed bearings."""
+        if not self.pads:
+            if self.pads == 0:
+                yield Problem(f"{here}.pads", "0", "2 pads or more, or none of this key in a fixed bearing")
+            elif self.pad_arc is not None or self.pad_at or self.pivot != 0.5 or self.whirl_ratio != 1.0:
+                yield Problem(f"{here}.pads", "keys of pads in a fixed bearing", "the number of pads beside them")
+            return
+        if not 2 <= self.pads <= 12:
+            yield Problem(f"{here}.pads", str(self.pads), "2 to 12 pads")
+        if self.lobes > 1 or self.inlet is not None:
+            yield Problem(f"{here}.pads", "pads beside lobes or an inlet", "one of them: oil comes in between pads")
+        if self.pad_arc is not None and not 0.0 < self.pads * self.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
+            got = f"{self.pads} of {math.degrees(self.pad_arc):.6g} deg"
+            yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
+        if not 0.0 < self.pivot < 1.0:
+            yield Problem(f"{here}.pivot", f"{self.pivot:g}", "a share of the arc between 0 and 1")
+        if not self.whirl_ratio:
+            yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")

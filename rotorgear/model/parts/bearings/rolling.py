@@ -1,0 +1,252 @@
+"""Rolling bearings: balls and rollers by their contacts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pydantic import ConfigDict, Field, model_validator
+
+from rotorgear.errors import Problem
+from rotorgear.forces.clearance_classes import class_clearance
+from rotorgear.forces.designations import SERIES, inner_geometry
+from rotorgear.model.parts.bearings.geometry import BearingGeometry, Judged
+from rotorgear.model.parts.fields import Angle, Force, NonNegativeLength, PositiveLength, PositiveRatio, Whole, refuse
+from rotorgear.quantity import millimetres
+
+if TYPE_CHECKING:
+    from rotorgear.forces.ball_bearing import BallBearing
+    from rotorgear.forces.law import ForceLaw
+    from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
+
+# Of the diameter of an element: clearance and preload; share of its circle that the elements of a row fill; length of a roller.
+_CLEARANCE = 0.05
+_PRESSED = 0.02
+_FILLED = (0.15, 1.0)
+_LONG = (0.2, 30.0)
+# Preload over elements times diameter squared in Pa: some five times the static capacity.
+_PRELOAD = 3e8
+
+
+class RollingElements(BearingGeometry):
+    """What rolls in a bearing: its Hertz contacts, clearance and turning cage; by its geometry, or by a designation."""
+
+    noun: ClassVar[str] = "rolling elements"
+    ring: ClassVar[str] = "pitch_diameter"
+    fits: ClassVar[tuple[float, float]] = (0.3, 12.0)
+    fastest: ClassVar[float] = 200.0
+    runs: ClassVar[str] = "whose bearing '{}' rolls"
+
+    # With a designation the four keys that are needed otherwise may be left out.
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update(required=[]))
+
+    designation: str | None = Field(
+        None,
+        description="such as 6205, 7218 B, QJ 212, NJ209 or 30209: fills kind, elements, diameters, length and contact angle "
+        "where they are not given; estimated from the outside where nothing is published",
+    )
+    kind: Literal["ball", "roller", "tapered", "four-point"] = Field(
+        description="ball, cylindrical roller, tapered roller, or ball between two arcs (four-point)"
+    )
+    elements: Whole = Field(description="number of balls or rollers of a row")
+    element_diameter: PositiveLength = Field(description="diameter of a ball or roller")
+    pitch_diameter: PositiveLength = Field(description="diameter of the circle of their centres")
+    length: PositiveLength | None = Field(None, description="effective length of a roller")
+    clearance: NonNegativeLength = Field(0.0, description="radial internal clearance: the whole play along a diameter")
+    clearance_class: Literal["C2", "CN", "C3", "C4", "C5"] | None = Field(
+        None,
+        description="class of ISO 5753-1 of a deep groove ball bearing, in place of the clearance: the middle of its range, "
+        "before fits and temperature take from it",
+    )
+    bore: PositiveLength | None = Field(None, description="bore of the inner ring, above 10 to 120 mm, for the class")
+    preload_displacement: NonNegativeLength = Field(
+        0.0,
+        description="how far an angular contact bearing is pressed together along its contact angle at assembly",
+    )
+    preload_force: Force = Field(0.0, description="axial force that presses it together, in place of that displacement")
+    contact_angle: Angle = Field(
+        0.0,
+        description="free contact angle of an angular contact ball bearing, or of the outer raceway of a tapered one; positive "
+        "where it takes a push towards +z",
+    )
+    arrangement: Literal["single", "O", "X", "tandem"] = Field(
+        "single",
+        description="two rows of angular contact or tapered bearings: O (back to back), X (face to face) or tandem; single: one",
+    )
+    row_distance: PositiveLength | None = Field(
+        None, description="distance of the middles of the two rows; the bearing stands half way between them"
+    )
+    slices: Whole | None = Field(
+        None,
+        description="slices of a roller over which its load varies as the rings tilt; default: 21 of a tapered one, 1 of a "
+        "cylindrical one, which then feels no tilt",
+    )
+    inner_groove: PositiveRatio = Field(0.52, description="groove radius of the inner ring over the ball's diameter")
+    outer_groove: PositiveRatio = Field(0.53, description="groove radius of the outer ring over the ball's diameter")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_designation(cls, data: Any) -> Any:
+        """Fill what a designation tells, where it is not given."""
+        if not isinstance(data, dict) or not isinstance(data.get("designation"), str):
+            return data
+        known = inner_geometry(data["designation"])
+        if known is None:
+            raise refuse(f"a designation of the series {SERIES}; or leave it out and give kind, elements and diameters")
+        given = {key: value for key, value in data.items() if value is not None}
+        return {**known.keys, **given}
+
+    @property
+    def play(self) -> float | None:
+        """The clearance, where it has one."""
+        return self.clearance or None
+
+    @property
+    def estimate(self) -> str:
+        """Where its elements follow from its boundary dimensions."""
+        known = inner_geometry(self.designation or "")
+        if known is None or not known.estimated:
+            return ""
+        return (
+            f"{self.elements} elements of {1e3 * self.element_diameter:.4g} mm on {1e3 * self.pitch_diameter:.4g} mm in a "
+            f"{self.designation} are {known.source}, because no maker prints them: stiffness and loads are an order of size; "
+            "give elements and diameters where you know them"
+        )
+
+    def law(self, ratio: float, sense: float, linear: Sequence[float]) -> ForceLaw:
+        """Hertz contacts of its balls or rollers; loads of slices vary along their roller."""
+        import numpy as np
+
+        # Elements that roll without slip between a turning inner ring and a still outer one: the cage turns at
+        # (1 - D_w cos(alpha) / D_pw) / 2 of the shaft.
+        slip_free = 0.5 * (1.0 - self.element_diameter * np.cos(self.contact_angle) / self.pitch_diameter)
+        own: dict[str, Any] = {
+            "clearance": self.clearance,
+            "order": float(ratio * slip_free),
+            "pitch_diameter": self.pitch_diameter,
+            "reference": tuple(linear[:2]),
+        }
+        if self.kind in ("roller", "tapered"):
+            own |= {"rollers": self.elements, "length": self.length or 0.0, "roller_diameter": self.element_diameter}
+        if self.kind == "roller" and (self.slices or 1) == 1:
+            from rotorgear.forces.roller_bearing import RollerBearing
+
+            return RollerBearing(**own)
+        own |= {"contact_angle": self.contact_angle, "row_distance": self.row_distance or 0.0}
+        arrangement = "four-point" if self.kind == "four-point" else self.arrangement
+        own |= {"reference": tuple(linear[:5]), "arrangement": arrangement}
+        law: BallBearing | SlicedRollers | TaperedBearing
+        if self.kind in ("roller", "tapered"):
+            from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
+
+            own |= {"preload": self.preload_displacement, "slices": self.slices or 21}
+            law = (TaperedBearing if self.kind == "tapered" else SlicedRollers)(**own)
+        else:
+            from rotorgear.forces.ball_bearing import BallBearing
+
+            if self.clearance_class is not None and self.bore is not None:
+                own["clearance"] = 0.5 * sum(class_clearance(self.bore, self.clearance_class) or (0.0, 0.0))
+            side = -1.0 if self.contact_angle < 0.0 else 1.0
+            law = BallBearing(
+                **own,
+                balls=self.elements,
+                ball_diameter=self.element_diameter,
+                inner_groove=self.inner_groove,
+                outer_groove=self.outer_groove,
+                preload=side * self.preload_displacement,
+            )
+        return law.pressed_by(self.preload_force) if self.preload_force else law
+
+    def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
+        """Rolling elements that fit into their bearing, beside a stiffness that the linear analyses take."""
+        stiffness = beside.get("stiffness")
+        if "table" in beside or (stiffness and stiffness.given & {"matrix", "xy", "yx"}):
+            wanted = "stiffness along x, y, axial and tilt beside them"
+            yield Problem(here, "rolling elements beside a table or cross terms", wanted)
+        if self.elements < 3:
+            yield Problem(f"{here}.elements", str(self.elements), "at least 3")
+        if self.elements * self.element_diameter > math.pi * self.pitch_diameter:
+            text = f"{self.elements} of {millimetres(self.element_diameter)}"
+            wanted = f"elements that fit on a circle of {millimetres(self.pitch_diameter)}"
+            yield Problem(f"{here}.element_diameter", text, wanted)
+        rollers = self.kind in ("roller", "tapered")
+        known = inner_geometry(self.designation or "")
+        for key, value in known.keys.items() if known is not None else ():
+            given = getattr(self, key)
+            same = given == value or (isinstance(given, float) and math.isclose(given, value))
+            if key != "contact_angle" and not same:
+                wanted = f"{value if key == 'kind' else f'{value:.6g}'} as {self.designation} has it, or no designation"
+                yield Problem(f"{here}.{key}", f"{given} beside designation = '{self.designation}'", wanted)
+        if rollers != (self.length is not None):
+            got = "a roller without length" if rollers else "a length of balls"
+            yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
+        if self.kind == "roller" and self.contact_angle:
+            yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
+        yield from self._rows(here)
+        yield from self._fit(here)
+        for key in ("inner_groove", "outer_groove"):
+            if getattr(self, key) <= 0.5:
+                wanted = "more than 0.5: a groove is wider than its ball"
+                yield Problem(f"{here}.{key}", f"{getattr(self, key):g}", wanted)
+        if not abs(self.contact_angle) < 1.4:
+            angle = f"{math.degrees(self.contact_angle):.6g} deg"
+            yield Problem(f"{here}.contact_angle", angle, "an angle below 80 deg")
+        reach = 2.0 * (self.inner_groove + self.outer_groove - 1.0) * self.element_diameter
+        if not rollers and reach > 0.0 and self.clearance >= reach * math.cos(self.contact_angle):
+            wanted = f"less than {millimetres(reach)}: the balls would fall out"
+            yield Problem(f"{here}.clearance", millimetres(self.clearance), wanted)
+
+    def _rows(self, here: str) -> Iterator[Problem]:
+        """Rows with the contact angle that makes them press, and slices of rollers."""
+        if self.kind in ("tapered", "four-point") and not self.contact_angle:
+            wanted = f"an angle of a {self.kind} bearing, such as '15 deg' or '35 deg'"
+            yield Problem(f"{here}.contact_angle", "0", wanted)
+        pair = self.arrangement != "single"
+        if pair and (self.kind not in ("ball", "tapered") or not self.contact_angle):
+            wanted = "a pair of angular contact ball or tapered roller bearings, with their contact_angle"
+            got = f"{self.arrangement} of a {self.kind} bearing without an angle"
+            yield Problem(f"{here}.arrangement", got, wanted)
+        if (pair or self.kind == "four-point") and self.contact_angle < 0.0:
+            angle = f"{math.degrees(self.contact_angle):.6g} deg"
+            yield Problem(f"{here}.contact_angle", angle, "a positive angle: the arrangement has the sides")
+        if pair != (self.row_distance is not None):
+            got = "a pair without a distance" if pair else "a distance of one row"
+            wanted = "the distance of the two rows beside an arrangement O, X or tandem"
+            yield Problem(f"{here}.row_distance", got, wanted)
+        if self.slices is not None and not (self.kind in ("roller", "tapered") and 1 <= self.slices <= 200):
+            yield Problem(f"{here}.slices", f"{self.slices} of a {self.kind} bearing", "1 to 200 slices of a roller")
+
+    def _fit(self, here: str) -> Iterator[Problem]:
+        """A clearance class with its bore, and a preload of a bearing that can take one."""
+        if self.clearance_class is not None:
+            if self.kind != "ball" or self.contact_angle or self.clearance:
+                wanted = "the class of a deep groove ball bearing alone, or a clearance"
+                yield Problem(f"{here}.clearance_class", self.clearance_class, wanted)
+            if self.bore is None or class_clearance(self.bore, self.clearance_class) is None:
+                got = "no bore" if self.bore is None else millimetres(self.bore)
+                yield Problem(f"{here}.bore", got, "a bore above 10 to 120 mm, which the table of classes has")
+        elif self.bore is not None:
+            yield Problem(f"{here}.bore", millimetres(self.bore), "a clearance_class beside it, which it is for")
+        if (self.preload_displacement or self.preload_force) and not self.contact_angle:
+            yield Problem(here, "a preload without a contact angle", "a contact_angle, along which it presses")
+        if self.preload_displacement and self.preload_force:
+            yield Problem(here, "preload_displacement and preload_force", "one of the two")
+
+    def judged(self) -> Iterator[Judged]:
+        """Clearance, preload, number and length of rolling elements against their diameter."""
+        size = self.element_diameter
+        for key, most in (("clearance", _CLEARANCE), ("preload_displacement", _PRESSED)):
+            value = getattr(self, key)
+            words = (f"{value:.4g} m", f"up to {most:g} of the diameter of an element")
+            yield key, value, (0.0, most * size), words, ("", "um meant?")
+        filled = self.elements * size / (math.pi * self.pitch_diameter)
+        words = (f"{size:.4g} m, of which {self.elements} fill {filled:.2g} of their circle", "0.15 to 1 of it")
+        yield "element_diameter", filled, _FILLED, words, ("is its unit right?", "is its unit right?")
+        pressure = self.preload_force / (self.elements * size**2)
+        squares = f"{1e-6 * pressure:.3g} MPa on the squares of the diameters"
+        words = (f"{self.preload_force:.4g} N, {squares}", "up to 300 MPa")
+        yield "preload_force", pressure, (0.0, _PRELOAD), words, ("", "is its unit right?")
+        if self.length is not None:
+            words = (f"{self.length:.4g} m, {self.length / size:.3g} diameters", f"{_LONG[0]:g} to {_LONG[1]:g}")
+            yield "length", self.length / size, _LONG, words, ("is its unit right?", "mm meant?")
