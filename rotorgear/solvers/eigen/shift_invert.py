@@ -32,6 +32,7 @@ _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes
 # Highest eigenvalue / |sigma| from which modes in the middle are rounding to both dense solvers, of 16 digits each: the whole
 # space is then handed on, and the Jacobi iteration on strains (ritz.py) tells its modes apart.
 _TOO_FAR_FOR_TWO = 1e26
+_NEAR = 100.0 * EPS  # rounding of neighbouring eigenvalues, each less sigma, where both are near sigma
 Modes = tuple[np.ndarray, np.ndarray]
 
 
@@ -232,6 +233,11 @@ def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.
 
     if high[-1] > _TOO_FAR_FOR_TWO * -sigma:
         return follow
-    # Each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean.
-    split = int(np.count_nonzero(values < np.sqrt(-sigma * high[-1])))
+    # Each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean. Modes that lie as near to
+    # each other there as these errors are mixed in another way by each, and come all from one.
+    far = np.sqrt(max(high[-1] / -sigma, 0.0))
+    split = int(np.count_nonzero(values < far * -sigma))
+    near = _NEAR * max(far, 1.0)
+    while 0 < split < values.size and values[split] - values[split - 1] <= near * (values[split] - sigma):
+        split -= 1
     return np.hstack([V[:, :split], (follow @ condensed)[:, split:]])
