@@ -28,6 +28,7 @@ CONTACT_STEPS = 20
 _ALL_MODES = 900
 MOST_STEPS = 200_000_000
 _LEAST_RECORDS = 4
+_SHORT = 1e-9  # s
 
 
 @dataclass(frozen=True)
@@ -183,11 +184,12 @@ def integrator_of(
         if method == "exponential" and not (modal_ratio or modes):
             candidate = Exponential()
             try:
-                candidate.prepare(local, 1e-6, float(local.rotation.speeds[0]))
+                # In steps so short that all contacts are among the modes: a step that is halved may come to that.
+                candidate.prepare(local, _SHORT, float(local.rotation.speeds[0]))
                 return candidate, reason
-            except ConvergenceError:
+            except ConvergenceError as error:
                 method = "newmark"
-                reason = "the complex modes lie too near to each other for the exponential method"
+                reason = f"not exponential: {str(error).partition(';')[0]}"
     if modal_ratio and method != "exponential":
         raise AnalysisError(
             "damping.modal_ratio acts on modes: only the exponential method at constant speed can take it"

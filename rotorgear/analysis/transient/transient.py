@@ -226,7 +226,7 @@ def _result(
         ),
     )
     notes = transient_warnings(
-        result, task.rest, task.rest_force, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy
+        result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy
     )
     if result.status == "success":
         notes += unbalanced(found, task, errors[: 3 * len(meshes) : 3])

@@ -18,6 +18,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.solvers.time.arguments import (
     Compliance,
     Motion,
@@ -31,6 +32,9 @@ from rotorgear.solvers.time.arguments import (
     Weights,
 )
 from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
+
+# Share of the stiffness of its contacts that a dof without inertia has as a damper over a step.
+_FELT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,18 @@ class Newmark:
         return NewmarkStepper(self, system, h, speed, tolerance)
 
 
+def _held_by_contacts(system: LocalSystem) -> np.ndarray:
+    """Share (n,) of the stiffness of contacts on dofs without inertia, where nothing but contacts holds such dofs.
+
+    Dampers of so much times the step hold them where no contact does, and where one does, they are too weak to be felt.
+    """
+    try:
+        check_pencil(system.M, sp.csc_array(0.5 * (system.K + system.K.T)))
+    except LooseDofError:
+        return np.where(system.M.diagonal() > 0.0, 0.0, _FELT * system.stiffness_about.diagonal())
+    return np.zeros(system.n)
+
+
 class NewmarkStepper:
     """The method made ready for one system, step and speed."""
 
@@ -100,7 +116,7 @@ class NewmarkStepper:
         af = method.alpha_f
         beta = method.beta
         gamma = method.gamma
-        D = system.velocity_terms(speed)
+        D = system.velocity_terms(speed) + sp.diags_array(h * _held_by_contacts(system))
         S = sp.csc_array((1.0 - am) * system.M + (1.0 - af) * (gamma * h * D + beta * h**2 * system.K))
         factor = factor_general(S)
         B = system.B.toarray()
