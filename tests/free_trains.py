@@ -1,4 +1,4 @@
-"""Torsional trains at random that nothing holds: chains and split paths, couplings, bodies without inertia, all units of size."""
+"""Torsional trains that nothing holds: at random, and chains of given inertias with errors in all their meshes."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import rotorgear as rg
 
 
 def free_train(seed: int) -> rg.Model:
-    """A free train of 2 to 8 shafts whose inertias lie up to 1e4 apart, in units of length, mass and time 1e-3 to 1e3 times SI.
+    """A free train of 2 to 8 shafts whose inertias lie up to 1e4 apart, with lengths and masses of 1e-3 to 1e3 times the usual.
 
     One in three holds bodies without inertia, one in four a split path, one in four nothing that damps; one in five carries no
-    torque, and of the others one in four a torque that pulses.
+    torque, and of the others one in four a torque that pulses. Base radii go as teeth.
     """
     rng = np.random.default_rng(seed)
     length, mass = 10.0 ** rng.uniform(-3.0, 3.0, 2)
@@ -78,9 +78,60 @@ def free_train(seed: int) -> rg.Model:
         size = torque * mass * length**2
         if rng.random() < 0.25:
             text["loads"] = {
-                "drive": {"shaft": "s0", "at": "start", "kind": "input", "torque": size, "ripple": 0.3, "ripple_order": 2.0},
+                "drive": {
+                    "shaft": "s0",
+                    "at": "start",
+                    "kind": "input",
+                    "torque": size,
+                    "ripple": 0.3,
+                    "ripple_order": 2.0,
+                },
                 "brake": {"shaft": f"s{count - 1}", "at": "start", "kind": "output"},
             }
         else:
             text["operation"] |= {"output_shaft": f"s{count - 1}", "torque": size}
     return rg.Model.model_validate(text)
+
+
+def chain(inertias: list[float], mass: float = 1.0, **mesh: Any) -> rg.Model:
+    """Gears of 20, 30, 40 ... teeth in a row under 20 N m, with inertias in kg m^2, all times a factor of mass.
+
+    Each mesh has 2e8 N/m, 4e3 N s/m and an error of 1 um, all in phase; `mesh` changes that.
+    """
+    count = len(inertias)
+    gear = {"at": "start", "kind": "spur"}
+    common = {
+        "stiffness": 2e8 * mass,
+        "damping": 4e3 * mass,
+        "centre_line_angle": 0.0,
+        "pressure_angle": 0.349,
+        "phase": 0.0,
+        "transmission_error": [{"harmonic": 1, "amplitude": 1e-6}],
+    }
+    return rg.Model.model_validate(
+        {
+            "schema_version": 1,
+            "title": "Chain of gears",
+            "motions": ["torsion"],
+            "operation": {
+                "input_shaft": "s0",
+                "output_shaft": f"s{count - 1}",
+                "speed": 500.0,
+                "torque": 20.0 * mass,
+            },
+            "shafts": {f"s{i}": {} for i in range(count)},
+            "gears": {
+                f"g{i}": gear
+                | {
+                    "shaft": f"s{i}",
+                    "teeth": 20 + 10 * i,
+                    "base_radius": 1.5e-3 * (20 + 10 * i),
+                    "mass": 1e3 * J * mass,
+                    "polar_inertia": J * mass,
+                    "diametral_inertia": 0.5 * J * mass,
+                }
+                for i, J in enumerate(inertias)
+            },
+            "meshes": {f"m{i}": common | {"pinion": f"g{i}", "gear": f"g{i + 1}"} | mesh for i in range(count - 1)},
+        }
+    )

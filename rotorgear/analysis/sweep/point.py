@@ -82,14 +82,14 @@ class Point:
 
 @dataclass(frozen=True)
 class Still:
-    """What of a point does not depend on its speed: local system, orders, names of contacts, state at rest, whether loads push."""
+    """What of a point does not depend on its speed: local system, orders, names of contacts, state at rest, whether it drifts."""
 
     local: LocalSystem
     orders: list[Fraction]
     contact: tuple[str, ...]
     rest: Equilibrium
     static: np.ndarray
-    pushed: bool
+    drifts: bool
     shapes: Shapes | None = None
 
 
@@ -230,7 +230,7 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
         local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
     # What the drive carries stays at its speed, whatever pushes on it.
-    drifts = len(system.carried) < len(system.rigid) and known.pushed
+    drifts = len(system.carried) < len(system.rigid) and known.drifts
     shape = b"".join(law.table_key() for law in laws)
     counted = columns.counted
     return Point(

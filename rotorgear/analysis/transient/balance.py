@@ -41,8 +41,8 @@ def unbalanced(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ..
     light = np.where(mass > 0.0, 0.0, stiffness / (fastest or 1.0))
     try:
         A = free_motions(sp.csc_array(local.M + sp.diags_array(light)), local.K).T @ local.B.toarray()
-    except RotorgearError as error:
-        return (f"mean contact forces are not compared with statics: {error}",)
+    except RotorgearError as refusal:
+        return (f"mean contact forces are not compared with statics: {refusal}",)
     _, size, V = np.linalg.svd(A, full_matrices=False)
     seen = V[size > _SEEN * size.max(initial=0.0)]
     off = seen.T @ (seen @ (force.mean - task.rest_force))

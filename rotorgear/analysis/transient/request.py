@@ -14,7 +14,7 @@ from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, contact_rates
 from rotorgear.solvers.time.motion import Rotation
-from rotorgear.solvers.time.newmark import Newmark
+from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
 from rotorgear.system.system import System
 
 METHODS = ("auto", "newmark", "hht", "generalised-alpha", "exponential", "explicit")
@@ -214,6 +214,9 @@ def _chosen(local: LocalSystem, steps: int, modal_ratio: float, modes: int | Non
     if not local.rotation.is_constant and gyroscopic:
         return "newmark", "the speed changes, and with it the gyroscopic terms"
     if np.any(local.M.diagonal() <= 0.0):
+        if held_by_contacts(local):
+            # Without inertia, Newmark's rule lets what meets and parts swing from step to step.
+            return "generalised-alpha", "nothing but contacts holds a degree of freedom without inertia"
         return "newmark", "a degree of freedom has no inertia"
     if modal_ratio or modes is not None:
         return "exponential", "damping by modes" if modal_ratio else "a number of modes was asked for"

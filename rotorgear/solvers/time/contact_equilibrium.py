@@ -99,7 +99,9 @@ def unbalanced(system: LocalSystem, R: np.ndarray, force: np.ndarray | None = No
     if not R.shape[1]:
         return False
     if force is None:
-        force = local_tangent(replace(system, forces=gather(tuple(law.mean() for law in system.forces.laws))), np.zeros(system.m), 0.0)[0]
+        force = local_tangent(
+            replace(system, forces=gather(tuple(law.mean() for law in system.forces.laws))), np.zeros(system.m), 0.0
+        )[0]
     units = in_comparable_units(np.ones((system.n, 1)), system.stiffness_about, system.M)
     motions = R * units
     motions = motions @ np.linalg.inv(motions[support_dofs(motions)])

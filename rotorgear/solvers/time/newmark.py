@@ -33,8 +33,8 @@ from rotorgear.solvers.time.arguments import (
 )
 from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
 
-# Share of the stiffness of its contacts that a dof without inertia has as a damper over a step.
-_FELT = 1e-6
+# Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
+_FELT = 1e-5
 
 
 @dataclass(frozen=True)
@@ -93,16 +93,13 @@ class Newmark:
         return NewmarkStepper(self, system, h, speed, tolerance)
 
 
-def _held_by_contacts(system: LocalSystem) -> np.ndarray:
-    """Share (n,) of the stiffness of contacts on dofs without inertia, where nothing but contacts holds such dofs.
-
-    Dampers of so much times the step hold them where no contact does, and where one does, they are too weak to be felt.
-    """
+def held_by_contacts(system: LocalSystem) -> bool:
+    """Whether nothing but contacts holds some dofs without inertia."""
     try:
         check_pencil(system.M, sp.csc_array(0.5 * (system.K + system.K.T)))
     except LooseDofError:
-        return np.where(system.M.diagonal() > 0.0, 0.0, _FELT * system.stiffness_about.diagonal())
-    return np.zeros(system.n)
+        return True
+    return False
 
 
 class NewmarkStepper:
@@ -116,7 +113,11 @@ class NewmarkStepper:
         af = method.alpha_f
         beta = method.beta
         gamma = method.gamma
-        D = system.velocity_terms(speed) + sp.diags_array(h * _held_by_contacts(system))
+        D = system.velocity_terms(speed)
+        if held_by_contacts(system):
+            # Dampers to ground hold such dofs where no contact does; where one does, over a step they are too weak to be felt.
+            light = np.where(system.M.diagonal() > 0.0, 0.0, _FELT)
+            D = D + sp.diags_array(light * (h * system.stiffness_about + system.damping_about).diagonal())
         S = sp.csc_array((1.0 - am) * system.M + (1.0 - af) * (gamma * h * D + beta * h**2 * system.K))
         factor = factor_general(S)
         B = system.B.toarray()
