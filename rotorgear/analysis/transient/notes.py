@@ -122,7 +122,8 @@ def transient_warnings(
             )
     if not rest.converged:
         notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
-    notes += adrift(rest, local)
+    drift = adrift(rest, local)
+    notes += drift
     damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
     if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
         notes.append(
@@ -146,7 +147,7 @@ def transient_warnings(
         )
     fastest = float(np.abs(result.speed).max(initial=0.0))
     notes += time_warnings(local.system.model, local.local.forces.laws, fastest)
-    notes += [*_beyond_maps(result, local), *_drifting(result), *_unsettled(result)]
+    notes += [*_beyond_maps(result, local), *([] if drift else _off_speed(result)), *_unsettled(result)]
     return tuple(notes)
 
 
@@ -180,7 +181,7 @@ def _beyond_maps(result: TransientResult, local: LocalModel) -> list[str]:
     return notes
 
 
-def _drifting(result: TransientResult) -> list[str]:
+def _off_speed(result: TransientResult) -> list[str]:
     """Compare the speed of each gear at the end with the prescribed one."""
     train = result.model.layout.train
     worst = 0.0
@@ -198,8 +199,7 @@ def _drifting(result: TransientResult) -> list[str]:
     if worst <= _DRIFT:
         return []
     return [
-        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed: the torques do not balance "
-        "there; mesh phases and gyroscopic terms keep to the prescribed speed"
+        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed, to which mesh phases and gyroscopic terms keep"
     ]
 
 

@@ -21,7 +21,7 @@ def test_two_hundred_random_free_trains_are_answered_and_keep_their_momentum(fir
         run = rg.transient(model, time=2e-3, discard=0.0, steps=100, error_estimate=False)
         assert run.status == "success", seed
         assert np.all(np.isfinite(run.mesh_force)), seed
-        assert not any(DRIFT in text and "free motion" in text for text in run.warnings), seed
+        assert not any(DRIFT in text for text in run.warnings), seed
         if model.loads:
             continue
         # With base radii as teeth, the one motion without strain turns each shaft by its ratio.
