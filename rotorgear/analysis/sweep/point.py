@@ -19,7 +19,7 @@ from rotorgear.model.model import Model
 from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Columns
 from rotorgear.solvers.lanes.own_laws import own_laws
 from rotorgear.solvers.lanes.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces, unbalanced
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
@@ -81,13 +81,14 @@ class Point:
 
 @dataclass(frozen=True)
 class Still:
-    """What of a point does not depend on its speed: the local system, orders, names of contacts, and the state at rest."""
+    """What of a point does not depend on its speed: local system, orders, names of contacts, state at rest, whether it drifts."""
 
     local: LocalSystem
     orders: list[Fraction]
     contact: tuple[str, ...]
     rest: Equilibrium
     static: np.ndarray
+    drifts: bool
     shapes: Shapes | None = None
 
 
@@ -206,7 +207,7 @@ def still(
     if not np.all(np.isfinite(static)):
         # Contacts that are open at rest: what the driving flanks alone would carry.
         static = local.forces.reference_stiffness @ (local.B.T @ rest.q)
-    return Still(local, orders, contact, rest, static)
+    return Still(local, orders, contact, rest, static, unbalanced(local, rest.free))
 
 
 def ready_reduced(point: Large, reduced: Reduced) -> Point:
@@ -226,14 +227,8 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     system = small_system(
         local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
-    # On average: a torque that pulses, or friction, pushes at any time.
-    acting = np.abs(local.load) + abs(local.B) @ np.abs(known.static)
-    drift = known.rest.free.T @ (local.load - local.B @ known.static)
     # What the drive carries stays at its speed, whatever pushes on it.
-    drifts = bool(
-        len(system.carried) < len(system.rigid)
-        and np.abs(drift).max(initial=0.0) > 1e-6 * float(np.linalg.norm(np.abs(known.rest.free.T) @ acting))
-    )
+    drifts = len(system.carried) < len(system.rigid) and known.drifts
     shape = b"".join(law.table_key() for law in laws)
     counted = columns.counted
     return Point(

@@ -9,7 +9,7 @@ from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_o
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.motion.transient import TransientResult
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, unbalanced
 from rotorgear.system.local import LocalModel
 
 # Numerical share of the energy above which a run is warned about.
@@ -92,29 +92,21 @@ def _excites_nothing(local: LocalModel, name: str) -> bool:
     return all(law.steady for law in laws)
 
 
-def _adrift(rest: Equilibrium, rest_force: np.ndarray, local: LocalModel) -> list[str]:
+def adrift(rest: Equilibrium, local: LocalModel) -> list[str]:
     """Whether the loads do not balance on a free motion, on average over what pulses, and what friction has to do with it."""
-    system = local.local
-    if not rest.free.shape[1]:
-        return []
-    known = bool(np.all(np.isfinite(rest_force)))
-    mean = rest.free.T @ (system.load - system.B @ rest_force) if known else rest.drift
-    acting = np.abs(system.load) + abs(system.B) @ np.abs(rest_force if known else rest.force)
-    bound = 1e-9 * max(float(np.linalg.norm(np.abs(rest.free.T) @ acting)), 1e-300)
     rubbing = [name for name, mesh in local.system.model.meshes.items() if mesh.rubs]
     text = "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
-    if rubbing and np.abs(rest.drift).max(initial=0.0) > bound:
+    if rubbing and unbalanced(local.local, rest.free, rest.force):
         return [
             f"{text}; friction in {', '.join(rubbing)} takes power that the torques do not give: with speed_power in a load the "
             "shafts settle where they balance, and sweep keeps their speed"
         ]
-    return [text] if np.abs(mean).max(initial=0.0) > bound else []
+    return [text] if unbalanced(local.local, rest.free) else []
 
 
 def transient_warnings(
     result: TransientResult,
     rest: Equilibrium,
-    rest_force: np.ndarray,
     local: LocalModel,
     *,
     estimated: bool,
@@ -130,7 +122,8 @@ def transient_warnings(
             )
     if not rest.converged:
         notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
-    notes += _adrift(rest, rest_force, local)
+    drift = adrift(rest, local)
+    notes += drift
     damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
     if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
         notes.append(
@@ -154,7 +147,7 @@ def transient_warnings(
         )
     fastest = float(np.abs(result.speed).max(initial=0.0))
     notes += time_warnings(local.system.model, local.local.forces.laws, fastest)
-    notes += [*_beyond_maps(result, local), *_drifting(result), *_unsettled(result)]
+    notes += [*_beyond_maps(result, local), *([] if drift else _off_speed(result)), *_unsettled(result)]
     return tuple(notes)
 
 
@@ -188,7 +181,7 @@ def _beyond_maps(result: TransientResult, local: LocalModel) -> list[str]:
     return notes
 
 
-def _drifting(result: TransientResult) -> list[str]:
+def _off_speed(result: TransientResult) -> list[str]:
     """Compare the speed of each gear at the end with the prescribed one."""
     train = result.model.layout.train
     worst = 0.0
@@ -206,8 +199,7 @@ def _drifting(result: TransientResult) -> list[str]:
     if worst <= _DRIFT:
         return []
     return [
-        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed: the torques do not balance "
-        "there; mesh phases and gyroscopic terms keep to the prescribed speed"
+        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed, to which mesh phases and gyroscopic terms keep"
     ]
 
 

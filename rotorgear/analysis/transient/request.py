@@ -14,7 +14,7 @@ from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, contact_rates
 from rotorgear.solvers.time.motion import Rotation
-from rotorgear.solvers.time.newmark import Newmark
+from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
 from rotorgear.system.system import System
 
 METHODS = ("auto", "newmark", "hht", "generalised-alpha", "exponential", "explicit")
@@ -28,6 +28,7 @@ CONTACT_STEPS = 20
 _ALL_MODES = 900
 MOST_STEPS = 200_000_000
 _LEAST_RECORDS = 4
+_SHORT = 1e-9  # s
 
 
 @dataclass(frozen=True)
@@ -183,11 +184,12 @@ def integrator_of(
         if method == "exponential" and not (modal_ratio or modes):
             candidate = Exponential()
             try:
-                candidate.prepare(local, 1e-6, float(local.rotation.speeds[0]))
+                # In steps so short that all contacts are among the modes: a step that is halved may come to that.
+                candidate.prepare(local, _SHORT, float(local.rotation.speeds[0]))
                 return candidate, reason
-            except ConvergenceError:
+            except ConvergenceError as error:
                 method = "newmark"
-                reason = "the complex modes lie too near to each other for the exponential method"
+                reason = f"not exponential: {str(error).partition(';')[0]}"
     if modal_ratio and method != "exponential":
         raise AnalysisError(
             "damping.modal_ratio acts on modes: only the exponential method at constant speed can take it"
@@ -212,6 +214,9 @@ def _chosen(local: LocalSystem, steps: int, modal_ratio: float, modes: int | Non
     if not local.rotation.is_constant and gyroscopic:
         return "newmark", "the speed changes, and with it the gyroscopic terms"
     if np.any(local.M.diagonal() <= 0.0):
+        if held_by_contacts(local):
+            # Without inertia, Newmark's rule lets what meets and parts swing from step to step.
+            return "generalised-alpha", "nothing but contacts holds a degree of freedom without inertia"
         return "newmark", "a degree of freedom has no inertia"
     if modal_ratio or modes is not None:
         return "exponential", "damping by modes" if modal_ratio else "a number of modes was asked for"

@@ -36,14 +36,6 @@ class Task:
     frequencies: dict[str, float]
     largest: float
 
-    @property
-    def drifts(self) -> bool:
-        """Whether the loads don't balance on a motion that nothing holds."""
-        drift = self.rest.drift
-        return bool(
-            drift.size and np.abs(drift).max() > 1e-9 * max(float(np.linalg.norm(self.local.local.load)), 1e-300)
-        )
-
 
 def prepare(
     model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None

@@ -225,9 +225,7 @@ def _result(
             *mean_torsion_notes(task.local.system, task.largest),
         ),
     )
-    notes = transient_warnings(
-        result, task.rest, task.rest_force, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy
-    )
+    notes = transient_warnings(result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy)
     if result.status == "success":
         notes += unbalanced(found, task, errors[: 3 * len(meshes) : 3])
     return replace(result, warnings=notes)

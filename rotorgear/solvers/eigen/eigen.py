@@ -229,7 +229,7 @@ def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
     noise = candidates.noise
     # With all finite modes at hand any shift above the last one is in a gap.
     if values.size == candidates.finite:
-        values = np.append(values, max(4.0 * values[-1], 1e3 * noise[-1]))
+        values = np.append(values, max(4.0 * values[-1], 1e3 * noise.max()))
         noise = np.append(noise, 0.0)
     first = max(keep, 1)
     above = values[first:]

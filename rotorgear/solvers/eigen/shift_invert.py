@@ -32,6 +32,7 @@ _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes
 # Highest eigenvalue / |sigma| from which modes in the middle are rounding to both dense solvers, of 16 digits each: the whole
 # space is then handed on, and the Jacobi iteration on strains (ritz.py) tells its modes apart.
 _TOO_FAR_FOR_TWO = 1e26
+_NEAR = 100.0  # neighbouring eigenvalues are apart by so many times their rounding, or count as equal
 Modes = tuple[np.ndarray, np.ndarray]
 
 
@@ -125,7 +126,8 @@ def _first_elastic(operator: ShiftInvert) -> float | None:
         values, Y, residuals = operator.ritz(krylov.size)
         noise = 1e2 * rounding_noise(operator.size_K, krylov.basis @ Y, operator.sigma)
         noise += residuals * (values - operator.sigma)  # an eigenvalue lies within the residual of each Ritz value
-        if np.any(values < -10.0 * noise):
+        # What is rigid is mixed as rounding will have it.
+        if np.any(values < -10.0 * noise[values <= noise].max(initial=0.0)):
             raise unstable(float(values.min()))
         if np.any(values > noise):
             return float(values[values > noise].min())
@@ -232,6 +234,11 @@ def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.
 
     if high[-1] > _TOO_FAR_FOR_TWO * -sigma:
         return follow
-    # Each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean.
-    split = int(np.count_nonzero(values < np.sqrt(-sigma * high[-1])))
+    # Each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean. Modes that lie as near to
+    # each other there as these errors are mixed in another way by each, and come all from one.
+    far = np.sqrt(max(high[-1] / -sigma, 0.0))
+    split = int(np.count_nonzero(values < far * -sigma))
+    near = _NEAR * (rounding_noise(operator.size_K, V, sigma) + EPS * far * (values - sigma))
+    while 0 < split < values.size and values[split] - values[split - 1] <= near[split - 1 : split + 1].max():
+        split -= 1
     return np.hstack([V[:, :split], (follow @ condensed)[:, split:]])

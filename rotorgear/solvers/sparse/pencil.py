@@ -20,6 +20,7 @@ _SYMMETRY = 1e-9  # an entry may differ from its mirror image by this share of s
 _LIFT = 4.0 * EPS  # added to diagonals, relative to them, so that an exactly zero pivot shows as a tiny one
 _ZERO_PIVOT = 100.0 * EPS  # pivots below this share of the diagonal are rounding
 _DENSE_UP_TO = 250  # unknowns up to which all eigenvalues of one matrix cost milliseconds
+_SURE = 1e-12  # eigenvalues of a matrix with rows of size 1 above this have the sign that they show
 _ACCURATE = 1e-9  # backward error of a solve up to which the pivots' signs are believed
 # Columns that are taken together of a matrix too tall for the cache, and the entries that it holds.
 _FEW_COLUMNS = 8
@@ -120,7 +121,9 @@ def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:
         if solve_error(A, factor) < _ACCURATE:
             return factor.negative_count()
     if K.shape[0] <= _DENSE_UP_TO:
-        inertia = np.linalg.eigvalsh((K - shift * M).toarray())
-        if np.abs(inertia).min() > _ACCURATE * np.abs(inertia).max():
-            return int(np.count_nonzero(inertia < 0.0))
+        # Scaling the dofs leaves the signs (Sylvester), and makes rounding relative to the stiffness and inertia of each.
+        size = np.sqrt(np.abs(K.diagonal()) + abs(shift) * M.diagonal())
+        signs = np.linalg.eigvalsh((K - shift * M).toarray() / size / size[:, None])
+        if np.abs(signs).min() > _SURE:
+            return int(np.count_nonzero(signs < 0.0))
     raise ConvergenceError(f"No accurate factors of K - {shift:.6g} M: the shift lies in a cluster of eigenvalues.")

@@ -13,9 +13,14 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.sparse.newton import settle
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space, support_dofs
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, local_tangent
+
+# What of the loads on a free motion may be left, relative to the sum of their absolute parts: torques come with six digits.
+_BALANCED = 1e-6
+# The same of all loads on a motion that they hardly touch: rounding of the motion.
+_TOUCHED = 1e-8
 
 
 @dataclass(frozen=True)
@@ -26,14 +31,12 @@ class Equilibrium:
         q: displacements (n,), M-orthogonal to the free motions.
         converged: whether all local forces are in equilibrium there; if not, q is that with the reference stiffness.
         free: R (n, r), M-orthonormal motions without stiffness.
-        drift: (r,) acceleration of each free motion under the loads, 0 where they balance.
         force: (m,) local forces; of stiff laws, with more digits than their displacements among q would give.
     """
 
     q: np.ndarray
     converged: bool
     free: np.ndarray
-    drift: np.ndarray
     force: np.ndarray
 
 
@@ -66,9 +69,9 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
     k = forces.reference_stiffness
     found = settle(np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), extents=forces.extents)
     if not found.converged:
-        return Equilibrium(q0, False, R, R.T @ system.load, found.force)
+        return Equilibrium(q0, False, R, found.force)
     q = q0 + X @ (k @ found.d - found.force)
-    return Equilibrium(q, True, R, R.T @ (system.load - B @ found.force), found.force)
+    return Equilibrium(q, True, R, found.force)
 
 
 def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
@@ -80,3 +83,30 @@ def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarr
     forces = replace(gather(laws), reference_stiffness=system.forces.reference_stiffness)
     rest = equilibrium(replace(system, forces=forces), free)
     return rest.force if rest.converged else np.full(system.m, np.nan)
+
+
+def unbalanced(system: LocalSystem, R: np.ndarray, force: np.ndarray | None = None) -> bool:
+    """Whether loads push a motion that nothing holds: the one criterion, of all analyses in time.
+
+    Each motion moves one body by 1, and what has to follow; the work of the loads on it is compared with the sum of its
+    absolute parts. Where no load meets a motion, it balances. Local forces with a reference stiffness are inner ones.
+
+    Args:
+        system: with its loads.
+        R: (n, r), a basis of its motions without strain.
+        force: (m,), local forces; None: the mean ones, of what pulses in time its mean.
+    """
+    if not R.shape[1]:
+        return False
+    if force is None:
+        force = local_tangent(
+            replace(system, forces=gather(tuple(law.mean() for law in system.forces.laws))), np.zeros(system.m), 0.0
+        )[0]
+    units = in_comparable_units(np.ones((system.n, 1)), system.stiffness_about, system.M)
+    motions = R * units
+    motions = motions @ np.linalg.inv(motions[support_dofs(motions)])
+    outer = ~np.any(system.forces.reference_stiffness, axis=1)
+    loads = np.column_stack([system.load, -system.B[:, outer].toarray() * force[outer]]) / units
+    rounding = _TOUCHED * float(np.linalg.norm(loads))
+    work = np.abs((motions.T @ loads).sum(axis=1))
+    return bool(np.any(work > _BALANCED * (np.abs(motions.T) @ np.abs(loads)).sum(axis=1) + rounding))

@@ -18,6 +18,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.solvers.time.arguments import (
     Compliance,
     Motion,
@@ -31,6 +32,9 @@ from rotorgear.solvers.time.arguments import (
     Weights,
 )
 from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
+
+# Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
+_FELT = 1e-5
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,15 @@ class Newmark:
         return NewmarkStepper(self, system, h, speed, tolerance)
 
 
+def held_by_contacts(system: LocalSystem) -> bool:
+    """Whether nothing but contacts holds some dofs without inertia."""
+    try:
+        check_pencil(system.M, sp.csc_array(0.5 * (system.K + system.K.T)))
+    except LooseDofError:
+        return True
+    return False
+
+
 class NewmarkStepper:
     """The method made ready for one system, step and speed."""
 
@@ -101,6 +114,10 @@ class NewmarkStepper:
         beta = method.beta
         gamma = method.gamma
         D = system.velocity_terms(speed)
+        if held_by_contacts(system):
+            # Dampers to ground hold such dofs where no contact does; where one does, over a step they are too weak to be felt.
+            light = np.where(system.M.diagonal() > 0.0, 0.0, _FELT)
+            D = D + sp.diags_array(light * (h * system.stiffness_about + system.damping_about).diagonal())
         S = sp.csc_array((1.0 - am) * system.M + (1.0 - af) * (gamma * h * D + beta * h**2 * system.K))
         factor = factor_general(S)
         B = system.B.toarray()
