@@ -15,7 +15,7 @@ import numpy as np
 from rotorgear.analysis.transient.histories import Histories
 from rotorgear.analysis.transient.task import Task
 from rotorgear.solvers.time.contact_equilibrium import free_motions
-from rotorgear.solvers.time.gathered import StepStatistics
+from rotorgear.solvers.time.statistics import Statistics
 
 # Share of the static force that a mean may be off beside its error: what is left of a start, and incomplete periods.
 _SHARE = 0.01
@@ -26,10 +26,10 @@ _ROUNDING = 1e-6
 def unbalanced(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
     """Sentences on contacts whose mean force differs from statics by more than its error (c,)."""
     local = task.local.local
-    force = StepStatistics.of(found.state.gathered).chosen(slice(0, local.m))
+    force = Statistics.of_steps(found.state.gathered).chosen(slice(0, local.m))
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     known = np.all(np.isfinite(task.rest_force)) and task.rest.converged
-    if not (force.steps and meshes and known and local.rotation.is_constant and not task.drifts):
+    if not (np.all(np.isfinite(force.mean)) and meshes and known and local.rotation.is_constant and not task.drifts):
         return ()
     A = free_motions(local.M, local.K).T @ local.B.toarray()
     _, size, V = np.linalg.svd(A, full_matrices=False)
