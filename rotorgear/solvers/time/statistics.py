@@ -43,8 +43,9 @@ _DIVISIONS = 5
 _PEAKS = 4
 _ABOUT = 17
 _CLOSER = 3
-# Gauss's points on 0 to 1, of weight 1/2 each.
-_GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
+# Gauss's points on 0 to 1, and their weights.
+_GAUSS = 0.5 + 0.5 * np.sqrt(0.6) * np.array([-1.0, 0.0, 1.0])
+_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 # Forces (r, m) and sides of the laws (r, l) at times (r,), displacements and velocities (r, m).
 Laws = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -190,7 +191,7 @@ def over_period(curve: PeriodicCurve, laws: Laws) -> tuple[Statistics, np.ndarra
     breaks = np.unique(np.concatenate([instants, _switches(answer, instants, T / N, side), [T]]))
     long = np.diff(breaks)
     t = (breaks[:-1, None] + long[:, None] * _GAUSS).ravel()
-    weight = np.repeat(0.5 * long / T, _GAUSS.size)
+    weight = (long[:, None] / T * _WEIGHTS).ravel()
     between, side = answer(t)
     mean = weight @ between
     rms = np.sqrt(weight @ (between - mean) ** 2)
