@@ -47,4 +47,5 @@ def motion_statistics(orbit: Orbit, counted: np.ndarray) -> MotionStatistics:
         (sides / total).T,
         transmission_error,
         approach,
+        sums[k.LOSSES] / total,
     )

@@ -19,10 +19,6 @@ from rotorgear.solvers.time.statistics import (
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
-# Which side touches is known at the ends of steps only: both switches of a flight are off by up to half a step, evenly, and its
-# length by sqrt(1/12 + 1/12) of one.
-_COUNTED = 6.0**-0.5
-
 # Which statistics of both halves are compared: those of how far forces and flanks move. One impact makes a largest force.
 _OF_HALVES = [STATISTICS.index(what) for what in ("rms force", "transmission error", "approach")]
 
@@ -55,11 +51,13 @@ def of_meshes(found: Histories, task: Any) -> MotionStatistics:
     force = replace(force, least=np.minimum(force.least, last), largest=np.maximum(force.largest, last))
     moved = np.where(np.isfinite(found.state.extremes), found.state.extremes, np.nan)
     transverse = np.array([task.local.parts[i].transverse for i in meshes])
+    events = found.state.events[meshes] / (int(found.state.gathered.steps[0]) or np.nan)
     return MotionStatistics(
         force,
-        found.state.events[meshes, :3] / (int(found.state.gathered.steps[0]) or np.nan),
+        events[:, :3],
         moved[local.m : local.m + local.watched_vectors.shape[1]],
         moved[columns] / transverse[:, None],
+        events[:, 3],
     )
 
 
@@ -80,17 +78,11 @@ def judged(found: Histories, task: Any) -> Judged:
     units = np.array(task.channels.units)
     # A channel that hardly moves is measured on the largest of its kind.
     kind = [np.inf if still else float(rms[units == unit].max()) for unit in units]
-    counted = np.zeros(meshes.values.shape)
-    losses = found.state.events[[i for i, part in enumerate(task.local.parts) if part.is_mesh], 3]
-    shares = _COUNTED * losses / max(int(found.state.gathered.steps[0]), 1)
-    # A visit to the back side is between two flights.
-    counted[:, STATISTICS.index("contact loss")] = shares
-    counted[:, STATISTICS.index("coast contact")] = np.where(meshes.shares[:, 2] > 0.0, 0.5 * shares, 0.0)
     return Judged(
         (*names, *(f"rms {name}" for name in task.channels.names)),
         np.concatenate([meshes.values.ravel(), rms]),
         np.concatenate([meshes.scales.ravel(), kind]),
-        np.concatenate([counted.ravel(), np.zeros(rms.size)]),
+        np.concatenate([meshes.counted.ravel(), np.zeros(rms.size)]),
     )
 
 

@@ -36,6 +36,9 @@ _STILL = 1e-6
 # Roache's margin, for where sides meet and part and impacts begin and end an order holds in the mean only.
 # J. Fluids Eng. 116 (1994) 405.
 _MARGIN = 1.25
+# Which side touches is known at the ends of steps only: both switches of a flight are off by up to half a step, evenly, and its
+# length by sqrt(1/12 + 1/12) of one.
+_COUNTED = 6.0**-0.5
 # Parts of an interval in which a side changes, and how often it is divided: to 3e-8 of the interval.
 _PARTS = 32
 _DIVISIONS = 5
@@ -88,13 +91,15 @@ class Statistics:
 class MotionStatistics:
     """Of c contacts: their forces, shares of the time in front, apart and behind (c, 3), transmission error and approach (c, 2).
 
-    The last two are least and largest values, in m, of which the peak to peak is told.
+    The last two are least and largest values, in m, of which the peak to peak is told. `losses`: contact losses for each step
+    (c,), where shares are counted by steps; none where switches are found between them.
     """
 
     force: Statistics
     shares: np.ndarray
     transmission_error: np.ndarray
     approach: np.ndarray
+    losses: np.ndarray | None = None
 
     @property
     def values(self) -> np.ndarray:
@@ -118,6 +123,17 @@ class MotionStatistics:
         moved = [_own(np.ptp(x, axis=1), np.abs(x).max(axis=1)) for x in (self.transmission_error, self.approach)]
         whole = np.ones(size.size)
         return np.column_stack([size, _own(force.rms, size), *ends, whole, whole, *moved])
+
+    @property
+    def counted(self) -> np.ndarray:
+        """What counting by steps leaves of each statistic, (c, 8): of shares of flights, and of visits between two of them."""
+        found = np.zeros((len(self.shares), len(STATISTICS)))
+        if self.losses is not None:
+            found[:, STATISTICS.index("contact loss")] = _COUNTED * self.losses
+            found[:, STATISTICS.index("coast contact")] = (
+                np.where(self.shares[:, 2] > 0.0, 0.5, 0.0) * _COUNTED * self.losses
+            )
+        return found
 
 
 def _own(moved: np.ndarray, size: np.ndarray) -> np.ndarray:

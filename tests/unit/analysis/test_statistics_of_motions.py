@@ -100,6 +100,25 @@ def test_errors_of_a_transient_are_those_of_each_statistic(case: ImpactOscillato
     assert scale[-2:] == pytest.approx(value[-2:])
 
 
+def test_errors_of_a_sweep_are_those_of_each_statistic() -> None:
+    speeds = [SETTLING.speed(W) for W in (0.68, 0.7, 0.72)]
+    found = rg.sweep(SETTLING.model(), {"operation.speed": speeds}, discard=150, sample=40, steps=100)
+    assert found.statistic == STATISTICS
+    effectivity = []
+    for p, speed in enumerate(speeds):
+        assert found.motion_at(p) == "1T"
+        own = replace(SETTLING, W=SETTLING.W * speed / SETTLING.speed(SETTLING.W))
+        exact = own.exact(*found.section[p, 0, -1, 0])
+        told = found.points[p].runs[0].contacts[0]
+        value = [told.mean_force_n, told.rms_force_n, told.largest_force_n, np.nan, told.apart_share, told.back_share]
+        value += [told.peak_to_peak_transmission_error_m, told.peak_to_peak_approach_m]
+        error = np.abs(np.array(value) - exact)
+        judged = error > 1e-9 * np.maximum(np.abs(exact), 1e-300)
+        effectivity += list(told.statistics_error[judged] / error[judged])
+    assert min(effectivity) > 0.3
+    assert 0.5 < np.median(effectivity) < 5.0
+
+
 def _state(found: rg.TransientResult) -> tuple[float, float]:
     """d and v at the end, which is that of a period."""
     d = found.approach[:, 0]

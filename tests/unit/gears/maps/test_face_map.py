@@ -19,7 +19,8 @@ ALONE = ContactMap(
     error=2e-8,
 )
 FACE = FaceMap(
-    np.array([-1e-4, 3e-4]), (ALONE, replace(ALONE, approach=ALONE.approach + 2e-6, moment=2.0 * ALONE.moment, error=1e-8))
+    np.array([-1e-4, 3e-4]),
+    (ALONE, replace(ALONE, approach=ALONE.approach + 2e-6, moment=2.0 * ALONE.moment, error=1e-8)),
 )
 
 
