@@ -13,7 +13,7 @@ from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, equations_of, scale_of
 from rotorgear.analysis.orbits.places import told_of
-from rotorgear.analysis.orbits.refined import change, finer_of
+from rotorgear.analysis.orbits.refined import change
 from rotorgear.analysis.orbits.start import run_periods
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -127,8 +127,8 @@ def orbits_convergence_study(
     def judge(found: tuple[HarmonicOrbits, np.ndarray]) -> Judged:
         orbits, y = found
         c = orbits.coefficients(y)
-        finer = finer_of(orbits)
-        better = finer.coefficients(at_value(finer, finer.unknowns(_cut(c, finer.grid.harmonics)), 0.0).y)
+        finer = orbits.finer()
+        better = finer.coefficients(at_value(finer, orbits.lifted(y, finer), 0.0).y)
         return Judged(orbits.size, change(c, truth, columns), change(c, better, columns))
 
     settings = [

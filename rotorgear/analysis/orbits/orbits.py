@@ -32,6 +32,7 @@ from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits, static_di
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.shooting import MOST_COORDINATES, MOST_RATIO, ShootingOrbits
 from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.time.statistics import STATISTICS
 
 HARMONICS = 30
 # Instants for each harmonic: aliasing, not the cut, sets the error.
@@ -112,7 +113,9 @@ def orbits(
             H *= 2
         curves = special_curves(branches, family, Walk(longest=step, most=points), progress) if len(ranges) > 1 else []
         laps["branches"] = clock.perf_counter() - begun - laps["model"]
-        fields = gathered(branches, told, along, H)
+        progress(0.97, "statistics")
+        fields = gathered(branches, told, family, along, H)
+        laps["statistics"] = clock.perf_counter() - begun - sum(laps.values())
         checks = verified(branches, family, told.columns, along) if verify else ()
     laps["total"] = clock.perf_counter() - begun
     short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
@@ -128,6 +131,7 @@ def orbits(
         contact=told.contacts.label,
         place=told.places.label,
         place_unit=told.places.unit,
+        statistic=STATISTICS,
         **fields,  # type: ignore[arg-type]
         curves=gathered_curves(curves, told, ranges),
         verifications=checks,

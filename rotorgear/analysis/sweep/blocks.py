@@ -16,19 +16,23 @@ import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.sweep.certify import Judge, bounded, judged, to_certify
+from rotorgear.analysis.sweep.indicators import motion_statistics
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
 from rotorgear.solvers.lanes.small_system import steps_stable
+from rotorgear.solvers.time.statistics import compared, gain
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
 # Seconds between two words on the progress of blocks that take long.
 _EVERY = 1.0
 # What a stream keeps of an orbit beside its end.
-_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier", "repeats")
+_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier", "repeats", "error")
 # Least steps of the run that tells the error of exponents by half as many.
 _LEAST_HALF = 60
+# No statistic is said to be better than this share of what others are: extremes at steps may happen to be the same.
+_LUCK = 0.2
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ def run_jobs(
     """
     orbits = _run(points, starts, plan, go_on)
     if not plan.tangents:
-        return orbits
+        return _with_errors(points, orbits, plan, go_on)
     chosen = list(range(len(orbits)))
     orbits = _with_doubts(points, orbits, chosen, plan, go_on)
     orbits, onward = _with_multipliers(points, orbits, chosen, plan, judge, go_on)
@@ -118,7 +122,38 @@ def run_jobs(
         chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
         orbits = _with_doubts(points, orbits, chosen, plan, go_on)
         orbits, onward = _with_multipliers(points, orbits, chosen, plan, judge, go_on)
-    return orbits
+    return _with_errors(points, orbits, plan, go_on)
+
+
+def _with_errors(
+    points: Sequence[Point], orbits: Sequence[Orbit], plan: Plan, go_on: Callable[[], bool] | None
+) -> list[Orbit]:
+    """The orbits with the errors of their statistics: by the same periods in other steps, from where each run ended.
+
+    Runge and Kutta's fourth order is not that of statistics: impacts begin between steps, and extremes are those of steps.
+    """
+    found = list(orbits)
+    sound = [i for i, orbit in enumerate(orbits) if bounded(orbit, points[i])]
+    if not sound:
+        return found
+    # One more: of steps at the same instants, extremes are often the same.
+    steps = _other_steps([points[i] for i in sound], plan.steps) + 1
+    other = replace(plan, steps=steps, settle=min(plan.warm, plan.settle), tangents=0)
+    again = _run([points[i] for i in sound], [orbits[i].end for i in sound], other, go_on)
+    for i, orbit in zip(sound, again, strict=True):
+        counted = points[i].system.columns.counted
+        own, changed = (motion_statistics(one, counted) for one in (orbits[i], orbit))
+        # Twice the steps are better by that much, half as many worse.
+        factor = gain(2.0) if steps < plan.steps else 1.0 - 1.0 / (1.0 + gain(2.0))
+        error = compared(own.values, changed.values, own.scales, factor, _LUCK)
+        found[i] = replace(orbits[i], error=np.hypot(error, own.counted))
+    return found
+
+
+def _other_steps(points: Sequence[Point], steps: int) -> int:
+    """Half as many steps, or twice as many where those would be unstable."""
+    half = steps // 2
+    return half if half >= max(_LEAST_HALF, *(steps_stable(point.system) for point in points)) else 2 * steps
 
 
 def _with_multipliers(
@@ -168,10 +203,9 @@ def _with_doubts(
     parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
     if not parting:
         return found
-    half = plan.steps // 2
-    least = max(steps_stable(points[i].system) for i in parting)
-    steps = half if half >= max(least, _LEAST_HALF) else 2 * plan.steps
-    other = replace(plan, steps=steps, settle=min(plan.warm, plan.settle))
+    other = replace(
+        plan, steps=_other_steps([points[i] for i in parting], plan.steps), settle=min(plan.warm, plan.settle)
+    )
     again = _run([points[i] for i in parting], [orbits[i].end for i in parting], other, go_on)
     for i, orbit in zip(parting, again, strict=True):
         change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
@@ -260,8 +294,9 @@ def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
             int(settled),
             float(multiplier),
             int(repeats),
+            error,
         )
-        for section, growth, sums, extremes, finite, doubt, settled, multiplier, repeats, z, dz in zip(
+        for section, growth, sums, extremes, finite, doubt, settled, multiplier, repeats, error, z, dz in zip(
             *(chunk[name] for name in (*_OF_ORBIT, "z", "dz")), strict=True
         )
     ]

@@ -18,6 +18,7 @@ from rotorgear.model.model import Model
 from rotorgear.results.motion.reduction import Reduction
 from rotorgear.results.motion.sweep import SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit
+from rotorgear.solvers.time.statistics import STATISTICS
 
 _TABLES = (
     "peak_to_peak",
@@ -57,6 +58,7 @@ def gathered(
     exponent = np.full((p, r, t), np.nan)
     error = np.full((p, r, t), np.nan)
     tables: dict[str, Any] = {name: np.full((p, r, c), np.nan) for name in _TABLES}
+    statistics_error = np.full((p, r, c, len(STATISTICS)), np.nan)
     motion = [FAILED] * (p * r)
     failed = list(failure)
     for (i, run), orbit in orbits.items():
@@ -77,6 +79,7 @@ def gathered(
         measures = indicators(orbit, mesh, int(steps[i]))
         for name, table in tables.items():
             table[i, run] = measures[name]
+        statistics_error[i, run] = orbit.error
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
@@ -115,6 +118,8 @@ def gathered(
         method="Runge-Kutta of order 4 in SIMD batches of 32 points",
         warnings=notes(axes, points, failed, motion, request.settle, orbits) + _reduction(reduction, request),
         portraits=None,
+        statistic=STATISTICS,
+        statistics_error=statistics_error,
         reduction=reduction,
         **tables,
     )

@@ -18,7 +18,7 @@ from rotorgear.analysis.transient.notes import adrift
 from rotorgear.analysis.transient.task import Task
 from rotorgear.errors import RotorgearError
 from rotorgear.solvers.time.contact_equilibrium import free_motions
-from rotorgear.solvers.time.gathered import StepStatistics
+from rotorgear.solvers.time.statistics import Statistics
 
 # Share of the static force that a mean may be off beside its error: what is left of a start, and incomplete periods.
 _SHARE = 0.01
@@ -29,10 +29,11 @@ _ROUNDING = 1e-6
 def unbalanced(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
     """Sentences on contacts whose mean force differs from statics by more than its error (c,)."""
     local = task.local.local
-    force = StepStatistics.of(found.state.gathered).chosen(slice(0, local.m))
+    force = Statistics.of_steps(found.state.gathered).chosen(slice(0, local.m))
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     known = np.all(np.isfinite(task.rest_force)) and task.rest.converged
-    if not (force.steps and meshes and known and local.rotation.is_constant and not adrift(task.rest, task.local)):
+    steady = local.rotation.is_constant and not adrift(task.rest, task.local)
+    if not (np.all(np.isfinite(force.mean)) and meshes and known and steady):
         return ()
     # Motions without strain don't depend on inertia: what has none gets what makes it no slower than the others.
     mass = local.M.diagonal()

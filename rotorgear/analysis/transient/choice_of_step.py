@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.transient.request import Grid
-from rotorgear.analysis.transient.statistics import Statistics, compared, gain, statistics
+from rotorgear.analysis.transient.statistics import Judged, judged
 from rotorgear.analysis.transient.task import Task, coarser, run_task
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.solvers.time.local_system import Integrator
+from rotorgear.solvers.time.statistics import gain
 
 _HALVINGS = 6
 # So many halvings in a row that leave more than this share of the error are given up.
@@ -56,7 +57,7 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
     for number in range(1, _HALVINGS + 1):
         finer = replace(probe, every=2 * probe.every)
         now = _probed(task, integrator, finer, progress)
-        errors.append(compared(now, last)[1] if now and last else np.inf)
+        errors.append(now.errors(last, gain(2.0))[1] if now and last else np.inf)
         # What the finer of the two was found to be good for.
         if errors[-1] <= accuracy:
             # The coarser one is four times worse, and no better than its own comparison with twice its step, which is stated.
@@ -92,18 +93,18 @@ def _hoped(errors: list[float]) -> float:
 
 
 def _is_enough(
-    task: Task, integrator: Integrator, grid: Grid, found: Statistics | None, accuracy: float, progress: Progress
+    task: Task, integrator: Integrator, grid: Grid, found: Judged | None, accuracy: float, progress: Progress
 ) -> bool:
     """Whether the statistics of a run agree with those of twice its step, as its own error will be stated."""
     double, ratio = coarser(grid)
     other = _probed(task, integrator, double, progress)
-    return found is not None and other is not None and compared(found, other, gain(ratio))[1] <= accuracy
+    return found is not None and other is not None and found.errors(other, gain(ratio))[1] <= accuracy
 
 
-def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Statistics | None:
+def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Judged | None:
     """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
     try:
         found = run_task(task, integrator, grid, progress, text="choosing the step")
     except ConvergenceError:
         return None
-    return statistics(found, task) if found.status == "success" else None
+    return judged(found, task) if found.status == "success" else None

@@ -6,6 +6,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
+from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.motion.transient import TransientResult
@@ -208,12 +209,10 @@ def _unsettled(result: TransientResult) -> list[str]:
     force = result.mesh_force[result.counted]
     if len(force) < 16 or not force.any() or np.ptp(result.speed) > 0.0:
         return []
-    half = len(force) // 2
-    rms = np.sqrt(np.mean(force**2))
-    change = float(np.abs(force[:half].std(axis=0) - force[half:].std(axis=0)).max() / rms)
+    change, what = halves_differ(result)
     if change <= _UNSETTLED:
         return []
     return [
-        f"the root mean squares of the two halves differ by {100.0 * change:.2g} % of the force: not settled, or not periodic; "
+        f"{what}: the two halves of the time that counts differ by {100.0 * change:.2g} %: not settled, or not periodic; "
         "settle longer or run longer"
     ]

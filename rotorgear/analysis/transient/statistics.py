@@ -1,4 +1,4 @@
-"""The statistics of a transient that its error is stated for, and their comparison between two steps."""
+"""The statistics of a transient that its error is stated for, and whether both halves of its time give the same."""
 
 from __future__ import annotations
 
@@ -8,80 +8,100 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.transient.histories import Histories
-from rotorgear.solvers.time.gathered import StepStatistics
+from rotorgear.results.motion.transient import TransientResult
+from rotorgear.solvers.time.statistics import (
+    STATISTICS,
+    MotionStatistics,
+    Statistics,
+    compared,
+    largest_relative,
+)
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
-# Roache's margin, for where sides meet and part and impacts begin and end an order holds in the mean only.
-# J. Fluids Eng. 116 (1994) 405.
-_MARGIN = 1.25
-
-
-def gain(ratio: float) -> float:
-    """By how much a step that is smaller by a ratio is better, less 1, with second order, and with a margin."""
-    return (ratio**2 - 1.0) / _MARGIN
-
-
-_TWICE = gain(2.0)
+# Which statistics of both halves are compared: those of how far forces and flanks move. One impact makes a largest force.
+_OF_HALVES = [STATISTICS.index(what) for what in ("rms force", "transmission error", "approach")]
 
 
 @dataclass(frozen=True)
-class Statistics:
-    """Names, values (s,), and the size (s,) that an error is taken relative to."""
+class Judged:
+    """Statistics by which runs are judged: names, values, sizes that errors are relative to, what counting leaves, (s,)."""
 
     name: tuple[str, ...]
     value: np.ndarray
     scale: np.ndarray
+    counted: np.ndarray
+
+    def errors(self, other: Judged, factor: float) -> tuple[np.ndarray, float]:
+        """Errors (s,) by a run that is worse by a factor, less 1, or better by as much; the largest relative to its scale."""
+        errors = np.hypot(compared(self.value, other.value, self.scale, factor), self.counted)
+        return errors, largest_relative(errors, self.scale)
 
 
-def of_forces(found: Histories, task: Any) -> StepStatistics:
-    """Statistics of the mesh contacts' forces over all steps that count.
+def of_meshes(found: Histories, task: Any) -> MotionStatistics:
+    """Statistics of the mesh contacts over all steps that count.
 
     Forces of steps are means, half a step away from the end of the time: where one rises until there, its last record counts.
     """
-    columns = [int(task.local.local.forces.first[i]) for i, part in enumerate(task.local.parts) if part.is_mesh]
-    steps = StepStatistics.of(found.state.gathered).chosen(np.array(columns, dtype=int))
-    if not steps.steps:
-        return steps
+    local = task.local.local
+    meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
+    columns = local.forces.first[meshes].astype(int)
+    force = Statistics.of_steps(found.state.gathered).chosen(columns)
     last = found.table("F")[-1, columns]
-    return replace(steps, least=np.minimum(steps.least, last), largest=np.maximum(steps.largest, last))
+    force = replace(force, least=np.minimum(force.least, last), largest=np.maximum(force.largest, last))
+    moved = np.where(np.isfinite(found.state.extremes), found.state.extremes, np.nan)
+    transverse = np.array([task.local.parts[i].transverse for i in meshes])
+    events = found.state.events[meshes] / (int(found.state.gathered.steps[0]) or np.nan)
+    return MotionStatistics(
+        force,
+        events[:, :3],
+        moved[local.m : local.m + local.watched_vectors.shape[1]],
+        moved[columns] / transverse[:, None],
+        events[:, 3],
+    )
 
 
-def of_channels(found: Histories, task: Any) -> StepStatistics:
+def of_channels(found: Histories, task: Any) -> Statistics:
     """Statistics of the channels over all steps that count."""
-    all_of = StepStatistics.of(found.state.gathered)
+    all_of = Statistics.of_steps(found.state.gathered)
     return all_of.chosen(slice(all_of.mean.size - len(task.channels.names), None))
 
 
-def statistics(found: Histories, task: Any) -> Statistics:
-    """Mean, root mean square about it and largest of each contact force, and root mean square of each channel."""
-    force = of_forces(found, task)
+def judged(found: Histories, task: Any) -> Judged:
+    """The statistics of each contact, and the root mean square of each channel."""
+    meshes = of_meshes(found, task)
     labels = [part.label for part in task.local.parts if part.is_mesh]
-    names = [f"{what} force {label}" for label in labels for what in ("mean", "rms", "largest")]
-    data = np.column_stack([force.mean, force.rms, force.largest]).ravel().tolist()
-    size = np.sqrt(force.mean**2 + force.rms**2)
-    # A largest force is as large as it is: of impacts that last a thousandth of a period, many times the root mean square.
-    scale = np.column_stack([size, size, np.maximum(size, np.abs(force.largest))]).ravel().tolist()
-    still = bool(data) and all(data[i + 1] <= _STILL * scale[i] for i in range(0, len(data), 3))
+    names = [f"{what} {label}" for label in labels for what in STATISTICS]
+    force = meshes.force
+    still = bool(labels) and bool(np.all(force.rms <= _STILL * np.hypot(force.mean, force.rms)))
     rms = of_channels(found, task).rms
     units = np.array(task.channels.units)
-    for i, name in enumerate(task.channels.names):
-        names.append(f"rms {name}")
-        data.append(float(rms[i]))
-        # A channel that hardly moves is measured on the largest of its kind.
-        scale.append(np.inf if still else float(rms[units == units[i]].max()))
-    return Statistics(tuple(names), np.array(data), np.array(scale))
+    # A channel that hardly moves is measured on the largest of its kind.
+    kind = [np.inf if still else float(rms[units == unit].max()) for unit in units]
+    return Judged(
+        (*names, *(f"rms {name}" for name in task.channels.names)),
+        np.concatenate([meshes.values.ravel(), rms]),
+        np.concatenate([meshes.scales.ravel(), kind]),
+        np.concatenate([meshes.counted.ravel(), np.zeros(rms.size)]),
+    )
 
 
-def compared(fine: Statistics, coarse: Statistics, factor: float = _TWICE) -> tuple[np.ndarray, float]:
-    """Errors (s,) of the better of two runs, and the largest of them relative to its scale.
+def halves_differ(result: TransientResult) -> tuple[float, str]:
+    """By how much, of its own size, a statistic of the records that count differs between their halves, and which does most."""
+    counted = np.flatnonzero(result.counted)
+    half = counted.size // 2
 
-    `factor`: by how much the better one is better, less 1.
-    """
-    errors = np.abs(fine.value - coarse.value) / factor
-    known = ~(fine.scale <= 0.0)
-    relative = errors[known] / fine.scale[known]
-    # The error of one statistic may pass through zero between two steps; that half of all are as good says nothing of it.
-    typical = float(np.median(relative)) if relative.size and np.all(np.isfinite(relative)) else 0.0
-    errors = np.maximum(errors, typical * np.where(known & np.isfinite(fine.scale), fine.scale, 0.0))
-    return errors, float(relative.max(initial=0.0)) if np.all(np.isfinite(relative)) else float("inf")
+    def of(which: np.ndarray) -> MotionStatistics:
+        force = result.mesh_force[which]
+        moved = (result.transmission_error[which], result.approach[which])
+        return MotionStatistics(
+            Statistics(force.mean(axis=0), force.std(axis=0), force.min(axis=0), force.max(axis=0)),
+            np.zeros((len(result.contact), 3)),
+            *(np.column_stack([x.min(axis=0), x.max(axis=0)]) for x in moved),
+        )
+
+    first, second, whole = of(counted[:half]), of(counted[half:]), of(counted)
+    change = np.abs(first.values - second.values) / np.where(whole.scales > 0.0, whole.scales, np.inf)
+    change = change[:, _OF_HALVES]
+    contact, what = np.unravel_index(change.argmax(), change.shape)
+    return float(change.max()), f"{STATISTICS[_OF_HALVES[what]]} {result.contact[contact]}"

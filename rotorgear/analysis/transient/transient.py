@@ -18,14 +18,7 @@ from rotorgear.analysis.transient.choice_of_step import Choice, fine_enough
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
-from rotorgear.analysis.transient.statistics import (
-    Statistics,
-    compared,
-    gain,
-    of_channels,
-    of_forces,
-    statistics,
-)
+from rotorgear.analysis.transient.statistics import Judged, judged, of_channels, of_meshes
 from rotorgear.analysis.transient.task import Task, coarser, damped, prepare, run_task
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
@@ -35,6 +28,7 @@ from rotorgear.results.motion.transient import TransientResult
 from rotorgear.solvers.time.explicit import Explicit, check_length
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator
+from rotorgear.solvers.time.statistics import STATISTICS, gain
 from rotorgear.system.system import System
 
 DEFAULT_ACCURACY = 0.01
@@ -160,17 +154,17 @@ def _result(
 ) -> TransientResult:
     system = task.local.system
     local = task.local.local
-    of_run: Statistics = statistics(found, task)
+    of_run = judged(found, task)
     errors, largest = _errors(of_run, found, others, task)
-    force = of_forces(found, task)
+    contacts = of_meshes(found, task)
+    force = contacts.force
     seen = of_channels(found, task)
     t = found.table("t")
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     columns = [int(local.forces.first[i]) for i in meshes]
     transverse = np.array([task.local.parts[i].transverse for i in meshes])
-    extremes = np.where(np.isfinite(found.state.extremes), found.state.extremes, np.nan)
-    counted = extremes[local.m : local.m + local.watched_vectors.shape[1]]
-    events = found.state.events[meshes].astype(float)
+    steps = int(found.state.gathered.steps[0])
+    negative = found.state.gathered.sums[columns, 2] / (steps or np.nan)
     if found.ledger is None:
         raise ConvergenceError(found.status)
     motion_time = np.concatenate([np.zeros(0), *(t for t, _ in found.motion)])
@@ -185,15 +179,15 @@ def _result(
         contact=tuple(task.local.parts[i].label for i in meshes),
         approach=found.table("d")[:, columns] / transverse,
         transmission_error=found.table("watched"),
-        approach_range=extremes[columns] / transverse[:, None],
-        transmission_error_range=counted,
+        approach_range=contacts.approach,
+        transmission_error_range=contacts.transmission_error,
         mesh_force=found.table("F")[:, columns],
         mean_force=task.rest_force[columns],
         force_mean=force.mean,
         force_rms=force.rms,
         force_range=np.column_stack([force.least, force.largest]),
-        impulse=np.column_stack([force.mean - force.negative, -force.negative]) * (force.steps * found.h),
-        contact_time=events[:, :3] / (force.steps or np.nan),
+        impulse=np.column_stack([force.mean - negative, -negative]) * (steps * found.h),
+        contact_time=contacts.shares,
         contact_losses=found.state.events[meshes, 3],
         channel=task.channels.names,
         unit=task.channels.units,
@@ -227,7 +221,7 @@ def _result(
     )
     notes = transient_warnings(result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy)
     if result.status == "success":
-        notes += unbalanced(found, task, errors[: 3 * len(meshes) : 3])
+        notes += unbalanced(found, task, errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
     return replace(result, warnings=notes)
 
 
@@ -253,10 +247,10 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
 
 
 def _errors(
-    of_run: Statistics, found: Histories, others: list[tuple[Histories, float]], task: Task
+    of_run: Judged, found: Histories, others: list[tuple[Histories, float]], task: Task
 ) -> tuple[np.ndarray, float]:
     """Errors of the statistics: the sum of those that the comparisons tell, and the largest."""
     if not others or any(run.status != "success" for run in (found, *(run for run, _ in others))):
         return np.full(of_run.value.size, np.nan), float("nan")
-    pairs = [compared(of_run, statistics(run, task), factor) for run, factor in others]
+    pairs = [of_run.errors(judged(run, task), factor) for run, factor in others]
     return np.sum([errors for errors, _ in pairs], axis=0), float(sum(largest for _, largest in pairs))

@@ -134,7 +134,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
     instants: int = of("instants in a base period", default=0)
     error_estimate: float = of(
         "error estimate",
-        note=": largest relative difference of the coefficients at some points from those with twice the harmonics and instants",
+        note=": largest relative difference of the coefficients at some points from a finer solution of the same method",
         default=float("nan"),
     )
     cpu_per_point: float = of("CPU time of a point", "s", json="cpu_seconds_per_point", default=float("nan"))
@@ -164,6 +164,23 @@ class OrbitsResult(ModelResult, kind="orbits"):
         "place",
         json=None,
         default_factory=lambda: np.zeros((0, 0, 0), complex),
+    )
+
+    statistic: tuple[str, ...] = of(
+        "name of the statistic",
+        "",
+        "statistic",
+        note=" of a contact whose error is estimated; transmission error and approach peak to peak",
+        default=(),
+    )
+    statistics_error: np.ndarray = of(
+        "estimated errors of the statistics",
+        "",
+        "point",
+        "contact",
+        "statistic",
+        note=", each in its unit, at the value of the parameter; `null` beside a fold, where that tells no motion",
+        default_factory=lambda: np.zeros((0, 0, 0)),
     )
 
     @derived("real part of the Floquet multipliers", "", "point", "multiplier", note=", largest first")

@@ -54,6 +54,12 @@ class SweepContact(Record):
     apart_share: float = of("contact-loss ratio")
     back_share: float = of("share of the time on the coast flank", note=" (impact time ratio)")
     losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
+    statistics_error: np.ndarray = of(
+        "estimated errors of the statistics",
+        "",
+        "statistic",
+        note=", each in its unit, by a run with half or twice the steps",
+    )
 
     @property
     def peak_to_peak_dte_m(self) -> float:
@@ -147,6 +153,23 @@ class SweepResult(ModelResult, kind="sweep"):
         "reduction of large systems", record=Reduction, default=None, note="; `null` where there was none"
     )
     portraits: Portraits | None = of("trajectories of some points", record=Portraits, json=None, default=None)
+    statistic: tuple[str, ...] = of(
+        "name of the statistic",
+        "",
+        "statistic",
+        note=" of a contact whose error is estimated; transmission error and approach peak to peak",
+        default=(),
+    )
+    statistics_error: np.ndarray = of(
+        "estimated errors of the statistics",
+        "",
+        "point",
+        "run",
+        "contact",
+        "statistic",
+        json=None,
+        default_factory=lambda: np.zeros((0, 0, 0, 0)),
+    )
 
     @derived("parameters", "", "parameter", record=Parameter)
     def parameters(self) -> tuple[Parameter, ...]:
@@ -192,6 +215,8 @@ class SweepResult(ModelResult, kind="sweep"):
             apart_share=float(self.apart[at]),
             back_share=float(self.back[at]),
             losses_per_mesh_period=float(self.losses[at]),
+            # Files of earlier versions have none.
+            statistics_error=self.statistics_error[at] if self.statistic else np.zeros(0),
         )
 
     @derived("lines of the points that keep their trajectory", "", "portrait", record=Portrait, json="portraits")

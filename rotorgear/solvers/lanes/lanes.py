@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from rotorgear.solvers.lanes.columns import ERROR, NEVER
 from rotorgear.solvers.lanes.own_laws import acting_laws
 from rotorgear.solvers.lanes.small_system import SmallSystem
 from rotorgear.solvers.time.arguments import SparseRows
+from rotorgear.solvers.time.statistics import STATISTICS
 
 # Steps between two questions whether to go on: a fraction of a second.
 _SLICE = 50_000
@@ -71,6 +72,7 @@ class Orbit:
         settled: common periods before those that count.
         multiplier: ln|mu| in a common period of the orbit that it is on; nan where that is not asked for or not found.
         repeats: common periods after which that orbit repeats; 0 where it is not known.
+        error: (c, s) errors of the statistics of each contact, by a run with other steps; nan where that was not done.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -84,6 +86,7 @@ class Orbit:
     settled: int
     multiplier: float = np.nan
     repeats: int = 0
+    error: np.ndarray = field(default_factory=lambda: np.zeros((0, len(STATISTICS))))
 
 
 def run_block(
@@ -182,7 +185,10 @@ def _orbit(
     end = Start(state[:n, lane].copy(), state[n:, lane].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
     own = growth[..., lane].copy()
-    return Orbit(moved, own, found, extremes[:, :, lane].T.copy(), end, finite, np.zeros(own.shape[1]), plan.settle)
+    # Two displacements are watched of each contact.
+    unknown = np.full((extremes.shape[1] // 2, len(STATISTICS)), np.nan)
+    ends = extremes[:, :, lane].T.copy()
+    return Orbit(moved, own, found, ends, end, finite, np.zeros(own.shape[1]), plan.settle, error=unknown)
 
 
 def blank_sums(m: int) -> np.ndarray:

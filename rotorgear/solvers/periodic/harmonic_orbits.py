@@ -197,7 +197,7 @@ class HarmonicOrbits:
         laws = plant.forces
         turn = 1j * w * np.arange(grid.harmonics + 1)[:, None]
         force = c @ laws.reference_stiffness.T + turn * (c @ laws.reference_damping.T) - u
-        return Cycle(2.0 * np.pi / w, samples_of(c, plant, grid, N), synthesised(seen, w, N)[0], c, force)
+        return Cycle(2.0 * np.pi / w, samples_of(c, plant, grid, N), *synthesised(seen, w, N), c, force)
 
     def state(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and velocities (n,) of a solution at the begin of its period."""
@@ -208,6 +208,18 @@ class HarmonicOrbits:
         turn = 1j * self.grid.frequency(plant.speed) * np.arange(1, len(u))[:, None]
         still = plant.still.q + plant.still.X @ u[0].real
         return still + q.real.sum(axis=0), (turn * q).real.sum(axis=0)
+
+    def finer(self) -> HarmonicOrbits:
+        """The same motions with twice the harmonics and instants."""
+        grid = replace(self.grid, harmonics=2 * self.grid.harmonics, instants=2 * self.grid.instants)
+        return HarmonicOrbits(self._plant_at, grid, self.scale)
+
+    def lifted(self, y: np.ndarray, finer: HarmonicOrbits) -> np.ndarray:
+        """The unknowns of a motion in the finer equations: harmonics that these do not have are zero."""
+        c = self.coefficients(y)
+        wide = np.zeros((finer.grid.harmonics + 1, c.shape[1]), complex)
+        wide[: len(c)] = c
+        return finer.unknowns(wide)
 
     def doubled(self) -> HarmonicOrbits:
         """The same with twice the period."""

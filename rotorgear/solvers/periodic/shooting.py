@@ -6,6 +6,7 @@ over a period is the monodromy matrix, whose eigenvalues are the Floquet multipl
 
 from __future__ import annotations
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -18,8 +19,9 @@ from rotorgear.solvers.periodic.harmonic_orbits import static_displacements
 from rotorgear.solvers.periodic.plant import Plant, PlantAt
 from rotorgear.solvers.periodic.samples import answered, arguments_of
 
-# Relative tolerance of the flow and its derivative.
+# Relative tolerance of the flow and its derivative, and the one that tells its error: no less, for rounding.
 TOLERANCE = 1e-11
+_TIGHTER = 1e-13
 _MOST_STEPS = 400_000
 _DIFFERENCE = 1e-5
 # Largest system, in coordinates, and steps in a base period that are asked for by its highest frequency.
@@ -93,6 +95,7 @@ class ShootingOrbits:
         self.harmonics = harmonics
         self.instants = instants
         self.periods = periods
+        self.tolerance = TOLERANCE
         self._tableau = _dormand_prince()
         first = plant_at(0.5)
         basis = basis_of(first, np.inf)
@@ -154,7 +157,7 @@ class ShootingOrbits:
             shooting_answer(plant.m, blocks, len(laws.laws)),
         )
         steps = flow(
-            small, arguments_of(laws), self._tableau, x, work, outputs, TOLERANCE, kept, _MOST_STEPS * self.periods
+            small, arguments_of(laws), self._tableau, x, work, outputs, self.tolerance, kept, _MOST_STEPS * self.periods
         )
         if steps < 0 or not np.all(np.isfinite(x)):
             raise ConvergenceError("the motion over a period can't be integrated")
@@ -204,11 +207,21 @@ class ShootingOrbits:
 
     def along(self, plant_at: PlantAt) -> ShootingOrbits:
         """The same for other plants of the same structure."""
-        other = ShootingOrbits(plant_at, self.order, self.scale, self.harmonics, self.instants, self.periods)
-        other._V = self._V
-        other._unheld = self._unheld
-        other._size = self._size
+        other = copy(self)
+        other._plant_at = plant_at
+        other._known = {}
         return other
+
+    def finer(self) -> ShootingOrbits:
+        """The same motions to a tighter tolerance, at twice the instants."""
+        other = self.along(self._plant_at)
+        other.tolerance = _TIGHTER
+        other.instants = 2 * self.instants
+        return other
+
+    def lifted(self, y: np.ndarray, finer: ShootingOrbits) -> np.ndarray:
+        """The unknowns of a motion in the finer equations: the same."""
+        return y
 
     def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """The residual and its derivative by the unknowns; `smooth` changes nothing, for nothing is approximated."""
@@ -261,6 +274,7 @@ class ShootingOrbits:
             2.0 * np.pi * self.periods / w,
             at,
             q @ (self._V.T @ plant.watched),
+            v @ (self._V.T @ plant.watched),
             spectrum(at.d, H),
             spectrum(at.F, H),
         )

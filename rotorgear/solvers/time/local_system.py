@@ -13,9 +13,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.solvers.time.arguments import Carried, Gathered, Kept
-from rotorgear.solvers.time.gathered import blank_gathered
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.statistics import blank_gathered
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.solvers.time.gathered import StepStatistics, blank_gathered
 from rotorgear.solvers.time.kernel_gather import gather
+from rotorgear.solvers.time.statistics import Statistics, blank_gathered
 from tests.unit.analysis.spur_pair import spur_pair
 
 MODELS = Path(__file__).resolve().parents[4] / "models"
@@ -36,7 +36,7 @@ def test_sums_and_extremes_are_those_of_the_curve_between_the_steps() -> None:
     found = blank_gathered(np.array([5.0 + np.sin(0.1)]))
     for value in x:
         gather(found, np.array([value]), 0, False)
-    statistics = StepStatistics.of(found)
+    statistics = Statistics.of_steps(found)
     assert statistics.mean[0] == pytest.approx(5.0, abs=2e-3)
     assert statistics.rms[0] == pytest.approx(np.sqrt(0.5), rel=1e-3)
     assert [statistics.least[0], statistics.largest[0]] == pytest.approx([4.0, 6.0], abs=1e-4)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.arguments import Carried
-from rotorgear.solvers.time.gathered import blank_gathered
 from rotorgear.solvers.time.kernel_gather import take_account
+from rotorgear.solvers.time.statistics import blank_gathered
 
 
 def test_contact_is_lost_each_time_a_flank_is_left() -> None:
