@@ -256,13 +256,14 @@ class State:
     def coast_map(self, force: MeshForce) -> ContactMap | None:
         """The map of the flanks behind those of a contact, about the same load.
 
-        Flanks that the shafts close on one side of the teeth they open on the other: the misalignment changes its sign.
+        Flanks that stand apart at one end of the face on one side of the teeth stand apart at its other end on the other side:
+        the misalignment changes its sign, be it that of the file or that of a state with tilted shafts.
         """
         contact = force.contact
+        mesh = self.layout.mesh(contact.mesh)
         f = self._misalignment(contact)
-        return self.layout.mesh(contact.mesh).contact_map(
-            contact.helix, self._working_load(force), -force.torque_sense, misalignment=None if f is None else -f
-        )
+        behind = -(mesh.part.misalignment if f is None else f) or 0.0
+        return mesh.contact_map(contact.helix, self._working_load(force), -force.torque_sense, misalignment=behind)
 
     def face_map(self, force: MeshForce, near: bool = False) -> FaceMap | None:
         """Map (F, M)(delta, tilt, u) of one helix that feels the tilt of its shafts; None of others. As `contact_map`."""
