@@ -21,7 +21,6 @@ from rotorgear.forces.law import ForceLaw
 _SHIPPED = {
     "mesh_contact": "MeshContact",
     "loaded_teeth": "LoadedTeeth",
-    "loaded_face": "LoadedFace",
     "mesh_friction": "MeshFriction",
     "journal_bearing": "JournalBearing",
     "journal_film": "JournalFilm",

@@ -31,7 +31,7 @@ from rotorgear.system.groups import (
     tilt_only,
 )
 from rotorgear.system.loads import external_load, weight_loads
-from rotorgear.system.local_faces import face_law
+from rotorgear.system.local_faces import teeth_law
 from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
@@ -57,8 +57,6 @@ if TYPE_CHECKING:
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
 _RAMP = 0.02
-# Loads to each step of load of a map.
-_FINER = 8
 # Mean deflection that is taken for a mesh without load.
 _UNLOADED = 1e-6
 
@@ -172,107 +170,53 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
         spring = _mesh_law(system, force, geometry, load.phase(contact) or 0.0)
         part = f"meshes.{contact.mesh}"
         dofs = mesh_dofs(system.layout, system.nodes, force)[0]
-        approach = face_strains(geometry, face_of(system.layout, force))[:1]
-        column = columns_at(system, dofs, approach)
-        turned = replace(geometry, torque_sense=-geometry.torque_sense)
-        coast = columns_at(system, dofs[:12], contact_vector(turned)[None])
+        face = face_of(system.layout, force)
+        along = faces.get(number)
+        # Flanks that tilt have their approach in the middle of the face, others at the place where they carry.
+        strains = face_strains(geometry, replace(face, place=0.0)) if along else face_strains(geometry, face)[:1]
+        columns = columns_at(system, dofs, strains)
+        approach = columns[:, :1]
         law: MeshContact | LoadedTeeth = spring
         coast_law: MeshContact | LoadedTeeth = _back(spring)
-        if number in faces:
-            found += _along_face(system, force, spring, faces[number], label)
-            continue
-        teeth = load.contact_map(force)
-        # A map begins where its flanks touch, a spring about a mean state does not.
-        touching = replace(spring, error_mean=_gap(system, force))
+        blow = []
+        teeth = along or load.contact_map(force)
         if teeth is not None:
-            loaded = _loaded_teeth(touching, teeth, force, load.path_phase(contact) or 0.0)
-            law = loaded
+            # A map begins where its flanks touch, a spring about a mean state does not.
+            touching = replace(spring, error_mean=_gap(system, replace(force, face=None) if along else force))
+            law = _loaded_teeth(touching, teeth, force, load.path_phase(contact) or 0.0)
             if spring.impact:
-                blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
-                found.append(LocalPart(part, f"{label} impact", blow, column))
+                impact = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
+                blow.append(LocalPart(part, f"{label} impact", impact, approach))
             if spring.gap != "bilateral":
-                behind = force.on_other_flank
                 other_teeth = load.coast_map(force)
                 assert other_teeth is not None  # its working load is that of the other flank
                 phase = load.on_other_flank(contact.mesh).path_phase(contact) or 0.0
-                coast_loaded = _loaded_teeth(_back(touching), other_teeth, behind, phase)
-                coast_law = coast_loaded
-                if spring.gap == "dead zone":
-                    law = replace(loaded, coast=coast_loaded)
+                coast_law = _loaded_teeth(_back(touching), other_teeth, force.on_other_flank, phase)
+                if spring.gap == "dead zone" and not along:
+                    law = replace(law, coast=coast_law)
         rotation = columns_at(system, dofs[:12], rotation_vector(force)[None])[:, 0]
         transverse = float(np.cos(contact.base_helix_angle))
-        found.append(LocalPart(part, label, law, column, rotation, transverse))
-        rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], column)
+        working = LocalPart(part, label, law, columns, rotation, transverse)
+        found += [working, *blow] if along else [*blow, working]
+        rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], approach)
         if rubbing is not None:
             found.append(rubbing)
-        if spring.gap == "unilateral":
-            found.append(LocalPart(part, f"{label} back", coast_law, coast, -rotation, transverse))
+        # Coast flanks behind those that tilt stand askew as in the mean state, and so are no part of the same law.
+        if spring.gap == "unilateral" or (along and spring.gap == "dead zone"):
+            turned = replace(geometry, torque_sense=-geometry.torque_sense)
+            own_normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
+            column = own_normal if spring.gap == "unilateral" else -approach
+            found.append(LocalPart(part, f"{label} back", coast_law, column, -rotation, transverse))
     return found
 
 
-def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: FaceMap, label: str) -> list[LocalPart]:
-    """A helix of loaded teeth that follows the tilt of its shafts; its coast flanks stand askew as in the mean state."""
-    load = system.state.about_nominal_flanks
-    contact = force.contact
-    part = f"meshes.{contact.mesh}"
-    geometry = contact_geometry(force)
-    dofs = mesh_dofs(system.layout, system.nodes, force)[0]
-    in_middle = replace(face_of(system.layout, force), place=0.0)
-    columns = columns_at(system, dofs, face_strains(geometry, in_middle))
-    assert force.face is not None
-    mesh = system.layout.mesh(contact.mesh).part
-    gap = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
-    touching = replace(spring, error_mean=gap)
-    law = face_law(
-        teeth,
-        contact.stiffness,
-        gap,
-        place=force.face.place,
-        tilt_stiffness=force.face.tilt_stiffness,
-        damping=spring.damping,
-        contact_damping=spring.contact_damping,
-        reference=spring.ramp,
-        order=spring.order,
-        phase=spring.phase,
-        path_phase=load.path_phase(contact) or 0.0,
-        forward=1 if force.pinion_drives else -1,
-        error_cos=spring.error_cos,
-        error_sin=spring.error_sin,
-    )
-    rotation = columns_at(system, dofs[:12], rotation_vector(force)[None])[:, 0]
-    transverse = float(np.cos(contact.base_helix_angle))
-    found = [LocalPart(part, label, law, columns, rotation, transverse)]
-    approach = columns[:, :1]
-    if spring.impact:
-        blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
-        found.append(LocalPart(part, f"{label} impact", blow, approach))
-    rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], approach)
-    if rubbing is not None:
-        found.append(rubbing)
-    if spring.gap != "bilateral":
-        behind = force.on_other_flank
-        other_teeth = load.coast_map(force)
-        assert other_teeth is not None  # its working load is that of the other flank
-        phase = load.on_other_flank(contact.mesh).path_phase(contact) or 0.0
-        turned = replace(geometry, torque_sense=-geometry.torque_sense)
-        own_normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
-        column = own_normal if spring.gap == "unilateral" else -approach
-        coast_law = _loaded_teeth(_back(touching), other_teeth, behind, phase)
-        found.append(LocalPart(part, f"{label} back", coast_law, column, -rotation, transverse))
-    return found
-
-
-def _loaded_teeth(spring: MeshContact, teeth: ContactMap, force: MeshForce, phase: float) -> LoadedTeeth:
+def _loaded_teeth(spring: MeshContact, teeth: ContactMap | FaceMap, force: MeshForce, phase: float) -> LoadedTeeth:
     """The map of loaded teeth in place of a spring, with the damping and the errors of that."""
-    from rotorgear.forces.loaded_teeth import LoadedTeeth
-
-    # Between its loads the curve is the map's own, which knows its tangents.
-    at = np.arange(_FINER * (len(teeth.load) - 1) + 1) / _FINER
-    load = np.interp(at, np.arange(len(teeth.load)), teeth.load)
-    return LoadedTeeth(
-        load=load,
-        approach=teeth.approaches(load),
-        stiffness=force.contact.stiffness,
+    return teeth_law(
+        teeth,
+        force.contact.stiffness,
+        spring.error_mean,
+        face=force.face,
         damping=spring.damping,
         contact_damping=spring.contact_damping,
         reference=spring.ramp,
@@ -281,8 +225,6 @@ def _loaded_teeth(spring: MeshContact, teeth: ContactMap, force: MeshForce, phas
         path_phase=phase,
         # Positions count along the path from approach to recess of the pinion: where the gear drives, time runs the other way.
         forward=1 if force.pinion_drives else -1,
-        periods=teeth.periods,
-        error_mean=spring.error_mean,
         error_cos=spring.error_cos,
         error_sin=spring.error_sin,
         expanded=spring.expanded,

@@ -318,7 +318,7 @@ class _Problem:
 
     @cached_property
     def face_laws(self) -> dict[int, ForceLaw]:
-        """The law of each contact that has a face map, by its number: to turn a map over takes as long as a cycle on it."""
+        """The law of each contact that has a face map, by its number."""
         stiffness = self.equilibrium.lines.stiffness
         return {
             i: face_law(face_map, float(stiffness[i]), float(self.gap[i]))
@@ -334,7 +334,7 @@ class _Problem:
             law = self.face_laws[contact]
             if u is None:
                 return FaceTable(law.mean(), np.zeros(len(position)), np.ones((len(position), 1)))
-            rows = np.moveaxis(face_map.approaches(u), 1, 0).reshape(len(position), -1)
+            rows = np.hstack([one.curves(one.load, u) for one in face_map.maps])
             return FaceTable(law, u, rows)
         contact_map = self.maps[contact]
         assert contact_map is not None

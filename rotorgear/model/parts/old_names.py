@@ -17,6 +17,7 @@ KEYS: dict[str, dict[str, str]] = {
 # Class -> key -> former value -> value.
 VALUES: dict[str, dict[str, dict[str, str]]] = {
     "Mesh": {"contact_damping": {"clamped": "non-adhesive", "unclamped": "adhesive"}},
+    "NonlinearElement": {"law": {"loaded_face": "loaded_teeth"}},
 }
 
 

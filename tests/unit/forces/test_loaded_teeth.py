@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.loaded_teeth import STEPS, LoadedTeeth
+from rotorgear.forces.loaded_map import STEPS
+from rotorgear.forces.loaded_teeth import LoadedTeeth
 from validation.oscillators import integrate, local_system
 
 LAW = LoadedTeeth.examples()[0]
@@ -26,7 +29,7 @@ def error(law: LoadedTeeth, angle: float) -> float:
     return law.error_mean + sum(terms) + sum(b * np.sin(n * p) for n, b in enumerate(law.error_sin, 1))
 
 
-@pytest.mark.parametrize("law", LoadedTeeth.examples())
+@pytest.mark.parametrize("law", LoadedTeeth.examples()[:5])
 def test_under_each_load_of_the_map_the_flanks_have_its_approach(law: LoadedTeeth) -> None:
     """Where it bends most, it stays within 1 % of a step of the force, which is 1/384 of the range."""
     for row in (0, 17, 40):
@@ -128,3 +131,52 @@ def test_what_does_not_rise_is_refused() -> None:
         replace(LAW, load=LAW.load[::-1])
     with pytest.raises(AnalysisError, match=r"LoadedTeeth\.approach"):
         replace(LAW, approach=LAW.approach[:, ::-1])
+
+
+def test_force_tangents_and_energies_are_those_of_the_two_laws_that_became_this_one() -> None:
+    """Written by the law of one map and the law of several tilts, before they were put together."""
+    written = json.loads((Path(__file__).parent / "loaded_teeth_apart.json").read_text())
+    for law, rows in zip(LoadedTeeth.examples(), written, strict=True):
+        random = np.random.default_rng(7)
+        size = np.array([3e-5, 1.5e-4])[: law.components]
+        found = []
+        for _ in rows[::2]:
+            d = size * random.uniform(-1.0, 1.5, law.components)
+            v = 500.0 * size * random.uniform(-1.0, 1.0, law.components)
+            angle = float(random.uniform(-7.0, 7.0))
+            for one in (law, law.mean()):
+                at = one.evaluate(d, v, angle=angle, speed=120.0)
+                tangents = np.concatenate([at.in_displacement.ravel(), at.in_velocity.ravel()])
+                found.append([*at.force, *tangents, at.stored, at.power_in, at.dissipated, at.contact])
+        expected = np.array(rows)
+        assert np.abs(expected[:, -1]).sum() >= 4  # not all of them apart
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("law", [LAW, LoadedTeeth.examples()[5]])
+def test_laws_that_differ_in_stiffness_and_errors_read_the_same_rows(law: LoadedTeeth) -> None:
+    other = replace(law, load=law.load.copy(), approach=law.approach.copy(), stiffness=2e8, error_mean=1e-6)
+    assert other.loaded_map.rows is law.loaded_map.rows
+    with pytest.raises(ValueError, match="read-only"):
+        law.loaded_map.rows[0, 0] = 1.0
+    stiffer = replace(law, approach=0.5 * law.approach)
+    assert not np.array_equal(stiffer.loaded_map.rows, law.loaded_map.rows)
+
+
+def test_a_map_too_large_to_be_kept_is_turned_over_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = LAW.loaded_map.rows
+    monkeypatch.setattr("rotorgear.forces.loaded_map._LARGE", 0.0)
+    assert LAW.loaded_map.rows is not kept
+    assert np.array_equal(LAW.loaded_map.rows, kept)
+
+
+def test_tilts_come_with_moments_and_without_coast_flanks_on_their_line() -> None:
+    face = LoadedTeeth.examples()[5]
+    with pytest.raises(AnalysisError, match=r"LoadedTeeth\.tilt"):
+        replace(face, tilt=face.tilt[:1], approach=face.approach[:1], moment=face.moment[:1])
+    with pytest.raises(AnalysisError, match=r"LoadedTeeth\.approach"):
+        replace(face, tilt=face.tilt[1:])
+    with pytest.raises(AnalysisError, match=r"LoadedTeeth\.moment"):
+        replace(face, moment=())
+    with pytest.raises(AnalysisError, match=r"LoadedTeeth\.coast"):
+        replace(face, coast=LAW)

@@ -17,7 +17,6 @@ from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.request import rotation_of
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.loaded_face import LoadedFace
 from rotorgear.forces.loaded_teeth import LoadedTeeth
 from rotorgear.gears.maps import solved_map
 from rotorgear.gears.maps.contact_map import ContactMap
@@ -339,7 +338,7 @@ def test_meshes_that_stand_askew_resist_a_tilt_by_their_tangent_also_where_they_
 
 def test_a_face_damps_by_its_mean_state() -> None:
     """Damping against a tilt acts at the place of the mean stiffness, and goes with what carries, whatever the tilt is."""
-    law = next(law for law in LoadedFace.examples() if law.damping)
+    law = next(law for law in LoadedTeeth.examples() if law.tilt.size)
     assert law.damping
     d = float(law.approach.max()) * 1.5
     for tilt in (float(law.tilt[0]), 0.0, float(law.tilt[-1])):

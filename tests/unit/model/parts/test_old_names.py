@@ -7,6 +7,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.sweep.axes import axis_of
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.nonlinear_element import NonlinearElement, element_law
 from rotorgear.model.parts.old_names import KEYS, VALUES
 from rotorgear.old_names import OldNameWarning, renamed_arguments
 from tests.paths import ROOT
@@ -56,6 +57,21 @@ def test_every_new_name_is_a_key_of_its_part_and_no_former_one_is() -> None:
     for part, keys in KEYS.items():
         assert not set(keys) & set(parts[part].model_fields)
         assert set(keys.values()) | set(VALUES.get(part, {})) <= set(parts[part].model_fields)
+
+
+def test_the_law_of_teeth_that_tilt_is_that_of_loaded_teeth() -> None:
+    parameters = {
+        "load": [0.0, 1e3],
+        "tilt": [-1e-4, 1e-4],
+        "approach": [[[0.0, 5e-6]], [[0.0, 5e-6]]],
+        "moment": [[[0.0, -1.0]], [[0.0, 1.0]]],
+        "stiffness": 2e8,
+    }
+    with pytest.warns(OldNameWarning, match="'loaded_face' is now 'loaded_teeth'"):
+        element = NonlinearElement(shaft="a", at=0.0, law="loaded_face", parameters=parameters)
+    law = element_law(element, 1.0)
+    assert element.law == "loaded_teeth"
+    assert law.components == 2
 
 
 def test_a_function_by_its_former_name_is_the_same_function() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.forces.loaded_face import LoadedFace
 from rotorgear.forces.loaded_teeth import LoadedTeeth
 
 STIFFNESS = 4e8
@@ -19,7 +18,7 @@ def line(approach: float, tilt: float) -> tuple[float, float]:
     return float(pressed.mean()), float((pressed * z).mean())
 
 
-def face(tilts: np.ndarray, **more: float) -> LoadedFace:
+def face(tilts: np.ndarray, **more: float) -> LoadedTeeth:
     load = 5000.0 * np.concatenate([[0.0], np.geomspace(1e-3, 4.0, 80)])
     gape = np.maximum(np.abs(tilts), 1e-12)[:, None] * WIDTH
     part = WIDTH * np.minimum(np.sqrt(2.0 * load / (STIFFNESS * gape)), 1.0)
@@ -27,7 +26,7 @@ def face(tilts: np.ndarray, **more: float) -> LoadedFace:
     side = np.sign(tilts)[:, None]
     approach = np.where(whole, load / STIFFNESS, gape * (part / WIDTH - 0.5))
     moment = np.where(whole, STIFFNESS * WIDTH * side * gape / 12.0, load * side * (0.5 * WIDTH - part / 3.0))
-    return LoadedFace(load, tilts, approach[:, None], moment[:, None], STIFFNESS, **more)
+    return LoadedTeeth(load, approach[:, None], STIFFNESS, tilt=tilts, moment=moment[:, None], **more)
 
 
 @pytest.mark.parametrize("approach", [-2e-6, 4e-6, 12e-6, 25e-6])
