@@ -62,10 +62,21 @@ def has_entry(function: Any) -> bool:
 def named_in_python(path: Path) -> Iterator[tuple[str, str]]:
     """Names that the plain Python functions of a file use, with the function; those of functions that are compiled not."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef) and not any(map(compiles, node.decorator_list)):
-            for inside in ast.walk(node):
-                if isinstance(inside, ast.Name):
-                    yield inside.id, node.name
+        if isinstance(node, ast.FunctionDef) and not is_compiled(node):
+            yield from ((name, node.name) for name in names_in_python(node))
+
+
+def names_in_python(node: ast.AST) -> Iterator[str]:
+    """Names below a node, but for those in functions that are compiled."""
+    for inside in ast.iter_child_nodes(node):
+        if isinstance(inside, ast.Name):
+            yield inside.id
+        if not (isinstance(inside, ast.FunctionDef) and is_compiled(inside)):
+            yield from names_in_python(inside)
+
+
+def is_compiled(function: ast.FunctionDef) -> bool:
+    return any(map(compiles, function.decorator_list))
 
 
 def compiles(decorator: ast.expr) -> bool:

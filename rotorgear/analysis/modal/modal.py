@@ -113,6 +113,8 @@ def modes_about(
     target = np.inf if fixed else asked.accuracy or DEFAULT_ACCURACY
     if not fixed and modes is None and fmax is not None:
         check_count(system.model, fmax)
+    # Finer elements bring the bound nearer, and the motions no nearer to each other.
+    apart = too_far_apart(system, speed)
     reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax, *((0, 1.0) if fixed else ()))
     if not fixed and speed is not None and not system.has_tables and not system.circulatory(speed).nnz:
         # Damping and spin hardly change what mesh a mode needs: undamped modes find it at less cost, and it is checked below.
@@ -121,7 +123,7 @@ def modes_about(
         clock.lap("refinement")
     for round_number in range(_ROUNDS):
         progress(min(0.1 + 0.15 * round_number, 0.8), f"solving {system.n} dofs")
-        found = _solved(system, Wanted(speed, *reach.solver_request(), only, asked.pruning))
+        found = _solved(system, Wanted(speed, *reach.solver_request(), only, asked.pruning), apart)
         clock.lap("modes")
         q = system.dofs.expand(found.vectors)
         parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if error_estimate else {}
@@ -190,12 +192,15 @@ def _refined_undamped(system: System, reach: Reach, only: tuple[str, ...], targe
     return system
 
 
-def _solved(system: System, wanted: Wanted) -> Modes:
-    """Solve, and say why where damping in proportion to the stiffness b makes overdamped modes without end gather at 1/b."""
+def _solved(system: System, wanted: Wanted, apart: str) -> Modes:
+    """Solve, and say why where that fails: parts that are too far `apart`, a sentence or "", or overdamped modes without end.
+
+    Damping in proportion to the stiffness b makes such modes gather at 1/b.
+    """
     try:
         return solve(system, wanted)
     except ConvergenceError as error:
-        if why := too_far_apart(system, wanted.speed):
+        if why := apart or too_far_apart(system, wanted.speed):
             raise ConvergenceError(why, error.partial) from error
         gathers = gathering(system)
         if wanted.speed is None or gathers is None:

@@ -148,7 +148,7 @@ def transient_warnings(
         )
     fastest = float(np.abs(result.speed).max(initial=0.0))
     notes += time_warnings(local.system.model, local.local.forces.laws, fastest)
-    notes += [*_beyond_maps(result, local), *([] if drift else _off_speed(result)), *_unsettled(result)]
+    notes += [*_beyond_maps(result, local), *([] if drift else _off_speed(result, local)), *_unsettled(result)]
     return tuple(notes)
 
 
@@ -182,8 +182,8 @@ def _beyond_maps(result: TransientResult, local: LocalModel) -> list[str]:
     return notes
 
 
-def _off_speed(result: TransientResult) -> list[str]:
-    """Compare the speed of each gear at the end with the prescribed one."""
+def _off_speed(result: TransientResult, local: LocalModel) -> list[str]:
+    """Compare the speed of each gear at the end with the prescribed one, where the loads balance at the start."""
     train = result.model.layout.train
     worst = 0.0
     name = ""
@@ -199,8 +199,11 @@ def _off_speed(result: TransientResult) -> list[str]:
             name = gear
     if worst <= _DRIFT:
         return []
+    changing = [part.part for part in local.parts if part.law.unsettled()]
+    why = f"; with {', '.join(changing)}, which change in time, the loads need not balance" if changing else ""
     return [
-        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed, to which mesh phases and gyroscopic terms keep"
+        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed, to which mesh phases and gyroscopic terms "
+        f"keep{why}"
     ]
 
 

@@ -232,7 +232,7 @@ def _switches(
         h /= _PARTS
         seen = answer((begin[:, None] + h * parts).ravel())[1].reshape(begin.size, parts.size, -1)
         own = seen[np.arange(begin.size), :, law]
-        # An interval may hold several changes: a flight from one flank to the other.
+        # An interval may hold several changes: a flight from one side to the other.
         interval, part = np.nonzero(own[:, 1:] != own[:, :-1])
         begin = begin[interval] + h * part
         law = law[interval]
