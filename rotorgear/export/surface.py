@@ -26,11 +26,6 @@ class Surface:
     quads: np.ndarray
     triangles: np.ndarray
 
-    @property
-    def cell_count(self) -> int:
-        """Quadrangles and triangles together."""
-        return len(self.quads) + len(self.triangles)
-
     def moved(self, offset: Sequence[float]) -> Surface:
         """The same surface shifted by (x, y, z) in m."""
         return Surface(self.points + np.asarray(offset, float), self.quads, self.triangles)

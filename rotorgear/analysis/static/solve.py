@@ -20,9 +20,8 @@ from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.solvers.sparse.equilibrium import Equilibrium
+from rotorgear.solvers.sparse.equilibrium import Equilibrium, UnbalancedLoadError
 from rotorgear.solvers.sparse.newton import EVALUATIONS, settle
-from rotorgear.solvers.sparse.static import UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.groups import ElementGroup

@@ -38,11 +38,6 @@ class Step:
     partner: np.ndarray
     doubt: np.ndarray
 
-    @property
-    def too_long(self) -> bool:
-        """Whether the step has to be halved."""
-        return bool(self.doubt.any())
-
 
 def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     """Link the modes at a to those at b.

@@ -1,7 +1,7 @@
 """Static equilibrium K q = f where some motions R are free of strain: K R = 0 and R^T K = 0. K may be non-symmetric.
 
 The loads must do no work on R. Then q is the solution on a statically determinate support of r dofs, which carries no load;
-what is left open is q + R c. (For a symmetric K and one orthogonal to R by inertia see static.py.)
+what is left open is q + R c (Geradin and Rixen, Mechanical Vibrations, 3rd ed., section 3.3, John Wiley 2015).
 """
 
 from __future__ import annotations
@@ -9,14 +9,25 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.errors import ConvergenceError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.sparse.nullspace import SupportedSolver, orthonormal_motions
-from rotorgear.solvers.sparse.static import UnbalancedLoadError
 
-_BALANCE = 1e-8  # as in static.py: work relative to the sum of its absolute parts that counts as none
+_BALANCE = 1e-8  # work relative to the sum of its absolute parts that counts as none
 _RESIDUAL = 1e-11  # relative to the largest force inside, |K||q| + |f|
 _ROUNDING = 1e-11  # work on a free motion below this share of the whole load is rounding of the load itself
 _REFINEMENTS = 4
+
+
+class UnbalancedLoadError(AnalysisError):
+    """Loads push a free structure. `imbalance` (r,): their work on each rigid vector relative to its absolute parts."""
+
+    def __init__(self, imbalance: np.ndarray) -> None:
+        self.imbalance = imbalance
+        worst = int(np.argmax(imbalance))
+        super().__init__(
+            f"The loads do work on rigid-body motion {worst + 1} of {imbalance.size} (a share of {imbalance[worst]:.2g}), "
+            "so there is no equilibrium; balance the loads or support that motion."
+        )
 
 
 class Equilibrium:
