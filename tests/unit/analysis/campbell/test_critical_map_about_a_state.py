@@ -35,18 +35,19 @@ def with_bearings(model: rg.Model, k: float) -> rg.Model:
 @pytest.mark.parametrize(
     ("model", "stop"),
     [
-        (lambda: helical("9.4e8 N/m"), "90000 rpm"),
-        (lambda: helical("iso", **{"meshes.stage.misalignment": "12 um"}), "-90000 rpm"),
-        pytest.param(overhung, "30000 rpm", marks=pytest.mark.long),
+        (lambda: helical("9.4e8 N/m", **{"meshes.stage.misalignment": "40 um"}), "90000 rpm"),
+        (lambda: helical("iso", **{"meshes.stage.misalignment": "-35 um"}), "-90000 rpm"),
+        pytest.param(overhung, "60000 rpm", marks=pytest.mark.long),
     ],
 )
 def test_the_map_is_what_critical_finds_with_just_these_bearings(model, stop) -> None:
     given = model()
     for k in (4e7, 6e8):
-        row = rg.critical_map(given, stiffness=[k], stop=stop, elements=2).critical_speeds[0]
+        found = rg.critical_map(given, stiffness=[k], stop=stop, elements=2)
+        row = found.critical_speeds[0]
         same = rg.critical(
             with_bearings(given, k), stop=stop, elements=2, damped=False, shaft_orders=(1.0,), mesh_orders=()
         )
-        expected = [item.speed for item in same.speeds if given.reference_shaft in item.line]
-        assert len(expected) >= 3
+        expected = [item.speed for item in same.speeds if item.line == found.line]
+        assert len(expected) >= 2
         assert np.sort(np.abs(row[np.isfinite(row)])) == pytest.approx(np.sort(np.abs(expected)), rel=1e-6)
