@@ -126,6 +126,67 @@ def test_a_system_has_the_layout_of_its_model_whatever_the_state_was_found_on() 
     assert system.state.layout is system.layout
 
 
+def on_films(**changes: Any) -> rg.Model:
+    """A helical pair whose pinion floats in oil across its shaft, under its weight."""
+    film = {
+        "diameter": "40 mm",
+        "length": "30 mm",
+        "clearance": "30 um",
+        "viscosity": "0.02 Pa s",
+        "around": 60,
+        "along": 4,
+    }
+    return rg.load(MODELS / "helical_pair.toml").with_(
+        {
+            "operation.gravity": [0.0, -9.81, 0.0],
+            "bearings.input_right": {"shaft": "input", "at": "60 mm", "journal": film},
+            **changes,
+        }
+    )
+
+
+@pytest.mark.parametrize("speed", [200.0, -200.0, "-2970 rpm"])
+def test_a_system_has_the_equilibrium_of_its_model_at_a_speed_of_either_sense(speed: float | str) -> None:
+    model = on_films()
+    expected = rg.modal(model, speed=speed, modes=8, elements=2).eigenvalues
+    for direction in (1, -1):
+        system = rg.System(model, 2, state=model.torque_flow(direction))
+        assert rg.modal(system, speed=speed, modes=8).eigenvalues == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_system_at_standstill_has_the_equilibrium_of_its_own_sense() -> None:
+    model = on_films()
+    system = rg.System(model, 2, state=model.torque_flow(-1))
+    expected = rg.modal(on_films(**{"operation.speed": "-2970 rpm"}), modes=6, elements=2).frequency_hz
+    assert rg.modal(system, modes=6).frequency_hz == pytest.approx(expected, rel=1e-9)
+
+
+def test_motions_in_time_take_laws_and_not_what_another_equilibrium_found_of_them() -> None:
+    model = on_films()
+    plain, about = (
+        rg.transient(rg.System(model, 1, state=state), speed=250.0, time=0.002, steps=40, error_estimate=False)
+        for state in (None, state_at(model, [250.0]))
+    )
+    assert np.array_equal(plain.mesh_force, about.mesh_force)
+    assert plain.left_out == about.left_out
+
+
+def test_a_system_says_what_its_model_says_of_laws_with_a_stiffness_beside_them() -> None:
+    model = rg.load(MODELS / "helical_pair.toml").with_(
+        {
+            "nonlinear_elements.guard": {
+                "law": "journal_bearing",
+                "shaft": "input",
+                "at": "30 mm",
+                "parameters": {"radius": "20 mm", "length": "20 mm", "clearance": "90 um", "viscosity": "0.01 Pa s"},
+                "stiffness": {"radial": "1e6 N/m"},
+            }
+        }
+    )
+    said = rg.modal(rg.System(model, 1), modes=4).left_out
+    assert any("nonlinear_elements.guard: the stiffness given beside it is taken" in note for note in said)
+
+
 def test_old_names_of_the_state_are_read_with_a_warning() -> None:
     model = askew()
     with pytest.warns(FutureWarning, match="torque_flow"):

@@ -22,14 +22,17 @@ from rotorgear.system.flow_system import flow_system
 _CARRIES = 1e-3
 
 
-def state_speed(model: Model, speeds: Sequence[float | None]) -> float:
+def state_speed(model: Model, speeds: Sequence[float | None], direction: int) -> float:
     """Speed in rad/s of the static state that analyses at some speeds of one sense are about.
 
-    It is the operating speed where that has the same sense, else the first one; None stands for standstill.
+    It is the operating speed where that has the same sense, else the first one; None stands for standstill, where it is the
+    operating speed in the sense +1 or -1 of the state.
     """
     asked = [speed for speed in speeds if speed is not None]
     operating = (model.operation.speed if model.operation else None) or 0.0
-    return operating if not asked or operating * min(asked, key=abs) > 0.0 else asked[0]
+    if not asked:
+        return direction * abs(operating)
+    return operating if operating * min(asked, key=abs) > 0.0 else asked[0]
 
 
 def about_cycle(model: Model, speeds: Sequence[float | None], state: State) -> State:
@@ -45,7 +48,7 @@ def about_cycle(model: Model, speeds: Sequence[float | None], state: State) -> S
     teeth = [name for name, mesh in model.meshes.items() if mesh.stiffness == "tooth_fe"]
     if not teeth or not state.applied:
         return state
-    speed = state_speed(model, speeds)
+    speed = state_speed(model, speeds, state.direction)
     flow = state.of_kind("static")
     try:
         equilibrium, joint = over_cycle(equilibrate(flow_system(model).with_state(flow), speed), speed)

@@ -149,7 +149,7 @@ def along_faces(model: Model, speeds: Sequence[float | None], state: State) -> S
     tilted = [name for name, mesh in model.meshes.items() if mesh.tilt]
     if not tilted or not state.applied:
         return state
-    speed = state_speed(model, speeds)
+    speed = state_speed(model, speeds, state.direction)
     films = tuple(state.films.items())
     key = ("along faces", speed, state.direction, films, tuple(state.mapped_at.items()))
     if key in model.states and not state.tangents:

@@ -60,8 +60,7 @@ def state_at(
     Raises:
         AnalysisError: there is no equilibrium at one of the speeds.
     """
-    turning = [speed for speed in speeds if speed]
-    sense = direction or (int(np.sign(min(turning, key=abs))) if turning else model.layout.direction)
+    sense = direction or sense_of(speeds) or model.layout.direction
     mapped_at = beside.shared_maps if beside else {}
     if springs:
         return _state_at(model, speeds, replace(model.torque_flow(sense), tangents=springs, mapped_at=mapped_at), near)
@@ -82,20 +81,28 @@ def linear_system(
 ) -> System:
     """The linear system of a model about its equilibrium at some speeds, as `state_at` has them, on the mesh of a plan.
 
-    `state` is the one about that equilibrium where it is known already. A system that is assembled keeps its mesh, its sense of
-    rotation, and the state that it is about where an equilibrium found that.
+    `state` is the one about that equilibrium where it is known already. A system that is assembled keeps its mesh, and the state
+    that it is about where an equilibrium found that; its torque flow is that of the sense of the speeds.
     """
     if not isinstance(model, System):
         return System(model, plan=plan, state=state or state_at(model, speeds, beside=beside))
     if not model.state.is_flow:
         return model
+    sense = sense_of(speeds)
+    if sense and sense != model.direction:
+        model = model.with_state(model.model.torque_flow(sense))
     found = state_at(model.model, speeds, direction=model.direction)
-    if found.is_flow:
+    if found.is_flow and not found.notes:
         return model
     # Its own flanks and forces stay where the equilibrium says nothing of the meshes.
     if not (found.faces or found.cycle):
         found = replace(model.state, tangents=found.tangents, notes=found.notes)
     return model.with_state(found)
+
+
+def sense_of(speeds: Sequence[float | None]) -> int:
+    """+1 or -1, the sense about +z of speeds of the reference shaft in rad/s; 0 where none of them turns it."""
+    return int(np.sign(min((speed for speed in speeds if speed), key=abs, default=0.0)))
 
 
 def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: Sequence[LawState]) -> State:
@@ -126,8 +133,8 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
     from rotorgear.analysis.static.law_states import law_rows
     from rotorgear.analysis.static.solve import equilibrate
 
-    operating = model.operation.speed if model.operation else None
-    at = sorted({(operating or 0.0) if speed is None else float(speed) for speed in speeds}, key=abs)
+    operating = state.direction * abs((model.operation.speed if model.operation else None) or 0.0)
+    at = sorted({operating if speed is None else float(speed) for speed in speeds}, key=abs)
     system = flow_system(model).with_state(state.of_kind("static"))
     # Each begins where the one before stands.
     found: list[dict[str, LawState]] = []

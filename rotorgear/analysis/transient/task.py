@@ -52,8 +52,10 @@ def prepare(
     if direction != given.direction:
         given = given.with_state(given.model.torque_flow(direction))
     found = state_in_time(given.model, largest, direction)
-    # Forces and flanks of a given state stay where the equilibrium says nothing of the teeth.
-    given = given.with_state(found if found.faces else replace(given.state, films=found.films))
+    # Forces and flanks of a given torque flow stay where the equilibrium says nothing of the teeth; what else a given state has
+    # is linear about another equilibrium, and motions in time take the laws themselves.
+    keep = given.state.is_flow and not found.faces
+    given = given.with_state(replace(given.state, films=found.films) if keep else found)
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
