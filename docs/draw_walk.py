@@ -23,8 +23,8 @@ BLUE = "#1f4e79"
 
 def draw(path: Path) -> None:
     """Write the picture."""
-    figure, axes = plt.subplots(figsize=(14.5, 2.7), dpi=110)
-    width, gap, height = 1.9, 1.2, 1.5
+    figure, axes = plt.subplots(figsize=(15.5, 2.6), dpi=110)
+    width, gap, height = 2.0, 1.5, 1.5
     for k, (name, holds, maker) in enumerate(WALK):
         x = k * (width + gap)
         colour = "#fde9d9" if name == "State" else "#eef3f8"
