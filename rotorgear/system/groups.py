@@ -194,10 +194,9 @@ def table_groups(state: State, nodes: Nodes, speed: float) -> list[ElementGroup]
     found = []
     for make, table in ((_bearing, "bearings"), (_element, "nonlinear_elements")):
         for name, part in getattr(layout.model, table).items():
-            spring = state.springs[f"{table}.{name}"]
-            if spring.varies:
-                values = spring.at(abs(layout.train.ratio(part.shaft) * speed), f"{table}.{name}")
-                found.append(make(layout, nodes, name, part, *values))
+            address = f"{table}.{name}"
+            if state.springs[address].varies:
+                found.append(make(layout, nodes, name, part, *state.spring_at(address, speed)))
     return found
 
 

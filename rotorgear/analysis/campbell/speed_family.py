@@ -147,8 +147,7 @@ def table_speeds(system: System, low: float, high: float) -> np.ndarray:
     for address, spring in system.state.springs.items():
         if not spring.varies:
             continue
-        table, _, name = address.partition(".")
-        ratio = abs(system.train.ratio(getattr(system.model, table)[name].shaft))
+        ratio = system.state.shaft_ratio(address)
         found |= {low, high}
         for row in spring.speeds if ratio else ():
             speed = sign * row / ratio

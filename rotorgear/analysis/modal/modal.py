@@ -91,22 +91,24 @@ def modes_about(
     model: Model | System, asked: ModalRequest, state: State | None = None, progress: Progress = silent
 ) -> ModalResult:
     """The modes of a model about a state, for analyses that know it; None: about its equilibrium. Errors are those of `modal`."""
-    speed, modes, fmax, elements = asked.speed, asked.modes, asked.fmax, asked.elements
-    only, error_estimate = asked.only, asked.error_estimate
-    check_request(speed, modes, fmax, elements, asked.accuracy)
+    speed = asked.speed
+    modes = asked.modes
+    fmax = asked.fmax
+    only = asked.only
+    check_request(speed, modes, fmax, asked.elements, asked.accuracy)
     unknown = set(only) - set(MOTIONS)
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
     clock = Clock()
     if modes is None and fmax is None:
         modes = DEFAULT_MODES
-    fixed = isinstance(model, System) or elements is not None
+    fixed = isinstance(model, System) or asked.elements is not None
     served, short = (model, ()) if isinstance(model, System) else serving(model, fmax)
-    plan = Plan(elements) if elements else (Plan() if fixed else START)
+    plan = Plan(asked.elements) if asked.elements else (Plan() if fixed else START)
     system = linear_system(served, [speed], plan, state=state)
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    if not (fixed or error_estimate):
+    if not (fixed or asked.error_estimate):
         raise AnalysisError(
             "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
         )
@@ -126,13 +128,15 @@ def modes_about(
         found = _solved(system, Wanted(speed, *reach.solver_request(), only, asked.pruning), apart)
         clock.lap("modes")
         q = system.dofs.expand(found.vectors)
-        parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if error_estimate else {}
+        parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if asked.error_estimate else {}
         estimate = (
-            total_error(parts, len(found.eigenvalues)) if error_estimate else np.full(len(found.eigenvalues), np.nan)
+            total_error(parts, len(found.eigenvalues))
+            if asked.error_estimate
+            else np.full(len(found.eigenvalues), np.nan)
         )
         clock.lap("error estimate")
         if fixed:
-            if error_estimate:
+            if asked.error_estimate:
                 estimate = enriched_errors(system, Wanted(speed, None, None, only, asked.pruning), found, estimate)
             break
         size = np.abs(found.eigenvalues)

@@ -69,11 +69,7 @@ def at_speed(state: State, speed: float) -> State:
     """
     changed = {}
     for address, spring in state.springs.items():
-        table, _, name = address.partition(".")
-        turns = 0.0
-        if spring.varies:
-            turns = abs(state.layout.train.ratio(getattr(state.layout.model, table)[name].shaft) * speed)
-        stiffness, _ = spring.at(turns, address)
+        stiffness, _ = state.spring_at(address, speed)
         if spring.varies or not np.array_equal(stiffness, stiffness.T):
             changed[address] = constant_spring(_conservative(stiffness), np.zeros((6, 6)))
     return replace(state, tangents={**state.tangents, **changed}) if changed else state

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.rig.posterior import Posterior
+from rotorgear.model.layout.state import SPRING_TABLES
 from rotorgear.results.rig.comparison import RigLine
 from rotorgear.results.rig.learnt import LearntParameter
 
@@ -19,7 +20,7 @@ from rotorgear.results.rig.learnt import LearntParameter
 STIFFNESS_PRIOR = 0.30
 LINE_NOISE = 0.005
 # Stiffness of shafts, casings and elastic gears follows from drawings and a modulus known to a few per cent.
-SPRINGS = ("meshes", "bearings", "supports", "couplings", "nonlinear_elements")
+SPRINGS = ("meshes", *SPRING_TABLES)
 
 
 def learnt_stiffnesses(

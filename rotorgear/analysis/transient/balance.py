@@ -26,7 +26,7 @@ _SEEN = 1e-9
 _ROUNDING = 1e-6
 
 
-def unbalanced(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
+def off_statics(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
     """Sentences on contacts whose mean force differs from statics by more than its error (c,)."""
     local = task.local.local
     force = Statistics.of_steps(found.state.gathered).chosen(slice(0, local.m))

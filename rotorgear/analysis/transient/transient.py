@@ -13,7 +13,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.ground import mean_torsion_notes
-from rotorgear.analysis.transient.balance import unbalanced
+from rotorgear.analysis.transient.balance import off_statics
 from rotorgear.analysis.transient.choice_of_step import Choice, fine_enough
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
@@ -221,7 +221,7 @@ def _result(
     )
     notes = transient_warnings(result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy)
     if result.status == "success":
-        notes += unbalanced(found, task, errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
+        notes += off_statics(found, task, errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
     return replace(result, warnings=notes)
 
 

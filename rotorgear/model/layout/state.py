@@ -29,6 +29,8 @@ from rotorgear.model.layout.spring import Spring, given_spring
 from rotorgear.model.layout.tooth_numbers import ToothNumbers, tooth_numbers
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from rotorgear.gears.maps.contact_map import ContactMap
     from rotorgear.gears.maps.face_map import FaceMap
     from rotorgear.gears.stiffness.face_load import FaceLoad
@@ -38,8 +40,8 @@ if TYPE_CHECKING:
     Faces = Mapping[str, tuple[FaceLoad, ...]]
     Misalignments = Mapping[str, tuple[tuple[float, ...], ...]]
 
-# Parts that linear analyses take as springs.
-SPRINGS = ("bearings", "supports", "couplings", "nonlinear_elements")
+# Tables of the file whose parts linear analyses take as springs.
+SPRING_TABLES = ("bearings", "supports", "couplings", "nonlinear_elements")
 
 
 @dataclass(frozen=True)
@@ -109,8 +111,22 @@ class State:
     def springs(self) -> dict[str, Spring]:
         """Bearings, supports, couplings and nonlinear elements as linear analyses take them, by address."""
         model = self.layout.model
-        given = ((f"{table}.{name}", part) for table in SPRINGS for name, part in getattr(model, table).items())
+        given = ((f"{table}.{name}", part) for table in SPRING_TABLES for name, part in getattr(model, table).items())
         return {address: self.tangents.get(address) or given_spring(part) for address, part in given}
+
+    def shaft_ratio(self, address: str) -> float:
+        """Speed of the shaft of a bearing or an element, whatever its sense, over that of the reference."""
+        table, _, name = address.partition(".")
+        return abs(self.layout.train.ratio(getattr(self.layout.model, table)[name].shaft))
+
+    def spring_at(self, address: str, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness and damping (6, 6) of a part at a speed of the reference shaft in rad/s.
+
+        Raises:
+            AnalysisError: the speed of its shaft lies outside its table.
+        """
+        spring = self.springs[address]
+        return spring.at(self.shaft_ratio(address) * abs(speed) if spring.varies else 0.0, address)
 
     def of_kind(self, kind: Kind) -> State:
         """The same state with the other stiffness of the contacts; one about the mesh cycle has one for both."""
