@@ -129,11 +129,8 @@ def modes_about(
         clock.lap("modes")
         q = system.dofs.expand(found.vectors)
         parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if asked.error_estimate else {}
-        estimate = (
-            total_error(parts, len(found.eigenvalues))
-            if asked.error_estimate
-            else np.full(len(found.eigenvalues), np.nan)
-        )
+        count = len(found.eigenvalues)
+        estimate = total_error(parts, count) if asked.error_estimate else np.full(count, np.nan)
         clock.lap("error estimate")
         if fixed:
             if asked.error_estimate:

@@ -56,8 +56,7 @@ def about_mean(model: Model, speeds: Sequence[float | None], at: float) -> tuple
     Raises:
         AnalysisError: there is no equilibrium, or some contact is open in it.
     """
-    system = flow_system(model, direction=direction_of(at), kind="static")
-    return state_at(model, speeds), mean_state(system, at)
+    return state_at(model, speeds), mean_state(flow_system(model, direction=direction_of(at), kind="static"), at)
 
 
 def mean_state(system: System, speed: float) -> Setup:

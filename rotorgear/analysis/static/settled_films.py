@@ -25,8 +25,7 @@ def state_in_time(model: Model, speed: float, direction: int | None = None) -> S
     Raises:
         AnalysisError: there is no equilibrium at that speed.
     """
-    flow = model.torque_flow(direction)
-    return along_faces(model, [speed], replace(flow, films=settled_films(model, speed)))
+    return along_faces(model, [speed], replace(model.torque_flow(direction), films=settled_films(model, speed)))
 
 
 def settled_films(model: Model, speed: float) -> dict[str, FilmState]:

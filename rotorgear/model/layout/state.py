@@ -286,9 +286,8 @@ class State:
         contact = force.contact
         if contact.mesh not in self.faces:
             return None
-        asked = self.map_misalignments(contact)
         return self.layout.mesh(contact.mesh).face_map(
-            contact.helix, self._working_load(force), asked, force.torque_sense, near
+            contact.helix, self._working_load(force), self.map_misalignments(contact), force.torque_sense, near
         )
 
     def map_misalignments(self, contact: Contact) -> tuple[float, ...]:
