@@ -102,8 +102,6 @@ BY_NAME = {
     "rotorgear.results.result": "rotorgear.results.tables",
     "rotorgear.analysis.sweep.cluster": "rotorgear",  # versions of packages, asked for on a worker
 }
-# Folders that are rooms' floors, or rooms, hold no more files than this.
-FULL = 20
 Arrows = dict[str, dict[str, int]]  # importing module -> imported module -> line
 
 
@@ -318,13 +316,6 @@ def test_every_result_finds_its_table_in_the_room_of_tables_and_every_table_has_
         of_kinds.add(Path(str(module.__file__)).stem)
     tables = {file.stem for file in (ROOT / "rotorgear" / "results" / "tables").rglob("*.py")}
     assert tables - {"__init__", "common"} == of_kinds
-
-
-def test_no_folder_of_a_floor_with_rooms_is_too_full() -> None:
-    for floor in ("analysis", "solvers", "gears", "model", "results"):
-        for folder in [ROOT / "rotorgear" / floor, *(ROOT / "rotorgear" / floor).iterdir()]:
-            if folder.is_dir():
-                assert len(list(folder.glob("*.py"))) <= FULL, folder
 
 
 def build(root: Path, files: dict[str, str]) -> Arrows:
