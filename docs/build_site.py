@@ -1,5 +1,7 @@
-"""Build the site from these pages:  python docs/build_site.py [FOLDER]
+"""Build the site from these pages:  python docs/build_site.py [FOLDER] [--long]
 
+Where a generator (docs/generate_*.py) has a function `site_pages`, the repository keeps the summary that its `pages` makes, and
+the site shows the whole page, made anew; one that takes minutes (`LONG = True`) only with --long.
 mkdocs-material (extra `site`) makes it; formulas become MathML, which browsers show by themselves: the site needs no network.
 Links to files of the repository outside of docs/ lead to copies of them. Every warning is an error.
 """
@@ -16,6 +18,7 @@ import tempfile
 from pathlib import Path
 
 from machinery.notebooks import notebooks, write_page
+from update import generators, load_generator
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -80,10 +83,20 @@ def with_formulas(text: str) -> str:
     return re.sub(r"\0(\d+)\0", lambda number: kept[int(number[1])], text)
 
 
-def stage(folder: Path) -> None:
+def whole_pages(*, long: bool = False) -> dict[str, str]:
+    """The pages of which the repository keeps a summary, by their file's name."""
+    found: dict[str, str] = {}
+    for file in generators():
+        generator = load_generator(file)
+        if hasattr(generator, "site_pages") and (long or not getattr(generator, "LONG", False)):
+            found |= {Path(name).name: text for name, text in generator.site_pages().items()}
+    return found
+
+
+def stage(folder: Path, *, long: bool = False) -> None:
     """Put the pages and what they link to into a folder."""
     shutil.copytree(DOCS / "pictures", folder / "pictures")
-    pages = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")}
+    pages = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")} | whole_pages(long=long)
     pages |= {f"{file.stem}.md": write_page(file, folder) for file in notebooks()}
     linked = {link["target"].removeprefix("../") for text in pages.values() for link in _LINK.finditer(text)}
     for name in BESIDE:
@@ -158,7 +171,7 @@ def unlisted() -> list[str]:
     return sorted(page.stem for page in [*DOCS.glob("*.md"), *notebooks()] if page.stem not in listed)
 
 
-def build(target: Path) -> None:
+def build(target: Path, *, long: bool = False) -> None:
     """Build the site in a folder.
 
     Raises:
@@ -174,7 +187,7 @@ def build(target: Path) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         source = Path(scratch) / "docs"
         source.mkdir()
-        stage(source)
+        stage(source, long=long)
         config = Path(scratch) / "mkdocs.yml"
         config.write_text("site_name: rotorgear\n", encoding="utf-8")
         made = load_config(str(config), **settings(source, target))
@@ -185,14 +198,16 @@ def main() -> int:
     """Read the command line and build."""
     parser = argparse.ArgumentParser(description="Build the site from the pages of docs/.")
     parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "site", help="where to (default: site)")
-    folder = parser.parse_args().folder.resolve()
+    parser.add_argument("--long", action="store_true", help="make the whole pages that take minutes, too")
+    options = parser.parse_args()
+    folder = options.folder.resolve()
     try:
         import latex2mathml  # noqa: F401
         import mkdocs  # noqa: F401
     except ImportError:
         print("docs/build_site.py needs mkdocs-material and latex2mathml: pip install -e '.[site]'", file=sys.stderr)
         return 2
-    build(folder)
+    build(folder, long=options.long)
     print(f"wrote {html.escape(str(folder / 'index.html'))}")
     return 0
 

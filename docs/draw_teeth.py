@@ -1,6 +1,7 @@
 """Draws docs/pictures/mesh_stress.png: python docs/draw_teeth.py [FOLDER of rotorgear mesh --vtk]
 
-The pinion of validation/E4/helical.toml, deflected 200 times as much as it is, with its equivalent stress and its contact lines.
+The pinion of validation/cases/tooth_fe_contact/helical.toml,
+deflected 200 times as much as it is, with its equivalent stress and its contact lines.
 Without a folder the teeth are solved first, which takes a minute.
 """
 
@@ -26,7 +27,7 @@ def solve(folder: Path) -> None:
     from rotorgear.analysis.teeth.tooth_field import tooth_fields
     from rotorgear.export.tooth_vtk import write_tooth_vtk
 
-    write_tooth_vtk(tooth_fields(rg.load(ROOT / "validation" / "E4" / "helical.toml")), folder)
+    write_tooth_vtk(tooth_fields(rg.load(ROOT / "validation" / "cases" / "tooth_fe_contact" / "helical.toml")), folder)
 
 
 def draw(folder: Path) -> None:

@@ -7,7 +7,7 @@ Every number on a page is printed by a command beside it. This runs the marked b
 `machinery/snippets.py`), puts in what they print now, and writes the generated pages. A generator is a file
 `docs/generate_*.py` with a function `pages() -> dict[str, str]`: the text of each page by its path from the top of the
 repository. With `LONG = True` at its top it only runs with --long. So do the notebooks and the long blocks of pages, where
-these are not named.
+these are not named. A generator with `site_pages()` as well keeps a summary here, and the whole page is made with the site.
 """
 
 from __future__ import annotations

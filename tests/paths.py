@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 MODELS = ROOT / "models"
-VALIDATION = ROOT / "validation"
+VALIDATION = ROOT / "validation" / "cases"
 SOUND = ROOT / "tests" / "sound"
 
 # Their teeth, or their casing, are computed by finite elements first, which takes longer than most tests.

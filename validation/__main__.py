@@ -11,7 +11,7 @@ from validation.runner import main
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="python -m validation", description="Run the validation cases.")
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run, such as B1 C1 (default: all)")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run, such as two_disk_rotor (default: all)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows to a file as well")
     options = parser.parse_args()
     try:

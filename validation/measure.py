@@ -20,11 +20,8 @@ import numpy as np
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
 from rotorgear.results.steady.modal import ModalResult
-from validation.cases import Case, Expectation
-from validation.forced import FORCED
-from validation.mesh import is_of_mesh, measure_mesh
-from validation.quantities import elastic
-from validation.sheet import is_of_sheet, measure_sheet
+from validation.case import Case, Expectation
+from validation.quantities import FORCED, SHEET, TEETH, elastic, sheet_number, teeth_number
 
 PAIR_AGREEMENT = 1e-10
 MOST_RIGID = 6
@@ -51,15 +48,22 @@ class Solver:
 
     def measure(self, line: Expectation) -> Measured:
         """Measure what a line asks for."""
+        start = time.perf_counter()
+        file = self.case.folder / line.model
         if line.model.endswith(".py"):
-            return self._program(line)
+            # A program in the case's folder: its function measure(quantity, mode) returns the number.
+            program = import_module(f"validation.cases.{self.case.name}.{file.stem}")
+            return Measured(float(program.measure(line.quantity, line.mode)), 0, time.perf_counter() - start)
+        if line.quantity.startswith(SHEET):
+            return Measured(sheet_number(file, line.quantity), 0, time.perf_counter() - start)
+        if line.quantity.startswith(TEETH):
+            number, dofs = teeth_number(file, line.quantity)
+            return Measured(number, dofs, time.perf_counter() - start)
         if line.quantity in FORCED:
-            return self._forced(line)
-        if is_of_sheet(line.quantity):
-            got_from_sheet, time_taken = measure_sheet(self.case.folder, line.model, line.quantity)
-            return Measured(got_from_sheet, 0, time_taken)
-        if is_of_mesh(line.quantity):
-            return Measured(*measure_mesh(self.case.folder, line.model, line.quantity))
+            elements = line.elements[0] if line.elements else None
+            response = rg.response(rg.load(file), speeds=[line.speed], elements=elements, accuracy=line.accuracy)
+            number = float(FORCED[line.quantity](response)[int(line.mode) - 1])
+            return Measured(number, response.dofs, time.perf_counter() - start)
         kind, name = _split(line.quantity)
         runs = [self._solve(key) for key in keys(line)]
         values = [_pick(elastic(result, name), line.mode) for result, _ in runs]
@@ -67,21 +71,6 @@ class Solver:
         got = _combine(kind, line, [value for value, _ in values], self.case)
         seconds = sum(seconds for _, seconds in runs)
         return Measured(got, max(result.dofs for result, _ in runs), seconds, "; ".join(sorted(complaints)))
-
-    def _program(self, line: Expectation) -> Measured:
-        """Ask a program in the case's folder: its function measure(quantity, mode) returns the number."""
-        start = time.perf_counter()
-        module = import_module(f"validation.{self.case.name}.{Path(line.model).stem}")
-        return Measured(float(module.measure(line.quantity, line.mode)), 0, time.perf_counter() - start)
-
-    def _forced(self, line: Expectation) -> Measured:
-        """Amplitude or lag of one order at the line's speed."""
-        start = time.perf_counter()
-        model = rg.load(self.case.folder / line.model)
-        elements = line.elements[0] if line.elements else None
-        result = rg.response(model, speeds=[line.speed], elements=elements, accuracy=line.accuracy)
-        value = float(FORCED[line.quantity](result)[int(line.mode) - 1])
-        return Measured(value, result.dofs, time.perf_counter() - start)
 
     def _solve(self, key: Key) -> tuple[ModalResult, float]:
         if key not in self.solved:

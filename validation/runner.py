@@ -7,50 +7,13 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
-from validation.cases import Case, Expectation, read_cases
-from validation.forced import FORCED
+from validation.case import Case, Expectation, read_cases
 from validation.measure import Solver
-from validation.mesh import is_of_mesh, mesh_words
-from validation.quantities import words
-from validation.sheet import is_of_sheet, sheet_words
-from validation.table import printed
-
-
-@dataclass(frozen=True)
-class Row:
-    """One judged line.
-
-    Attributes:
-        case, what: name of the case, and what was compared in words.
-        expected, got: numbers or words.
-        error: relative to the expected number, or absolute where the tolerance is; 0 for words that agree, else 1.
-        tolerance: what was allowed, as in expected.csv; "" is shown but not judged.
-        passed: whether the error is within.
-        dofs, seconds: of the largest model, and of all solutions of this line.
-        reason: why a line failed; "" for one that passed.
-        source, note: as in expected.csv.
-    """
-
-    case: str
-    what: str
-    expected: str
-    got: float | str
-    error: float
-    tolerance: str
-    passed: bool
-    dofs: int
-    seconds: float
-    reason: str
-    source: str
-    note: str
-
-    @property
-    def judged(self) -> bool:
-        """Whether the line has a tolerance."""
-        return bool(self.tolerance)
+from validation.quantities import FORCED, SHEET, TEETH, words
+from validation.table import Row, printed
 
 
 def run(cases: Sequence[Case]) -> Iterator[Row]:
@@ -96,10 +59,8 @@ def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
     if line.model.endswith(".py"):
         return ", ".join(part for part in (line.quantity, line.mode) if part)
-    if is_of_mesh(line.quantity):
-        return f"{Path(line.model).stem}, {mesh_words(line.quantity)}"
-    if is_of_sheet(line.quantity):
-        return f"{Path(line.model).stem}, {sheet_words(line.quantity)}"
+    if line.quantity.startswith((SHEET, TEETH)):
+        return f"{Path(line.model).stem}, {words(line.quantity)}"
     parts = [
         Path(line.model).stem,
         f"{'order' if line.quantity in FORCED else 'mode'} {line.mode}",
@@ -141,6 +102,3 @@ def _write_json(file: Path, rows: Sequence[Row], seconds: float) -> None:
     unfinished = file.with_name(file.name + ".new")
     unfinished.write_text(json.dumps({"seconds": seconds, "rows": plain}, indent=1) + "\n", encoding="utf-8")
     os.replace(unfinished, file)
-
-
-__all__ = ["Row", "describe", "main", "run"]

@@ -3,15 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from validation.runner import Row
+from dataclasses import dataclass
 
 HEAD = ("case", "what", "expected", "got", "error", "allowed", "", "dofs", "time")
 _RIGHT = {"expected", "got", "error", "dofs", "time"}
 # Differences this small are rounding, which is another one on every machine.
 ROUNDING = 1e-8
+
+
+@dataclass(frozen=True)
+class Row:
+    """One judged line.
+
+    Attributes:
+        case, what: name of the case, and what was compared in words.
+        expected, got: numbers or words.
+        error: relative to the expected number, or absolute where the tolerance is; 0 for words that agree, else 1.
+        tolerance: what was allowed, as in expected.csv; "" is shown but not judged.
+        passed: whether the error is within.
+        dofs, seconds: of the largest model, and of all solutions of this line.
+        reason: why a line failed; "" for one that passed.
+        source, note: as in expected.csv.
+    """
+
+    case: str
+    what: str
+    expected: str
+    got: float | str
+    error: float
+    tolerance: str
+    passed: bool
+    dofs: int
+    seconds: float
+    reason: str
+    source: str
+    note: str
+
+    @property
+    def judged(self) -> bool:
+        """Whether the line has a tolerance."""
+        return bool(self.tolerance)
 
 
 def number(got: float | str, expected: str) -> str:

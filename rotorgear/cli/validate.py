@@ -15,7 +15,8 @@ from rotorgear.errors import AnalysisError
 
 def validate(
     cases: Annotated[
-        list[str] | None, typer.Argument(help="Cases to run, such as B1 C1 (default: all).", show_default=False)
+        list[str] | None,
+        typer.Argument(help="Cases to run, such as two_disk_rotor (default: all).", show_default=False),
     ] = None,
     json: JsonOption = None,
 ) -> None:

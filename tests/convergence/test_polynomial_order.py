@@ -144,7 +144,7 @@ def test_a_shaft_that_no_requested_mode_moves_stays_as_it_started() -> None:
 
 
 def test_a_spinning_beam_is_within_the_accuracy_and_its_estimate_is_honest() -> None:
-    """Closed-form quartic (kGA k^2 - rho A w^2)(E I k^2 + kGA - rho I w^2 + 2 rho I W w) = (kGA k)^2 of case A4."""
+    """Closed-form quartic (kGA k^2 - rho A w^2)(E I k^2 + kGA - rho I w^2 + 2 rho I W w) = (kGA k)^2 of case spinning_shaft."""
     model = pinned_beam(0.2)
     exact = {"b": 2428.15841364 / (2 * np.pi), "f": 2449.22609259 / (2 * np.pi)}
     result = rg.modal(model, speed=500.0, modes=2, accuracy=1e-8)

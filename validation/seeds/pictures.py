@@ -13,9 +13,9 @@ import numpy as np
 import rotorgear as rg
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import new_figure, save
+from validation.cases.split_torque_lines.spectrum import run as split_torque
 from validation.seeds import kept, marine, pair12, pair16, pair24
 from validation.seeds.rows import changed, loaded
-from validation.T1.spectrum import run as split_torque
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "pictures"
 

@@ -9,9 +9,9 @@ from functools import cache
 import numpy as np
 
 import rotorgear as rg
+from validation.cases.split_torque_lines.spectrum import excited, run
 from validation.seeds import kept
 from validation.seeds.rows import entries, loaded
-from validation.T1.spectrum import excited, run
 
 MODEL = "split_torque"
 TOLERANCE = 0.07

@@ -25,7 +25,9 @@ def run_up() -> rg.ResponseResult:
 @pytest.fixture(scope="module")
 def lone_rotor() -> rg.ResponseResult:
     """Neither mesh nor bearing nor point."""
-    data = tomllib.loads((ROOT / "validation" / "B4" / "unbalanced.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads(
+        (ROOT / "validation" / "cases" / "jeffcott_rotor" / "unbalanced.toml").read_text(encoding="utf-8")
+    )
     return rg.response(rg.Model(**{**data, "points": {}}), speeds=[50.0, 90.0, 120.0], elements=1)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from validation.D4.exponents import measure
+from validation.cases.lyapunov_exponents.exponents import measure
 
 
 def test_exponents_of_an_orbit_with_parting_flanks_hold_at_the_usual_steps() -> None:

@@ -17,7 +17,7 @@ from rotorgear.uff.datasets import Function, Shape
 from rotorgear.uff.read import read_universal
 from rotorgear.uff.write import function_set, nodes_set, shape_set, units_set
 from tests.paths import MODELS
-from validation.rigs import draw, nominal
+from validation.studies.rigs import draw, nominal
 
 
 @pytest.fixture(scope="module")

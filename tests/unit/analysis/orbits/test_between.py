@@ -9,7 +9,7 @@ import rotorgear as rg
 from rotorgear.analysis.orbits.between import between
 from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from tests.paths import MODELS
-from validation.dead_zone import HALF_BACKLASH, STIFFNESS, TEETH, DeadZone
+from validation.studies.dead_zone import HALF_BACKLASH, STIFFNESS, TEETH, DeadZone
 
 
 def _family(name: str, address: str, ends: str, excite: str | None = None) -> SystemFamily:

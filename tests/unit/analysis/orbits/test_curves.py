@@ -8,7 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
 from tests.paths import MODELS
-from validation.dead_zone import DeadZone
+from validation.studies.dead_zone import DeadZone
 
 
 def _curve(case: DeadZone, W: tuple[float, float], ripple: tuple[float, float], method: str) -> rg.OrbitsResult:

@@ -11,8 +11,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.solvers.periodic.floquet import basis_of
 from tests.paths import MODELS
 from tests.unit.analysis.spur_pair import spur_pair
-from validation.dead_zone import HALF_BACKLASH, DeadZone, jumps
-from validation.F5.whirl import FINITE, SHORT, closed_form, model
+from validation.cases.journal_whirl.whirl import FINITE, SHORT, closed_form, model
+from validation.studies.dead_zone import HALF_BACKLASH, DeadZone, jumps
 
 
 def test_shooting_finds_the_fold_of_an_oscillator_with_a_dead_zone() -> None:

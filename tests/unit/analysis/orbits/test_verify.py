@@ -8,8 +8,8 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.orbits.verify import _growth
 from tests.paths import MODELS
-from validation.dead_zone import DeadZone
-from validation.F5.whirl import SHORT, closed_form, model
+from validation.cases.journal_whirl.whirl import SHORT, closed_form, model
+from validation.studies.dead_zone import DeadZone
 
 
 @pytest.mark.parametrize(

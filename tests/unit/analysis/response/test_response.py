@@ -23,7 +23,7 @@ def split_torque(**changes: Any) -> rg.Model:
 
 
 def jeffcott(**parts: Any) -> rg.Model:
-    data = tomllib.loads((ROOT / "validation" / "B4" / "model.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((ROOT / "validation" / "cases" / "jeffcott_rotor" / "model.toml").read_text(encoding="utf-8"))
     return rg.Model(**{**data, "unbalances": {"u": {"shaft": "rotor", "at": "0.5 m", "magnitude": 1e-4}}, **parts})
 
 
@@ -310,7 +310,7 @@ def test_a_damping_ratio_needs_no_symmetric_bearings() -> None:
 
 
 def test_a_bearing_of_huge_stiffness_is_a_pin() -> None:
-    data = tomllib.loads((ROOT / "validation" / "B4" / "model.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((ROOT / "validation" / "cases" / "jeffcott_rotor" / "model.toml").read_text(encoding="utf-8"))
     bearings = {n: {"shaft": "rotor", "at": n, "stiffness": {"radial": 1e15}} for n in ("start", "end")}
     supports = {"dashpot": data["supports"]["dashpot"]}
     stiff = rg.response(jeffcott(bearings=bearings, supports=supports), speeds=[60.0], elements=1)
