@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from rotorgear.results.result import Result
 
 # Heading of a column, the side it stands on, and what it says of a row.
 Column = tuple[str, Literal["left", "right"], Callable[[Any], str]]
@@ -66,3 +69,11 @@ def table_of(rows: Iterable[Any], *columns: Column, title: str = "") -> Any:
 def error_words(value: float) -> str:
     """A small relative error in one digit; what rounding alone decides is not told apart."""
     return "<1e-9" if value < 1e-9 else f"{value:.0e}"
+
+
+def notes_of(result: Result) -> list[str]:
+    """What every table ends with: what the analysis left out, and its warnings."""
+    return [
+        *(f"left out: {note}" for note in result.left_out),
+        *(f"Warning: {note}" for note in result.warnings),
+    ]

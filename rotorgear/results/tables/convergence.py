@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -38,6 +38,6 @@ def convergence_table(study: ConvergenceStudy) -> RenderableType:
         f"error: the largest relative one, against {study.reference}",
         "ratio: estimate over error",
         *(f"{sign} {note}" for note, sign in marks.items()),
-        *(f"Warning: {note}" for note in study.warnings),
+        *notes_of(study),
     )
     return Group(title, *legend, "", rows, "")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rotorgear.results.tables.common import Column, heading, lines, table_of
+from rotorgear.results.tables.common import Column, heading, lines, notes_of, table_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -130,7 +130,6 @@ def check_table(d: ModelDescription) -> RenderableType:
     notes = [
         "",
         f"{mass}{d.nodes} nodes, {d.dofs} dofs with {d.mesh}",
-        *(f"left out: {note}" for note in d.left_out),
-        *(f"Warning: {note}" for note in d.warnings),
+        *notes_of(d),
     ]
     return Group(*parts, *lines(*notes), "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines
+from rotorgear.results.tables.common import heading, lines, notes_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,8 +26,7 @@ def import_table(result: RexsImport) -> RenderableType:
         *_assumed(result.assumptions),
         "",
         f"{len(result.assumptions)} assumptions; each stands as a comment in the model file",
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     ]
     return Group(heading(result.file, f": {made}{case}"), *lines(*notes))
 

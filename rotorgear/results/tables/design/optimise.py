@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.design.optimise import OptimiseResult, value_words
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -82,5 +82,4 @@ def _said(result: OptimiseResult) -> list[str]:
         f"{result.searches_reached} of {result.searches} searches reached the margin; {result.solutions} modal solutions, "
         f"{result.gradients} gradients, {result.dofs} dofs"
     )
-    said += [f"Warning: {warning}" for warning in result.warnings]
-    return said + [f"left out: {note}" for note in result.left_out]
+    return said + notes_of(result)

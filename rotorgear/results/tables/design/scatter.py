@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.results.design.scatter import ScatterResult
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -111,5 +111,4 @@ def _said(result: ScatterResult) -> list[str]:
         said.append(f"found again in fewer than 95 % of the samples: modes {modes}")
     if result.failed:
         said.append(f"{result.failed} samples have numbers that the model can't have")
-    said += [f"Warning: {warning}" for warning in result.warnings]
-    return said + [f"left out: {note}" for note in result.left_out]
+    return said + notes_of(result)

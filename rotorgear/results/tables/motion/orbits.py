@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -38,8 +38,7 @@ def orbits_table(result: OrbitsResult) -> RenderableType:
     ]
     if result.error_estimate == result.error_estimate:
         notes.append(f"error estimate {result.error_estimate:.1e} of the motions' coefficients")
-    notes += [f"left out: {note}" for note in result.left_out]
-    notes += [f"Warning: {note}" for note in result.warnings]
+    notes += notes_of(result)
     return Group(*parts, *lines(*notes, ""))
 
 

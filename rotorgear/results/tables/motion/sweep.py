@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.results.tables.common import TRANSMISSION_WORDS, table
+from rotorgear.results.tables.common import TRANSMISSION_WORDS, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -53,8 +53,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
     ]
     if result.reduction:
         notes.append(result.reduction.sentence)
-    notes += [f"left out: {note}" for note in result.left_out]
-    notes += [f"Warning: {note}" for note in result.warnings]
+    notes += notes_of(result)
     return Group(*parts, *(Text(note) for note in notes), "")
 
 

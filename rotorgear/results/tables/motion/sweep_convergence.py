@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import table
+from rotorgear.results.tables.common import notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -40,5 +40,4 @@ def sweep_convergence_table(study: SweepConvergenceStudy) -> RenderableType:
         "standard error that one run states; seconds: CPU time of one run; error: of p-p and K_dyn, against "
         f"{study.reference}"
     )
-    said = "".join(f"\nWarning: {note}" for note in study.warnings)
-    return Group(Text(head, style="bold"), Text(""), out, Text(""), Text(notes + said), "")
+    return Group(Text(head, style="bold"), Text(""), out, Text(""), Text("\n".join([notes, *notes_of(study)])), "")

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import TRANSMISSION_WORDS
+from rotorgear.results.tables.common import TRANSMISSION_WORDS, notes_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -66,8 +66,7 @@ def transient_table(result: TransientResult) -> RenderableType:
         more_modes = ", and one of more modes" if "modes with" in result.method else ""
         notes.append(f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step{more_modes}")
     notes.append(f"energy error: {result.energy.share:.1e} of the largest term")
-    notes += [f"left out: {note}" for note in result.left_out]
-    notes += [f"Warning: {note}" for note in result.warnings]
+    notes += notes_of(result)
     return Group(*parts, *(Text(note) for note in notes), "")
 
 

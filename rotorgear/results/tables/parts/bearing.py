@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.parts.bearing import BearingSheet, FilmState, OilState
-from rotorgear.results.tables.common import error_words, heading, lines, table
+from rotorgear.results.tables.common import error_words, heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -40,8 +40,7 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
         f"differs from the load of the gearbox by {error_words(sheet.consistency)}",
         f"{sheet.cpu_seconds:.5f} s of CPU for the bearing at one speed and load, {sheet.seconds['total']:.2f} s in all",
         *_stability(sheet),
-        *(f"left out: {note}" for note in sheet.left_out),
-        *(f"Warning: {note}" for note in sheet.warnings),
+        *notes_of(sheet),
     ]
     return Group(*parts, "", *lines(*notes), "")
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.parts.gear_sheet import GearRow, GearSheet, MeshSheetRow
-from rotorgear.results.tables.common import heading, lines
+from rotorgear.results.tables.common import heading, lines, notes_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -144,7 +144,7 @@ def gear_table(sheet: GearSheet) -> RenderableType:
     for rows, columns, head in ((GEAR_ROWS, sheet.gears, "gear"), (MESH_ROWS, sheet.meshes, "mesh")):
         for first in range(0, len(columns), _COLUMNS):
             parts += ["", _table(head, rows, columns[first : first + _COLUMNS])]
-    notes = [f"left out: {note}" for note in sheet.left_out]
+    notes = notes_of(sheet)
     for table, members in (("gears", sheet.gears), ("meshes", sheet.meshes)):
         notes += [f"Warning: {table}.{member.name}: {text}" for member in members for text in member.warnings]
     for row in sheet.meshes:

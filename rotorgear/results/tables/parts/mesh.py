@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.results.parts.mesh import PLANE, MeshResult
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -47,7 +47,7 @@ def mesh_table(result: MeshResult, *, harmonics: int = 0) -> RenderableType:
                 f"{point.contact_ratio:.3f}",
             )
         parts += ["", loads]
-    parts += ["", *lines(*(f"Warning: {text}" for text in result.warnings))]
+    parts += ["", *lines(*notes_of(result))]
     if result.dofs:
         # Teeth in the plane take nothing worth a word.
         told = result.memory_bytes is not None and any(np.ptp(helix.z) > 0.0 for helix in result.helix)

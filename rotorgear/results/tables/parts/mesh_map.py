@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -32,5 +32,5 @@ def mesh_map_table(result: MeshMap) -> RenderableType:
                 f"{result.face_load_factor[i, j]:.3f}",
                 f"{result.mean_stiffness[i, j]:.4g}",
             )
-    notes = [f"left out: {text}" for text in result.left_out] + [f"Warning: {text}" for text in result.warnings]
+    notes = notes_of(result)
     return Group(title, *setting, "", out, "", *lines(*notes), f"{result.dofs} dofs, {result.seconds['total']:.2f} s")

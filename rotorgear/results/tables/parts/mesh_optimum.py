@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -47,7 +47,7 @@ def mesh_optimum_table(result: MeshOptimum) -> RenderableType:
     if result.mean_band is not None:
         band = f"{1e6 * result.mean_band[0]:.3f} ... {1e6 * result.mean_band[1]:.3f}"
     points.add_row("mean", "", "", f"{1e6 * result.mean_before:.3f}", f"{1e6 * result.mean:.3f}", band, "")
-    notes = [f"left out: {text}" for text in result.left_out] + [f"Warning: {text}" for text in result.warnings]
+    notes = notes_of(result)
     if result.status != "success":
         notes.append(f"Warning: {result.status}")
     # TOML has brackets, which rich would take for marks.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -35,5 +35,5 @@ def root_stress_table(result: RootStress) -> RenderableType:
     if any(gear.nominal is not None for gear in result.gears):
         cells = ("-" if gear.nominal is None else f"{1e-6 * gear.nominal:.2f}" for gear in result.gears)
         row("nominal, ISO 6336-3, MPa", *cells)
-    notes = [f"left out: {text}" for text in result.left_out] + [f"Warning: {text}" for text in result.warnings]
+    notes = notes_of(result)
     return Group(title, *setting, "", out, "", *lines(*notes), f"{result.seconds['total']:.1f} s")

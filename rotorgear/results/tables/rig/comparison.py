@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rotorgear.results.rig.comparison import Candidate, Comparison, ExcitationLine, Match, UnmatchedRigLine
 from rotorgear.results.rig.learnt import learnt_words
+from rotorgear.results.tables.common import notes_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -28,7 +29,7 @@ def compare_table(comparison: Comparison) -> RenderableType:
         f"{100 * chance.probability_as_close:.3g} % come as close. Independent lines in closed form: "
         f"{chance.binomial_expected:.2f}, {100 * chance.binomial_probability:.3g} %."
     )
-    rest = [by_chance, *_learnt(comparison), *(f"Warning: {warning}." for warning in comparison.warnings)]
+    rest = [by_chance, *_learnt(comparison), *notes_of(comparison)]
     matches = Table(title="Rig comparison", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("rig Hz", "mode", "model Hz", "error %"):
         matches.add_column(name, justify="right", no_wrap=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.rig.correlation import ShapeComparison
 from rotorgear.results.rig.learnt import learnt_words
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -40,6 +40,6 @@ def compare_shapes_table(result: ShapeComparison) -> RenderableType:
         said.append(f"Without a mode: {', '.join(f'{line.frequency_hz:.1f}' for line in result.unmatched)} Hz.")
     if result.stiffnesses:
         said.append(learnt_words(result.stiffnesses, len(result.matches), "matched lines"))
-    said += [f"Warning: {warning}." for warning in result.warnings]
+    said += notes_of(result)
     parts: list[Any] = [heading(result.title)] if result.title else []
     return Group(*parts, modes, *lines("", *said))

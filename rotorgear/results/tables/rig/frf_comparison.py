@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.rig.frf_comparison import FrfComparison, OrderComparison
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -23,7 +23,7 @@ def compare_frf_table(result: FrfComparison) -> RenderableType:
         f"Mean FRAC {result.mean_frac:.3f} over {len(hz)} frequencies, {hz[0]:.5g} to {hz[-1]:.5g} Hz.",
         *result.verdicts,
     ]
-    said += [f"Warning: {warning}." for warning in result.warnings]
+    said += notes_of(result)
     parts: list[Any] = [heading(result.title)] if result.title else []
     return Group(*parts, pairs, *lines("", *said))
 
@@ -43,6 +43,6 @@ def compare_orders_table(result: OrderComparison) -> RenderableType:
             f"{cut.model_peak_rpm:.0f} rpm",
         )
     said = [f"No order of the model: {', '.join(result.without)}."] if result.without else []
-    said += [f"Warning: {warning}." for warning in result.warnings]
+    said += notes_of(result)
     parts: list[Any] = [heading(result.title)] if result.title else []
     return Group(*parts, cuts, *lines("", *said))

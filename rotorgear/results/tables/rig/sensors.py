@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.rig.sensors import SensorPlan
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -25,6 +25,6 @@ def sensors_table(result: SensorPlan) -> RenderableType:
         f"{hz[-1]:.5g} Hz. Largest MAC of two of them: {result.worst:.2f}, with all places {result.all_auto_mac:.2f}.",
         *result.confused,
     ]
-    said += [f"Warning: {warning}." for warning in result.warnings]
+    said += notes_of(result)
     parts: list[Any] = [heading(result.title)] if result.title else []
     return Group(*parts, rows, *lines("", *said))

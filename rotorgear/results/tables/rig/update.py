@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.rig.learnt import learnt_words
 from rotorgear.results.rig.update import UpdateResult
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -46,7 +46,7 @@ def update_table(result: UpdateResult) -> RenderableType:
     said = [learnt_words(result.parameters, result.measured_values, what), *result.findings]
     unmatched = ", ".join(f"{line.frequency_hz:.1f}" for line in result.unmatched)
     said += [f"Without a mode: {unmatched} Hz."] if unmatched else []
-    said += [f"Warning: {warning}." for warning in result.warnings]
+    said += notes_of(result)
     said += [f"{result.modal_solutions} modal solutions of {result.dofs} dofs."]
     parts: list[Any] = [heading(result.title)] if result.title else []
     compared = [modes] if result.lines else []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import plain_table, table_of
+from rotorgear.results.tables.common import notes_of, plain_table, table_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -90,8 +90,7 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
     estimates = result.error_estimate[np.isfinite(result.error_estimate)]
     if estimates.size:
         notes.append(f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}")
-    notes += [f"left out: {note}" for note in result.left_out]
-    notes += [f"Warning: {note}" for note in result.warnings]
+    notes += notes_of(result)
     return Group(*parts, *(Text(note) for note in notes), "")
 
 

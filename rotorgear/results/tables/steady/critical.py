@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.steady.whirl_words import WHIRL_WORDS
-from rotorgear.results.tables.common import error_words, heading, lines, plain_table
+from rotorgear.results.tables.common import error_words, heading, lines, notes_of, plain_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -30,8 +30,7 @@ def critical_table(result: CriticalResult) -> RenderableType:
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"substituted back: |w - p W| / (p W) at most {bound:.0e}",
         f"estimated relative discretisation error of the speeds at most {error_words(worst)}",
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     )
     speeds = plain_table()
     speeds.add_column("rpm", justify="right")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import error_words, heading, lines, table
+from rotorgear.results.tables.common import error_words, heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -43,7 +43,6 @@ def frf_table(result: FrequencyResponse, *, quantity: str = "receptance") -> Ren
         f"{error_words(result.error_estimate)}",
         f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
         *(["> the peak is narrower than a step of the frequencies, and higher than at any of them"] if coarse else []),
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     ]
     return Group(heading(f"{title}{speed}"), "", out, "", *lines(*notes), "")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import error_words, plain_table
+from rotorgear.results.tables.common import error_words, notes_of, plain_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -44,8 +44,7 @@ def modal_table(result: ModalResult, *, energies: bool = False) -> RenderableTyp
     estimates = result.error_estimate[np.isfinite(result.error_estimate)]
     if estimates.size:
         notes.append(f"error: estimated relative error of each frequency; largest {estimates.max():.1e}")
-    notes += [f"left out: {note}" for note in result.left_out]
-    notes += [f"Warning: {note}" for note in result.warnings]
+    notes += notes_of(result)
     title = Text(f"{result.model.title or 'Modes'}: {how}", style="bold")
     parts: list[RenderableType] = [title, modes]
     if energies:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.results.tables.common import TRANSMISSION_WORDS, error_words, heading, lines, table
+from rotorgear.results.tables.common import TRANSMISSION_WORDS, error_words, heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -46,8 +46,7 @@ def response_table(result: ResponseResult) -> RenderableType:
         f"on a finer mesh the peaks change by {error_words(result.error_estimate)}",
         f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
         *_radiated(result),
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     ]
     return Group(heading(title), "", orders, "", _largest(result), "", *lines(*notes), "")
 

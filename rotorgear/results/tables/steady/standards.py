@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines, table
+from rotorgear.results.tables.common import heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -31,8 +31,7 @@ def standards_table(result: StandardsResult) -> RenderableType:
     notes = [
         *(f"{rule.name} ({rule.source}): {rule.formula}" for rule in result.rules),
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     ]
     title = heading(f"{result.model.title or 'Model'}: rules of standards, {reference}")
     shown = [peaks, ""] if result.criticals else []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import error_words, heading, lines, table
+from rotorgear.results.tables.common import error_words, heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -37,7 +37,6 @@ def state_space_table(result: StateSpace) -> RenderableType:
     notes = [
         f"{size}; {result.seconds['total']:.2f} s",
         error,
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     ]
     return Group(heading(f"{result.model.title or 'Model'}: state space, {speed}"), "", out, "", *lines(*notes))

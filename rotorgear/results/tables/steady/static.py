@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import error_words, heading, lines, table
+from rotorgear.results.tables.common import error_words, heading, lines, notes_of, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -82,8 +82,7 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         ),
         f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
         f"residual {error_words(result.imbalance)}",
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *notes_of(result),
     ]
     return Group(*parts, "", moves, "", *lines(*notes), "")
 
