@@ -1,14 +1,13 @@
 """Numbers of a model by address, as coordinates: what they are now, and the model with others in their place.
 
-A plain number is its own coordinate, in SI. A stiffness of several numbers has one factor for all of them, 1 as the file stands.
-A place "start" or "end" of a shaft is the z that it means.
+A plain number is its own coordinate, in SI. A stiffness given by several numbers (a matrix, or values over a mesh period) has one
+factor for all of them, 1 as the file has it. A place "start" or "end" of a shaft is the z that it means.
 """
 
 from __future__ import annotations
 
 import fnmatch
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,11 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
-from rotorgear.model.address import Place, places_of, tables_of, value_at
-from rotorgear.model.free_numbers import address_of, given_places, is_number, overlapping, times, whole_number
+from rotorgear.model.address import Place, changed, places_of, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.problems import shown
-from rotorgear.quantity import DIMENSIONS, QuantityError, parse_quantity
+from rotorgear.quantity import DIMENSIONS, QuantityError, nearest, parse_quantity
+
+# What is known of a number before a test where nobody says.
+DEFAULT_PRIOR = 0.30
+# Beyond a factor of e^2 a number is no longer uncertain but unknown, and a log-normal spread means little.
+LARGEST_PRIOR = 2.0
 
 
 @dataclass(frozen=True)
@@ -32,14 +35,12 @@ class Numbers:
         model: with the numbers as they are.
         addresses: of the p numbers.
         start: their coordinates as they are (p,).
-        unit: SI unit of each coordinate; "" of a ratio.
         factor: whether the coordinate is a factor of several numbers (p,).
     """
 
     model: Model
     addresses: tuple[str, ...]
     start: NDArray[np.float64]
-    unit: tuple[str, ...]
     factor: NDArray[np.bool_]
 
     @cached_property
@@ -50,18 +51,74 @@ class Numbers:
     def _places(self) -> tuple[Place, ...]:
         return tuple(places_of(self._tables, address)[0] for address in self.addresses)
 
+    @cached_property
+    def unit(self) -> tuple[str, ...]:
+        """SI unit of each coordinate; "" of a factor or ratio."""
+        found = []
+        for place, factor in zip(self._places, self.factor, strict=True):
+            owner: Any = self.model
+            for key in place[:-1]:
+                is_field = isinstance(key, str) and hasattr(type(owner), "model_fields")
+                owner = getattr(owner, str(key)) if is_field else owner[key]
+            schema = {}
+            if not factor and hasattr(type(owner), "model_fields"):
+                schema = type(owner).model_json_schema()["properties"].get(str(place[-1]), {})
+            found.append(next(_units(schema), ""))
+        return tuple(found)
+
     def at(self, values: NDArray[np.float64]) -> Model:
         """The model with other coordinates (p,).
 
         Raises:
             ModelError: values that the model can't have.
         """
-        copy: dict[str, Any] = json.loads(json.dumps(self._tables))
+        changes: list[tuple[list[Place], Any]] = []
         for place, value, start, factor in zip(self._places, values, self.start, self.factor, strict=True):
+            # A number that stays is not written, so that a place "end" stays a word.
             if value != start:
-                owner = value_at(copy, place[:-1])
-                owner[place[-1]] = times(owner[place[-1]], float(value)) if factor else float(value)
-        return Model(**copy)
+                changes.append(([place], _times(value_at(self._tables, place), value) if factor else float(value)))
+        return Model(**changed(self._tables, changes))
+
+    def matching(self, pattern: str) -> list[int]:
+        """Which of the numbers a pattern of an address names, "*" as in `numbers_of`."""
+        plain = [address.replace("[", ".").replace("]", "") for address in self.addresses]
+        pattern = pattern.strip().replace("[", ".").replace("]", "")
+        return [j for j, address in enumerate(plain) if fnmatch.fnmatchcase(address, pattern)]
+
+    def size(self, j: int, given: float | str, what: str) -> float:
+        """A size such as "10 %", 0.1 or "0.1 mm" of number j, in its coordinate: a share of its value, or with its unit.
+
+        Raises:
+            ModelError: neither a share nor a quantity of the number's unit; a share of 0.
+        """
+        start = abs(float(self.start[j]))
+        share = _parsed(given, "ratio")
+        if share is not None and (share == 0.0 or start > 0.0):
+            return share * start
+        unit = self.unit[j].replace(" ", "*")
+        dimension = next((name for name, item in DIMENSIONS.items() if item.unit == unit and unit), None)
+        size = None if dimension is None or share is not None else _parsed(given, dimension)
+        if size is None:
+            hint = "a share of 0 is nothing: give a size with its unit" if share is not None else ""
+            example = f" or '{DIMENSIONS[dimension].example}'" if dimension else ""
+            address = f"{what} of {self.addresses[j]}"
+            raise ModelError([Problem(address, repr(given), f"a share such as '10 %'{example}", hint)])
+        return size
+
+
+@dataclass(frozen=True)
+class FreeNumbers(Numbers):
+    """Numbers p_j = p_j0 exp(x_j) that are not 0, in the coordinates x.
+
+    Attributes:
+        prior: standard deviation of each x before any test, about the relative one of p (p,).
+    """
+
+    prior: NDArray[np.float64]
+
+    def at(self, x: NDArray[np.float64]) -> Model:
+        """The model with each number times exp(x_j), x (p,)."""
+        return super().at(self.start * np.exp(x))
 
 
 def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
@@ -75,15 +132,17 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
     Raises:
         ModelError: an address that leads nowhere, or to something that is no number.
     """
-    parts = free.split(",") if isinstance(free, str) else free
-    patterns = [part.strip() for part in parts if part.strip()]
+    patterns = [part.strip() for part in (free.split(",") if isinstance(free, str) else free) if part.strip()]
     if not patterns:
         raise ModelError([Problem("free", "", "addresses of numbers, such as 'bearings.*.stiffness'")])
     tables = tables_of(model)
-    places: dict[str, Place] = {}
-    for pattern in patterns:
-        places |= {address_of(place): place for place in given_places(tables, pattern)}
-    twice = overlapping(places)
+    places = {_address(place): place for pattern in patterns for place in _given_places(tables, pattern)}
+    twice = []
+    for address in places:
+        whole = next((other for other in places if address.startswith((f"{other}.", f"{other}["))), None)
+        if whole:
+            text = f"it is a part of {whole}, which is named too: leave one of them out"
+            twice.append(Problem(address, "", text))
     if twice:
         raise ModelError(twice)
     start = []
@@ -92,42 +151,116 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
         value = _station(model, tables, place)
         several = isinstance(value, dict | list)
         if not (several and is_number(value)) and (not isinstance(value, int | float) or isinstance(value, bool)):
-            hint = "leave it out, or give a number in its place"
+            hint = "only numbers can vary; leave it out, or give a number in its place"
             raise ModelError([Problem(address, shown(value), "a number, or several", hint)])
         if isinstance(value, int):
-            raise ModelError([whole_number(address, value)])
+            expected = "a number that can vary little by little; this one is whole"
+            raise ModelError([Problem(address, shown(value), expected, "leave it out")])
         start.append(1.0 if several else float(value))
         factor.append(several)
-    units = ("" if many else _unit(model, places[address]) for address, many in zip(places, factor, strict=True))
-    return Numbers(model, tuple(places), np.array(start), tuple(units), np.array(factor, dtype=bool))
+    return Numbers(model, tuple(places), np.array(start), np.array(factor, dtype=bool))
 
 
-def matching(numbers: Numbers, pattern: str) -> list[int]:
-    """Which numbers a pattern of an address names, "*" as in `numbers_of`."""
-    plain = [address.replace("[", ".").replace("]", "") for address in numbers.addresses]
-    own = pattern.strip().replace("[", ".").replace("]", "")
-    return [j for j, address in enumerate(plain) if fnmatch.fnmatchcase(address, own)]
+def free_numbers(
+    model: Model, free: str | Iterable[str], prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR
+) -> FreeNumbers:
+    """Return the free numbers that some addresses name, each with what is known of it.
 
-
-def size_of(numbers: Numbers, j: int, given: float | str, what: str) -> float:
-    """A size such as "10 %", 0.1 or "0.1 mm" of number j, in its coordinate: a share of its value, or with its unit.
+    Args:
+        model, free: as in `numbers_of`.
+        prior: relative standard deviation before the test, such as 0.3 or "30 %", of all or by address ("*" as above).
 
     Raises:
-        ModelError: neither a share nor a quantity of the number's unit; a share of 0.
+        ModelError: as `numbers_of`; a number that is 0; a prior that is none.
     """
-    address = numbers.addresses[j]
-    start = abs(float(numbers.start[j]))
-    share = _parsed(given, "ratio")
-    if share is not None and (share == 0.0 or start > 0.0):
-        return share * start
-    unit = numbers.unit[j].replace(" ", "*")
-    dimension = next((name for name, item in DIMENSIONS.items() if item.unit == unit and unit), None)
-    size = None if dimension is None or share is not None else _parsed(given, dimension)
-    if size is None:
-        hint = "a share of 0 is nothing: give a size with its unit" if share is not None else ""
-        example = f" or '{DIMENSIONS[dimension].example}'" if dimension else ""
-        raise ModelError([Problem(f"{what} of {address}", repr(given), f"a share such as '10 %'{example}", hint)])
-    return size
+    numbers = numbers_of(model, free)
+    tables = tables_of(model)
+    for address in numbers.addresses:
+        value = value_at(tables, places_of(tables, address)[0])
+        if not is_number(value):
+            hint = "its spread is a share of it; leave it out, or give a number in its place"
+            raise ModelError([Problem(address, shown(value), "a number other than 0, or several", hint)])
+    given: list[float | str] = [DEFAULT_PRIOR if isinstance(prior, Mapping) else prior] * len(numbers.addresses)
+    for pattern, value in prior.items() if isinstance(prior, Mapping) else ():
+        named = numbers.matching(pattern)
+        if not named:
+            guess = nearest(pattern, list(numbers.addresses))
+            expected = "an address of the free numbers, or a pattern of some"
+            raise ModelError([Problem("prior", pattern, expected, f"did you mean '{guess}'?" if guess else "")])
+        for j in named:
+            given[j] = value
+    spreads = []
+    for address, value in zip(numbers.addresses, given, strict=True):
+        spread = _parsed(value, "ratio") if isinstance(value, str) else float(value)
+        if spread is None or not 0.0 < spread <= LARGEST_PRIOR:
+            expected = f"a relative standard deviation above 0 and up to {LARGEST_PRIOR:g}, such as '30 %'"
+            raise ModelError([Problem(f"prior of {address}", repr(value), expected)])
+        spreads.append(spread)
+    return FreeNumbers(model, numbers.addresses, numbers.start, numbers.factor, np.array(spreads))
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a number other than 0, or several that are not all 0."""
+    if isinstance(value, dict):
+        return bool(value) and all(is_number(entry) or entry == 0.0 for entry in value.values()) and any(value.values())
+    if isinstance(value, list):
+        return bool(value) and all(is_number(entry) or entry == 0.0 for entry in value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and value != 0.0
+
+
+def _times(value: Any, factor: float) -> Any:
+    """A number, or all numbers of a table or list, times a factor."""
+    if isinstance(value, dict):
+        return {key: _times(entry, factor) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_times(entry, factor) for entry in value]
+    return value * float(factor)
+
+
+def _address(place: Place) -> str:
+    """A place in the tables as an address, such as "shafts.rotor.sections[0].length"."""
+    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in place).removeprefix(".")
+
+
+def _given_places(tables: dict[str, Any], pattern: str) -> list[Place]:
+    """Where an address leads to something that the file gives; `places_of` lets its last key be missing.
+
+    Raises:
+        ModelError: nowhere, with the nearest name.
+    """
+    places = places_of(tables, pattern)
+    owners = [value_at(tables, place[:-1]) for place in places]
+    found = [
+        place for place, owner in zip(places, owners, strict=True) if not isinstance(owner, dict) or place[-1] in owner
+    ]
+    if not found:
+        name = str(places[0][-1])
+        guess = nearest(name, [key for owner in owners for key in owner])
+        hint = f"did you mean '{guess}'?" if guess else ""
+        raise ModelError([Problem(pattern, f"'{name}'", "a number that the file gives there", hint)])
+    return found
+
+
+def _station(model: Model, tables: Mapping[str, Any], place: Place) -> Any:
+    """The value at a place; of "start" and "end" of a shaft the z."""
+    value = value_at(tables, place)
+    owner = value_at(tables, place[:-1])
+    shaft = owner.get("shaft") if isinstance(owner, dict) else None
+    if not isinstance(value, str) or value not in ("start", "end") or shaft not in model.shafts:
+        return value
+    part = model.shafts[shaft]
+    return part.start if value == "start" else part.start + sum(section.length for section in part.sections)
+
+
+def _units(schema: Any) -> Iterator[str]:
+    """The units in the schema of a field."""
+    if isinstance(schema, dict):
+        if "x-unit" in schema:
+            yield schema["x-unit"]
+        schema = list(schema.values())
+    if isinstance(schema, list):
+        for entry in schema:
+            yield from _units(entry)
 
 
 def _parsed(given: float | str, dimension: str) -> float | None:
@@ -135,38 +268,3 @@ def _parsed(given: float | str, dimension: str) -> float | None:
         return parse_quantity(given, dimension)
     except QuantityError:
         return None
-
-
-def _station(model: Model, tables: Mapping[str, Any], place: Place) -> Any:
-    """The value at a place; of "start" and "end" of a shaft the z."""
-    value = value_at(tables, place)
-    if value not in ("start", "end") if isinstance(value, str) else True:
-        return value
-    owner = value_at(tables, place[:-1])
-    shaft = owner.get("shaft") if isinstance(owner, dict) else None
-    if shaft not in model.shafts:
-        return value
-    part = model.shafts[shaft]
-    return part.start if value == "start" else part.start + sum(section.length for section in part.sections)
-
-
-def _unit(model: Model, place: Place) -> str:
-    """SI unit of a plain number, from the field that it stands in."""
-    owner: Any = model
-    for key in place[:-1]:
-        owner = getattr(owner, key) if isinstance(key, str) and hasattr(type(owner), "model_fields") else owner[key]
-    if not hasattr(type(owner), "model_fields"):
-        return ""
-    schema = type(owner).model_json_schema()["properties"].get(str(place[-1]), {})
-    return next(iter(_units(schema)), "")
-
-
-def _units(schema: Any) -> Iterable[Any]:
-    if isinstance(schema, dict):
-        if "x-unit" in schema:
-            yield schema["x-unit"]
-        for entry in schema.values():
-            yield from _units(entry)
-    if isinstance(schema, list):
-        for entry in schema:
-            yield from _units(entry)

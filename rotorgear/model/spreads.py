@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from rotorgear.errors import ModelError, Problem
 from rotorgear.gears.geometry.flank_tolerance import FLANK_CLASSES, cumulative_pitch_tolerance
 from rotorgear.model.model import Model
-from rotorgear.model.numbers import Numbers, matching, numbers_of, size_of
+from rotorgear.model.numbers import Numbers, numbers_of
 from rotorgear.model.parts.scatter import Scatter
 
 DISTRIBUTIONS = ("normal", "lognormal", "uniform")
@@ -100,7 +100,7 @@ def _spreads(model: Model, given: Mapping[str, Scatter]) -> Spreads:
     size = np.zeros(len(numbers.addresses))
     kinds = ["normal"] * len(size)
     for pattern, entry in given.items():
-        for j in matching(numbers, pattern):
+        for j in numbers.matching(pattern):
             size[j] = _size(numbers, j, entry)
             kinds[j] = entry.distribution
     for j, address in enumerate(numbers.addresses):
@@ -149,11 +149,11 @@ def _size(numbers: Numbers, j: int, entry: Scatter) -> float:
     if entry.grade is not None:
         size = _graded(numbers.model, address, entry.grade)
     elif entry.tolerance is not None:
-        wide = size_of(numbers, j, entry.tolerance, "tolerance")
+        wide = numbers.size(j, entry.tolerance, "tolerance")
         size = wide / (math.sqrt(3.0) if entry.distribution == "uniform" else 3.0)
     else:
         assert entry.sigma is not None
-        size = size_of(numbers, j, entry.sigma, "sigma")
+        size = numbers.size(j, entry.sigma, "sigma")
     if size < 0.0:
         raise ModelError([Problem(f"scatter of {address}", f"{size:g}", "a size that is not negative")])
     if entry.distribution == "lognormal":

@@ -24,7 +24,7 @@ import rotorgear as rg
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
-from rotorgear.model.free_numbers import free_numbers
+from rotorgear.model.numbers import free_numbers
 from rotorgear.results.rig.comparison import RigLine
 from rotorgear.system.plan import Plan
 

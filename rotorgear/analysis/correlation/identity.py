@@ -17,8 +17,8 @@ from rotorgear.analysis.rig.rig_model import ComparedModes, RigModel
 from rotorgear.analysis.updating.estimate import Estimate
 from rotorgear.analysis.updating.misfit import Misfit
 from rotorgear.model.address import tables_of
-from rotorgear.model.free_numbers import free_numbers, is_number
 from rotorgear.model.model import Model
+from rotorgear.model.numbers import free_numbers, is_number
 from rotorgear.progress import silent
 from rotorgear.system.plan import Plan
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.model.model import Model
-from rotorgear.model.numbers import Numbers, matching, size_of
+from rotorgear.model.numbers import Numbers
 
 DEFAULT_BOUNDS = "-20 %:20 %"
 # A place moves by so much of its shaft where nothing is said.
@@ -40,7 +40,7 @@ def bounds_of(
     notes: list[str] = []
     texts: dict[int, str] = {}
     for pattern, text in given.items():
-        found = matching(numbers, pattern)
+        found = numbers.matching(pattern)
         if not found:
             raise AnalysisError(f"bounds: '{pattern}' is none of the free numbers")
         texts |= dict.fromkeys(found, text)
@@ -87,7 +87,7 @@ def _parsed(numbers: Numbers, j: int, text: str) -> tuple[float, float]:
         own = end.strip()
         share = own.endswith("%")
         sign = -1.0 if own.startswith("-") and share else 1.0
-        size = size_of(numbers, j, own.lstrip("+-") if share else own, "bounds")
+        size = numbers.size(j, own.lstrip("+-") if share else own, "bounds")
         found.append(float(numbers.start[j]) + sign * size if share else size)
     return found[0], found[1]
 

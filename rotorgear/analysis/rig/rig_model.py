@@ -13,7 +13,7 @@ from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.solve import solve
 from rotorgear.analysis.rig.rotating_sensitivity import rotating_changes, rotating_shape_slopes, rotating_slopes
 from rotorgear.analysis.rig.sensitivity import changes_of, frequency_derivatives, shape_derivatives, system_of
-from rotorgear.model.free_numbers import FreeNumbers
+from rotorgear.model.numbers import FreeNumbers
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from rotorgear.analysis.rig.sensitivity import EQUAL, STEP, beside, energies, group_energies, solved, springs_of
-from rotorgear.model.free_numbers import FreeNumbers
+from rotorgear.model.numbers import FreeNumbers
 from rotorgear.system.assembly import assemble
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

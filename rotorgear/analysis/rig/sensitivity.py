@@ -31,8 +31,8 @@ from numpy.typing import NDArray
 from rotorgear.analysis.rig.learnt import SPRINGS
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
-from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.model.model import Model
+from rotorgear.model.numbers import FreeNumbers
 from rotorgear.system.assembly import assemble
 from rotorgear.system.groups import ElementGroup
 from rotorgear.system.plan import Plan

@@ -19,7 +19,7 @@ from rotorgear.analysis.rig.frf_file import MeasuredFrf
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes, Shapes
 from rotorgear.errors import ModelError, Problem
-from rotorgear.model.free_numbers import FreeNumbers
+from rotorgear.model.numbers import FreeNumbers
 from rotorgear.results.rig.comparison import RigLine
 from rotorgear.system.system import System
 

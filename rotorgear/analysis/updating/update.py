@@ -32,8 +32,8 @@ from rotorgear.analysis.updating.frf_misfit import FrfMisfit
 from rotorgear.analysis.updating.misfit import Misfit, Pair, State
 from rotorgear.analysis.updating.receptance_model import CARRIED
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.free_numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.model.model import Model
+from rotorgear.model.numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.progress import Progress, silent
 from rotorgear.results.rig.comparison import RigLine
 from rotorgear.results.rig.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
@@ -118,7 +118,9 @@ def update(
         heard = _responses(own, campaign)
         measured.append(given)
         top = float(heard.frequency_hz[-1]) if heard else 0.0
-        models.append(_rig_model(replace(numbers, model=own), given, top, campaign.speed, accuracy, elements))
+        models.append(
+            _rig_model(free_numbers(own, numbers.addresses, prior), given, top, campaign.speed, accuracy, elements)
+        )
         if heard:
             responses[number] = FrfMisfit(models[-1], heard, frf_noise, modal_damping)
     every, owner = joined(measured)

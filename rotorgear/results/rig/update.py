@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.model.model import Model
+from rotorgear.model.numbers import free_numbers
 from rotorgear.results.result import ModelResult
 from rotorgear.results.rig.comparison import RigLine
 from rotorgear.results.rig.learnt import IDENTIFIED, LearntParameter
@@ -89,9 +89,8 @@ class UpdateResult(ModelResult, kind="update"):
 
     def updated_model(self) -> Model:
         """The model with the most probable numbers."""
-        factors = np.array([row.factor for row in self.parameters])
-        addresses = tuple(row.address for row in self.parameters)
-        return FreeNumbers(self.model, addresses, np.array([row.prior for row in self.parameters])).at(np.log(factors))
+        numbers = free_numbers(self.model, [row.address for row in self.parameters])
+        return numbers.at(np.log([row.factor for row in self.parameters]))
 
     def _rms(self, found_hz: list[float]) -> float:
         errors = np.log([hz / row.rig.frequency_hz for hz, row in zip(found_hz, self.lines, strict=True)])

@@ -9,7 +9,7 @@ import rotorgear as rg
 from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.analysis.rig.sensitivity import changes_of, system_of
 from rotorgear.errors import AnalysisError, ModelError
-from rotorgear.model.free_numbers import free_numbers
+from rotorgear.model.numbers import free_numbers
 from rotorgear.system.plan import Plan
 from tests.paths import MODELS
 
@@ -114,7 +114,7 @@ def test_numbers_are_scaled_whole_and_only_numbers():
     ("free", "prior", "text"),
     [
         ("bearings.left.stiffness", 0.3, "no 'left'"),
-        ("gears.*.kind", 0.3, "only numbers have a spread"),
+        ("gears.*.kind", 0.3, "only numbers can vary"),
         ("", 0.3, "addresses of numbers"),
         ("bearings.*.stiffness", "-5 %", "relative standard deviation"),
         ("bearings.*.stiffness", "many", "relative standard deviation"),

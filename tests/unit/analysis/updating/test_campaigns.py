@@ -8,7 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.errors import AnalysisError, ModelError
-from rotorgear.model.free_numbers import free_numbers
+from rotorgear.model.numbers import free_numbers
 from rotorgear.system.plan import Plan
 from tests.paths import MODELS
 

@@ -12,7 +12,7 @@ from rotorgear.analysis.rig.frf_file import MeasuredFrf
 from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.analysis.updating.receptance_model import ReceptanceModel
 from rotorgear.errors import AnalysisError
-from rotorgear.model.free_numbers import free_numbers
+from rotorgear.model.numbers import free_numbers
 from rotorgear.system.plan import Plan
 from tests.paths import MODELS
 
