@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from rotorgear.results.keys import Key, keys_of
-from rotorgear.results.kinds import kinds
+from rotorgear.results.kinds import Key, keys_of, kinds
 
 HEAD = """# JSON output
 

@@ -19,7 +19,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 from validation.case import Case, Expectation
 from validation.quantities import FORCED, SHEET, TEETH, elastic, sheet_number, teeth_number
 

@@ -19,8 +19,8 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
-from rotorgear.results.steady.modal import ModalResult
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.modal import ModalResult
+from rotorgear.results.response import ResponseResult
 
 SHEET = "sheet "
 TEETH = "mesh "

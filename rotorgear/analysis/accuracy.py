@@ -19,9 +19,7 @@ from rotorgear.analysis.transient.convergence import transient_convergence_study
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.motion.sweep_convergence import SweepConvergenceStudy
-from rotorgear.results.parts.mesh_convergence import MeshConvergenceStudy
+from rotorgear.results.convergence import ConvergenceStudy, MeshConvergenceStudy, SweepConvergenceStudy
 
 AnyStudy = ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy
 

@@ -50,7 +50,7 @@ def frf(
 ) -> None:
     """Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out."""
     import rotorgear as rg
-    from rotorgear.results.steady.frequency_response import QUANTITIES
+    from rotorgear.results.frequency_response import QUANTITIES
 
     if quantity not in QUANTITIES:
         raise AnalysisError(f"--quantity: got '{quantity}', expected one of {', '.join(QUANTITIES)}")

@@ -11,8 +11,8 @@ from rotorgear.cli.common import console, progress_bar, write_json
 
 if TYPE_CHECKING:
     from rotorgear.model.model import Model
-    from rotorgear.results.parts.mesh import MeshResult
-    from rotorgear.results.parts.mesh_map import MeshMap
+    from rotorgear.results.mesh import MeshResult
+    from rotorgear.results.mesh_map import MeshMap
 
 
 @dataclass(frozen=True)

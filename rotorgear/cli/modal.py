@@ -28,7 +28,7 @@ from rotorgear.cli.common import (
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
-    from rotorgear.results.steady.modal import ModalResult
+    from rotorgear.results.modal import ModalResult
 
 # Shapes of so many modes are written unless --shapes says otherwise.
 _DEFAULT_SHAPES = 24

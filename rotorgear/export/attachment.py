@@ -23,7 +23,7 @@ from scipy.spatial import cKDTree
 from rotorgear.elements.shaft import cowper
 from rotorgear.model.model import Model
 from rotorgear.model.parts.shaft import Section
-from rotorgear.results.steady.modal import NodeTable, body_name
+from rotorgear.results.modal import NodeTable, body_name
 
 
 @dataclass(frozen=True)

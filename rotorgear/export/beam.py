@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.export.attachment import nodes_in_order
 from rotorgear.export.polydata import add_texts
 from rotorgear.export.solids import Solids
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 
 def beam_mesh(pv: ModuleType, result: ModalResult, solids: Solids) -> Any:

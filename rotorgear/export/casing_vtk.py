@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.export.files import replacing
 from rotorgear.export.polydata import import_pyvista, save_mesh
-from rotorgear.results.parts.casing import CasingRow, CasingSurvey
+from rotorgear.results.casing import CasingRow, CasingSurvey
 
 
 def write_casing_vtk(survey: CasingSurvey, folder: str | Path) -> list[Path]:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
-from rotorgear.results.schema import Record, record_name
+from rotorgear.results.schema import Record, record_name, record_of
 
 
 def stored_fields(cls: type[Record]) -> list[str]:
@@ -161,7 +161,7 @@ class OneRecord(Kind):
             put_value(h5, group, field, getattr(value, field))
 
     def read(self, item: Any) -> Any:
-        cls = Record.known[item.attrs["record"]]
+        cls = record_of(item.attrs["record"])
         # A field that came later than the file has its default; one without a default is missed by the class.
         return cls(**{name: get_value(item[name]) for name in stored_fields(cls) if name in item})
 
@@ -190,7 +190,7 @@ class Records(Kind):
             put_value(h5, group, field, column if isinstance(column[0], str | tuple) else np.array(column))
 
     def read(self, item: Any) -> tuple[Any, ...]:
-        cls = Record.known[item.attrs["record"]]
+        cls = record_of(item.attrs["record"])
         names = [name for name in stored_fields(cls) if name in item]
         columns = [get_value(item[name]) for name in names]
         plain = [column if isinstance(column, tuple) else column.tolist() for column in columns]

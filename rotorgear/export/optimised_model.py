@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rotorgear.export.files import replacing
 from rotorgear.export.model_text import scaled_text
-from rotorgear.results.design.optimise import OptimiseResult, value_words
+from rotorgear.results.optimise import OptimiseResult, value_words
 
 
 def write_optimised_model(result: OptimiseResult, source: str | Path, path: str | Path) -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from xml.sax.saxutils import quoteattr
 
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 
 def collection(steps: Iterable[tuple[float, str]]) -> str:

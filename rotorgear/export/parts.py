@@ -14,7 +14,7 @@ from rotorgear.export.surface import Surface, ball, hollow_cylinder, join, make_
 from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
 from rotorgear.model.model import Model
 from rotorgear.model.parts.shaft import Shaft
-from rotorgear.results.steady.modal import body_name
+from rotorgear.results.modal import body_name
 
 # Stripes along a shaft, by which its twist is seen: how many, half their width in rad, and their height relative to the radius.
 _STRIPES = 4

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rotorgear.export.csv_file import write_csv
-from rotorgear.results.rig.sensors import SensorPlan
+from rotorgear.results.sensors import SensorPlan
 
 
 def write_sensors(plan: SensorPlan, path: str | Path) -> Path:

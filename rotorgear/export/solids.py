@@ -21,7 +21,7 @@ from rotorgear.export.parts import (
 from rotorgear.export.parts_held import bearing_pieces, casing_pieces, coupling_pieces, support_pieces
 from rotorgear.export.surface import join
 from rotorgear.model.model import Model
-from rotorgear.results.steady.modal import NodeTable
+from rotorgear.results.modal import NodeTable
 
 KINDS = ("shaft", "stripe", "gear", "disk", "point mass", "bearing", "support", "coupling", "casing")
 # Largest displacement shown, as a share of the size of the model, and largest rotation in rad.

@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import replacing
-from rotorgear.results.steady.state_space import StateSpace
+from rotorgear.results.state_space import StateSpace
 
 _ENDINGS = (".mat", ".npz")
 

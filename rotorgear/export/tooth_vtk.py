@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.export.files import filling, publish
 from rotorgear.export.polydata import import_pyvista, save_mesh
-from rotorgear.results.parts.tooth_field import ToothFields
+from rotorgear.results.tooth_field import ToothFields
 
 _README = """Loaded teeth of mesh '{mesh}' at position {position:g} of the mesh period, first helix.
 

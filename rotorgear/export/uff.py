@@ -14,9 +14,9 @@ from rotorgear.analysis.common.points import coordinates, point_node
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import replacing
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.frequency_response import FrequencyResponse
-from rotorgear.results.steady.modal import ModalResult, NodeTable
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.frequency_response import FrequencyResponse
+from rotorgear.results.modal import ModalResult, NodeTable
+from rotorgear.results.response import ResponseResult
 from rotorgear.uff.datasets import (
     ACCELERATION,
     DISPLACEMENT,

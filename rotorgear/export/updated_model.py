@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rotorgear.export.files import replacing
 from rotorgear.export.model_text import scaled_text
-from rotorgear.results.rig.update import UpdateResult
+from rotorgear.results.update import UpdateResult
 
 
 def write_updated_model(result: UpdateResult, source: str | Path, path: str | Path) -> Path:

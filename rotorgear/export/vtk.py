@@ -22,7 +22,7 @@ from rotorgear.export.paraview import collection, readme
 from rotorgear.export.polydata import add_texts, import_pyvista, save_mesh, solids_mesh
 from rotorgear.export.solids import Solids, build_solids
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 # Points and colours of frames are rounded to these shares of the model's size: invisible, and they compress to half.
 _POINT_GRID = 2.0**-16

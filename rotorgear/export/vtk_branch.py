@@ -15,7 +15,7 @@ from rotorgear.export.solids import build_solids
 from rotorgear.export.vtk import check_amplitude
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.campbell import CampbellResult
+from rotorgear.results.campbell import CampbellResult
 
 
 def write_branch(

@@ -16,8 +16,8 @@ from rotorgear.export.solids import Solids, build_solids
 from rotorgear.export.vtk import Motion, check_amplitude, write_frames
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.response import ResponseResult
-from rotorgear.results.steady.static import StaticResult
+from rotorgear.results.response import ResponseResult
+from rotorgear.results.static import StaticResult
 
 FRAMES = 16
 

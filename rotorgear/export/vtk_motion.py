@@ -13,7 +13,7 @@ from rotorgear.export.polydata import add_texts, import_pyvista, save_mesh, soli
 from rotorgear.export.solids import build_solids
 from rotorgear.export.vtk import check_amplitude
 from rotorgear.progress import Progress, silent
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 
 
 def write_motion(

@@ -25,8 +25,8 @@ from rotorgear.analysis.teeth.mesh import mesh
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress
-from rotorgear.results.steady.critical import CriticalResult
-from rotorgear.results.steady.standards import StandardsResult
+from rotorgear.results.critical import CriticalResult
+from rotorgear.results.standards import StandardsResult
 
 # Modes of the table where no rig asks for more, speeds of diagrams and run-ups, stiffnesses of the map.
 MODES = 24

@@ -8,7 +8,7 @@ from rotorgear.page.contents import Contents, error_of
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import new_figure
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.standards import StandardsResult
+from rotorgear.results.standards import StandardsResult
 
 # An error of zero has no place on a logarithmic axis.
 _LEAST = 1e-13

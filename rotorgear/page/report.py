@@ -23,8 +23,8 @@ from rotorgear.page.cells import RESULTS, Numbers
 from rotorgear.page.contents import computed, error_of
 from rotorgear.page.sections import sections
 from rotorgear.progress import Progress, silent
+from rotorgear.results.modal import ModalResult
 from rotorgear.results.result import Result
-from rotorgear.results.steady.modal import ModalResult
 from rotorgear.version import VERSION
 
 _ENDINGS = (".html", ".htm")

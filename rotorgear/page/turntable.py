@@ -12,7 +12,7 @@ import json
 import numpy as np
 
 from rotorgear.export.solids import LIGHT, build_solids
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 _MODES = 6
 _LARGEST = 900_000  # letters of all shapes together: fewer modes of a large model

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.parts.bearing import BearingSheet, OilState
+from rotorgear.results.bearing import BearingSheet, OilState
 
 
 def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from rotorgear.export.polydata import solids_mesh
 from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.model.model import Model
-from rotorgear.results.steady.modal import NodeTable
+from rotorgear.results.modal import NodeTable
 
 # Directions from the middle to the camera, y upwards; from the left (-x) the shafts run to the right.
 _DIRECTIONS = (

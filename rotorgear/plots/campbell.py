@@ -11,8 +11,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.plots.figure import axes_for
 from rotorgear.plots.labels import Labels, spread
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.campbell import CampbellResult, Crossing, ExcitationOrder
-from rotorgear.results.steady.whirl_words import WHIRL_WORDS
+from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder
+from rotorgear.results.modal import WHIRL_WORDS
 
 COLOURS = ("motion", "mesh", "damping")
 _MOTION = {

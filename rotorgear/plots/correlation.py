@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.rig.correlation import ShapeComparison
+from rotorgear.results.correlation import ShapeComparison
 
 # Modes outside of the measured band that are drawn beside it.
 _BESIDE = 2

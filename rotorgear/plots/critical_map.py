@@ -8,8 +8,8 @@ import numpy as np
 
 from rotorgear.plots.figure import axes_for
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.critical import CriticalMap
-from rotorgear.results.steady.whirl_words import WHIRL_WORDS
+from rotorgear.results.critical import CriticalMap
+from rotorgear.results.modal import WHIRL_WORDS
 
 _MARKERS = {
     "forward": ("^", "#1f5fa8", "forward whirl"),

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
 from rotorgear.plots.static import plain_axis
-from rotorgear.results.steady.frequency_response import FrequencyResponse
+from rotorgear.results.frequency_response import FrequencyResponse
 
 
 def frf(result: FrequencyResponse, fig: Any = None, *, quantity: str = "receptance") -> np.ndarray:

@@ -14,7 +14,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.parts.gear_sheet import GearSheet
+from rotorgear.results.gear_sheet import GearSheet
 
 _COLOURS = ("#1f5fa8", "#b3541e")
 _POINTS = 40

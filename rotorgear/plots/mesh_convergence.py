@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rotorgear.plots.figure import axes_for
-from rotorgear.results.parts.mesh_convergence import MeshConvergenceStudy
+from rotorgear.results.convergence import MeshConvergenceStudy
 
 _CURVES = (
     ("mean_stiffness", "o", "#1f5fa8", "mean stiffness"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.plots.figure import axes_for, figure_for
-from rotorgear.results.parts.mesh import MeshResult
+from rotorgear.results.mesh import MeshResult
 
 _BLUE = "#1f5fa8"
 _ORANGE = "#b3541e"

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.plots.figure import axes_for, figure_for
-from rotorgear.results.parts.mesh_map import MeshMap
+from rotorgear.results.mesh_map import MeshMap
 
 # What is drawn by name: its field, the factor to its unit, and its label.
 QUANTITIES = {

@@ -18,7 +18,7 @@ from rotorgear.plots.camera import best_direction, look
 from rotorgear.plots.offscreen import rendering
 from rotorgear.plots.scene import GREY, Scene, add_headline
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 # Rendered this many times as wide and high: smoother, and much faster in software than VTK's own passes.
 _SUPERSAMPLING = 2

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.design.optimise import LayoutMode, OptimiseResult
+from rotorgear.results.optimise import LayoutMode, OptimiseResult
 
 _LEAST = 1e-3
 

@@ -10,8 +10,8 @@ from rotorgear.old_names import warn_old
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
 from rotorgear.plots.transient import shaft_orbits
-from rotorgear.results.motion.orbits import OrbitsResult
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.orbits import OrbitsResult
+from rotorgear.results.transient import TransientResult
 
 _MARKERS = {"fold": "o", "period doubling": "D", "Neimark-Sacker": "s"}
 _SIZE = (7.5, 6.0)

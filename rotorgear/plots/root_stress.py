@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rotorgear.plots.figure import axes_for
-from rotorgear.results.parts.root_stress import RootStress
+from rotorgear.results.root_stress import RootStress
 
 _COLOURS = ("#1f5fa8", "#b3541e")
 

@@ -10,7 +10,7 @@ from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
 from rotorgear.plots.static import plain_axis
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.response import ResponseResult
 
 _MOST_LINES = len(COLOURS)
 _WIDTH = 5.6

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.design.scatter import HIGH, LOW, ScatterResult
+from rotorgear.results.scatter import HIGH, LOW, ScatterResult
 
 # Numbers that the lower panel tells apart; the rest stands together.
 _TOLD = 6

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.export.solids import KINDS, Solids
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 # From what stands still to what moves most: light enough at both ends to show light and shade.
 _STOPS = ((0.0, "c3ccd6"), (0.2, "5f9bd8"), (0.42, "3fc4a4"), (0.64, "f4d53f"), (0.84, "f0862b"), (1.0, "c4201f"))

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.steady.static import MeshFace, StaticResult
+from rotorgear.results.static import MeshFace, StaticResult
 
 
 def static(result: StaticResult, fig: Any = None) -> np.ndarray:

@@ -13,7 +13,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for, save_all
 from rotorgear.plots.sweep_portraits import portrait_spectra, portraits
-from rotorgear.results.motion.sweep import SweepResult
+from rotorgear.results.sweep import SweepResult
 
 _SIZE = (8.0, 6.0)
 _KINDS = ("1T", "2T", "3T", "4T", "longer", "quasi-periodic", "chaotic", "not settled", "failed")

@@ -9,8 +9,8 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.motion.portrait import DISPLACEMENT, VELOCITY, Portraits
-from rotorgear.results.motion.sweep import SweepResult
+from rotorgear.results.portrait import DISPLACEMENT, VELOCITY, Portraits
+from rotorgear.results.sweep import SweepResult
 
 # Mesh orders that a spectrum shows, and decades below its largest line.
 _ORDERS = 4.0

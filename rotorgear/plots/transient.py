@@ -13,7 +13,7 @@ from rotorgear.analysis.transient.spectra import spectrum
 from rotorgear.errors import AnalysisError
 from rotorgear.plots.figure import axes_for, figure_for, save_all
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 
 _SIZE = (8.0, 5.0)
 _SHOWN_PERIODS = 6

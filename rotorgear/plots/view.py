@@ -16,7 +16,7 @@ from rotorgear.model.model import Model
 from rotorgear.plots.camera import best_direction, look
 from rotorgear.plots.offscreen import RenderError, can_render
 from rotorgear.plots.scene import INK, Scene, add_headline
-from rotorgear.results.steady.modal import ModalResult, NodeTable, body_name
+from rotorgear.results.modal import ModalResult, NodeTable, body_name
 
 _MILLISECONDS = 40
 _FRAMES = 50

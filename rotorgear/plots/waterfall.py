@@ -10,7 +10,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import axes_for
 from rotorgear.plots.static import plain_axis
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.response import ResponseResult
 
 _SPECTRA = 45
 # The largest line is so many steps between two spectra high; a line is a peak of this share of the width.

@@ -1,7 +1,8 @@
-"""Result of a convergence study: error against run time and size over a series of discretisations."""
+"""Results of convergence studies: error against run time and size over a series of discretisations, of a mesh, of a sweep."""
 
 from __future__ import annotations
 
+from rotorgear.results.mesh import MeshErrors
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 
@@ -80,3 +81,66 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
     resolution: float = of(
         "relative error below which the reference or rounding decides", form=".0e", default=0.0, kw_only=True
     )
+
+
+class MeshRung(Record):
+    """One mesh of the teeth."""
+
+    method: str = of("what was asked for", note=": a preset, or a mesh between them")
+    elements: int = of("elements of a pitch in the transverse plane")
+    layers: int = of("layers along the face", note="; 0: a plane model")
+    dofs: int = of("degrees of freedom", note=" of both gears")
+    fe_seconds: float = of("CPU time of both compliances", "s")
+    contact_seconds: float = of("CPU time of the contact over a cycle", "s")
+    mean_stiffness_n_per_m: float = of("mean stiffness", "N/m")
+    peak_to_peak_stiffness_n_per_m: float = of("peak to peak of the stiffness", "N/m")
+    ste_peak_to_peak_m: float = of("peak to peak of the transmission error", "m")
+    error: MeshErrors = of("relative errors against the reference", record=MeshErrors)
+    estimate: MeshErrors | None = of(
+        "what an analysis with this preset estimates itself", record=MeshErrors, note="; `null` for other meshes"
+    )
+
+
+class MeshConvergenceStudy(Result, kind="mesh_convergence", analysis="accuracy"):
+    """Rungs of one mesh at one load; `reference` says what the errors are measured against."""
+
+    title: str = of("title of the model")
+    analysis: str = of("analysis that is measured", json="of", default="mesh", kw_only=True)
+    mesh: str = of("mesh")
+    body: str = of("what the teeth stand on")
+    base_force_n: float = of("tangential force F_bt at the base circle", "N", note=" of the helix")
+    reference: str = of("what the errors are measured against")
+    rungs: tuple[MeshRung, ...] = of("discretisations", "", "rung", record=MeshRung)
+
+
+class SweepRung(Record):
+    """One number of steps and of periods."""
+
+    steps: int = of("steps", note=" in a period of the fastest mesh")
+    count: int = of("periods sampled (least common periods)")
+    seconds: float = of("wall time", "s", note=" of one run, CPU time")
+    exponent: float = of("mean of the largest Lyapunov exponents")
+    scatter: float = of("standard deviation of these exponents over the runs")
+    stated: float = of("standard error that one run states", note=", the median")
+    peak_to_peak: float = of("penetration of the flanks, peak to peak", "m", note=", of the worst contact")
+    peak_to_peak_scatter: float = of("standard deviation of the peak to peak", "m")
+    dynamic_factor: float = of("dynamic factor", note=" of that contact")
+    dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")
+    motion: tuple[str, ...] = of("response type", "", "kind", note=": those that occurred")
+    error: float = of(
+        "largest relative difference of peak to peak and dynamic factor from the reference",
+        form=".1e",
+        default=float("nan"),
+        kw_only=True,
+    )
+
+
+class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy"):
+    """Rungs of one model; `runs` is how many states each was run from."""
+
+    title: str = of("title of the model")
+    analysis: str = of("analysis that is measured", json="of", default="sweep", kw_only=True)
+    runs: int = of("number of states that the point was run from")
+    rungs: tuple[SweepRung, ...] = of("discretisations", "", "rung", record=SweepRung)
+    speed: float | None = of("speed of the input shaft", "rad/s", json="speed_rpm", default=None, kw_only=True)
+    reference: str = of("what the errors are measured against", default="", kw_only=True)

@@ -1,13 +1,16 @@
-"""All kinds of results, by the word that a file names them with."""
+"""All kinds of results, by the word that a file names them with, and the keys of their JSON output, from their declarations."""
 
 from __future__ import annotations
 
 import pkgutil
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 
 import rotorgear.results
 from rotorgear.results.result import Result
+from rotorgear.results.schema import Record
 
 
 @cache
@@ -18,3 +21,34 @@ def kinds() -> dict[str, type[Result]]:
         if not module.ispkg and not module.name.startswith(f"{name}.tables."):
             import_module(module.name)
     return dict(Result.kinds)
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key: its path, with `[]` for the entries of a list and a word in capitals for a name; its unit and its meaning."""
+
+    path: str
+    unit: str
+    text: str
+
+
+def keys_of(cls: type[Record], prefix: str = "") -> Iterator[Key]:
+    """Yield the keys that a result or a record writes, `prefix` before each."""
+    if issubclass(cls, Result):
+        yield Key(f"{prefix}analysis", "", f'`"{cls.analysis_word}"`')
+    declared = list(cls.declarations.values())
+    title = [one for one in declared if one.name == "title"]
+    for one in [*title, *(one for one in declared if one.name != "title")]:
+        for written in one.written():
+            axes = one.axes if written.axes is None else written.axes
+            path = prefix + written.key + "".join(f".{axis}" if axis.isupper() else "[]" for axis in axes)
+            unit = one.unit if written.unit is None else written.unit
+            label = one.label if written.label is None else written.label
+            # A label of the key's own does without the note of the field.
+            note = written.note if written.note is not None else one.note if written.label is None else ""
+            if one.record is None or written.label is not None:
+                yield Key(path, unit, label + note)
+                continue
+            if note:
+                yield Key(path.removesuffix("[]"), "", label + note)
+            yield from keys_of(one.record, f"{path}.")

@@ -231,6 +231,11 @@ class Record:
         return out
 
 
+def record_of(name: str) -> type[Record]:
+    """The class that a file names; a record may have moved to another file since."""
+    return Record.known.get(name) or Record.known[name.rpartition(".")[2]]
+
+
 def record_name(cls: type[Record]) -> str:
     """Name of a record in files: its class, and the file that it stands in, since two results may have rows of one name."""
     return f"{cls.__module__.rpartition('.')[2]}.{cls.__name__}"

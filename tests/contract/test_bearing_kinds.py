@@ -14,7 +14,7 @@ import pytest
 from rotorgear.forces.registry import law_of, names
 from rotorgear.model.parts.bearings.geometry import BearingGeometry
 from rotorgear.model.parts.supports import Bearing
-from rotorgear.results.parts.bearing import BearingSheet
+from rotorgear.results.bearing import BearingSheet
 from tests.disk_in_bearing import disk_in_bearing
 from tests.paths import ROOT
 
@@ -23,7 +23,7 @@ THRUST = {
     "forces/thrust_film.py",
     "model/parts/bearings/thrust.py",
     "model/parts/supports.py",
-    "results/parts/bearing.py",
+    "results/bearing.py",
 }
 WORD = re.compile(r"(?<![A-Za-z])(thrust|Thrust)(?![a-z])")
 PULL = "[300.0, 400.0, 0.0]"

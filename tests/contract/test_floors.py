@@ -71,15 +71,7 @@ ROOMS = {
         "": {"geometry", "loaded", "stiffness", "tooth_fe"},
     },
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
-    "results": {
-        "": set(),
-        "steady": {""},
-        "motion": {"", "steady"},
-        "parts": {""},
-        "rig": {"", "steady"},
-        "design": {""},
-        "tables": {"", "design", "motion", "parts", "rig", "steady"},
-    },
+    "results": {"": set(), "tables": {""}},
     "solvers": {
         "sampling": set(),
         "sparse": set(),

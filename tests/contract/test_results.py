@@ -21,11 +21,10 @@ from rotorgear.analysis.rig.frf_file import MeasuredFrf
 from rotorgear.analysis.teeth.tooth_field import tooth_fields
 from rotorgear.export.hdf5 import read, save
 from rotorgear.model.model_hash import model_hash
-from rotorgear.results.keys import keys_of
-from rotorgear.results.kinds import kinds
-from rotorgear.results.motion.spectrum import SpectralLines
+from rotorgear.results.kinds import keys_of, kinds
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
+from rotorgear.results.spectrum import SpectralLines
 from tests.paths import ROOT
 from tests.unit.analysis.geared import pair_file
 from tests.unit.analysis.static.test_bearing_states import BALLS

@@ -30,7 +30,7 @@ from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe, sized
-from rotorgear.results.parts.mesh import MeshErrors
+from rotorgear.results.mesh import MeshErrors
 from tests.paths import ROOT
 
 ASKED = (8, 12, 16, 24, 32, 48, 64, 128, 256, 512, 1024)

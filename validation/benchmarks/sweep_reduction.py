@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.results.motion.sweep import SweepResult
+from rotorgear.results.sweep import SweepResult
 
 MODEL = Path(__file__).resolve().parents[2] / "models" / "flexible_pair.toml"
 OVER = {"operation.speed": "1500 rpm:9000 rpm:16"}

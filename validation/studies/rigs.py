@@ -25,7 +25,7 @@ from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.model.numbers import free_numbers
-from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.comparison import RigLine
 from rotorgear.system.plan import Plan
 
 FREE = "bearings.*.stiffness, meshes.*.stiffness, supports.*.stiffness"

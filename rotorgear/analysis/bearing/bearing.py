@@ -30,7 +30,7 @@ from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.parts.bearing import BearingSheet, BearingSpeed
+from rotorgear.results.bearing import BearingSheet, BearingSpeed
 
 # Of the operating speed, where no speeds are given.
 _SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)

@@ -32,7 +32,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
+from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.system import System
 

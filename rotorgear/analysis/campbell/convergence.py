@@ -15,9 +15,9 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.campbell import CampbellResult
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.steady.campbell import CampbellResult
-from rotorgear.results.steady.critical import CriticalResult
+from rotorgear.results.critical import CriticalResult
 
 # Speeds of the diagrams that are compared, the first and last of them its ends.
 POINTS = 3

@@ -29,8 +29,8 @@ from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.campbell import ExcitationOrder
-from rotorgear.results.steady.critical import CriticalResult, CriticalSpeed
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.critical import CriticalResult, CriticalSpeed
 from rotorgear.solvers.eigen.synchronous import LEAST_SHARE, Affine, Synchronous, synchronous_speeds
 from rotorgear.solvers.sparse.pencil import count_below
 from rotorgear.system.rigid_motions import rigid_motions

@@ -26,8 +26,8 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.campbell import ExcitationOrder
-from rotorgear.results.steady.critical import CriticalMap
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.critical import CriticalMap
 from rotorgear.system.system import System
 
 # Decades below the softest and above the stiffest bearing of the model that the map covers.

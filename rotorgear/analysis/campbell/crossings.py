@@ -15,7 +15,7 @@ from scipy.linalg.lapack import zgetrf, zgetrs
 from rotorgear.analysis.campbell.snapshot_basis import SpeedModes
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
 from rotorgear.analysis.modal.whirl import whirl_word_among
-from rotorgear.results.steady.campbell import Crossing, ExcitationOrder, Margin
+from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 
 # Below this participation a line can't excite a mode.

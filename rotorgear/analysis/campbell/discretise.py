@@ -14,7 +14,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.modal import Piece
+from rotorgear.results.modal import Piece
 from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import PieceKey, Plan
 from rotorgear.system.system import System

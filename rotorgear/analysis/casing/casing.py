@@ -21,7 +21,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
-from rotorgear.results.parts.casing import CasingRow, CasingSeat, CasingSurvey
+from rotorgear.results.casing import CasingRow, CasingSeat, CasingSurvey
 
 _MOST_MODES = 200
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from rotorgear.model.model import Model
-from rotorgear.results.rig.comparison import ExcitationLine
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.comparison import ExcitationLine
 
 # Unbalance and misalignment of shafts; the first harmonics of a mesh carry most of its transmission error.
 SHAFT_ORDERS = (1, 2)

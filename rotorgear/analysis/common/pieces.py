@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from operator import attrgetter
 
-from rotorgear.results.steady.modal import Piece
+from rotorgear.results.modal import Piece
 from rotorgear.system.system import System
 
 _PIECE = attrgetter("piece")

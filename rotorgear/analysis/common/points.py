@@ -13,7 +13,7 @@ from rotorgear.model.checks.references import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.quantity import QuantityError, parse_quantity
-from rotorgear.results.steady.modal import NodeTable
+from rotorgear.results.modal import NodeTable
 from rotorgear.system.system import System
 
 

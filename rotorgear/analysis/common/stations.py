@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.casings.motions import rigid_motions
 from rotorgear.elements.shaft import inner_fields
-from rotorgear.results.steady.modal import NodeTable, body_name
+from rotorgear.results.modal import NodeTable, body_name
 from rotorgear.system.groups import alike, element_data, shaft_dofs
 from rotorgear.system.system import System
 

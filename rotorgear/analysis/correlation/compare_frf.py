@@ -17,7 +17,7 @@ from rotorgear.analysis.rig.frf_file import MeasuredFrf, read_rig_frf
 from rotorgear.analysis.rig.mac import frac
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.rig.frf_comparison import FrfComparison, FrfMatch
+from rotorgear.results.frf_comparison import FrfComparison, FrfMatch
 
 
 @recorded

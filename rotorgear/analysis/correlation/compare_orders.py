@@ -22,7 +22,7 @@ from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.rig.frf_comparison import OrderComparison, OrderMatch
+from rotorgear.results.frf_comparison import OrderComparison, OrderMatch
 from rotorgear.uff.datasets import DERIVATIVES, RPM
 from rotorgear.uff.read import read_universal
 

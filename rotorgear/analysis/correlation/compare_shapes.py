@@ -28,9 +28,9 @@ from rotorgear.analysis.rig.shape_file import read_rig_shapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.rig.comparison import RigLine
-from rotorgear.results.rig.correlation import ALIKE, ShapeChance, ShapeComparison, ShapeMatch, Subspace
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.comparison import RigLine
+from rotorgear.results.correlation import ALIKE, ShapeChance, ShapeComparison, ShapeMatch, Subspace
+from rotorgear.results.modal import ModalResult
 
 # A pair lies within four standard deviations, so that a model without uncertain springs reaches as far as the tolerance.
 _DEVIATIONS = 4.0

@@ -8,9 +8,9 @@ import numpy as np
 
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.results.motion.spectrum import RigSpectrum, SpectralLines
-from rotorgear.results.motion.transient import TransientResult
-from rotorgear.results.rig.comparison import ExcitationLine, RigLine
+from rotorgear.results.comparison import ExcitationLine, RigLine
+from rotorgear.results.spectrum import RigSpectrum, SpectralLines
+from rotorgear.results.transient import TransientResult
 
 TOLERANCE = 0.01
 

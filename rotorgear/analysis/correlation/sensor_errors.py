@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.results.rig.correlation import SensorDoubt
+from rotorgear.results.correlation import SensorDoubt
 
 _AXES = "xyz"
 # A change has to leave less than this share of the misfit, and to beat chance by so much in the log likelihood.

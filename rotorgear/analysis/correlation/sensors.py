@@ -28,7 +28,7 @@ from rotorgear.analysis.rig.sensor_table import places_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.rig.sensors import PlannedSensor, SensorPlan
+from rotorgear.results.sensors import PlannedSensor, SensorPlan
 from rotorgear.system.plan import Plan
 
 _AXES = ("x", "y", "z")

@@ -12,7 +12,7 @@ from rotorgear.analysis.scatter.basis import with_shapes
 from rotorgear.analysis.scatter.forms import FormNames, forms_of
 from rotorgear.analysis.scatter.modes import FormModes, modes_of
 from rotorgear.analysis.scatter.samples import participations, spin_signs
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.system import System
 

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, FormNames, forms_of
 from rotorgear.analysis.scatter.samples import exciting_forms, spin_signs
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.system.system import System
 
 # Modes closer than this are looked at as one space.

@@ -14,7 +14,7 @@ from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slope
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

@@ -11,8 +11,7 @@ from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import Energies, mode_energies
 from rotorgear.analysis.modal.whirl import Whirl, whirl_of, whirl_words
-from rotorgear.results.steady.modal import NodeTable
-from rotorgear.results.steady.whirl_words import WHIRL_WORDS
+from rotorgear.results.modal import WHIRL_WORDS, NodeTable
 from rotorgear.system.system import System
 
 # So many numbers of shapes are held at once.

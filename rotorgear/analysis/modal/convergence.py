@@ -13,7 +13,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
 

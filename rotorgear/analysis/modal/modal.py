@@ -26,7 +26,7 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

@@ -14,7 +14,7 @@ from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import mode_energies
 from rotorgear.analysis.modal.modes import Modes
 from rotorgear.analysis.modal.whirl import whirl_of, whirl_words
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.system import System
 

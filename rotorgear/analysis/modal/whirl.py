@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.modal.energies import Energies
-from rotorgear.results.steady.whirl_words import WHIRL_WORDS
+from rotorgear.results.modal import WHIRL_WORDS
 from rotorgear.system.system import System
 
 # Below this share of the inertia-weighted orbit a mode is called planar.

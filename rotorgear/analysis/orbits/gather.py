@@ -11,7 +11,7 @@ from rotorgear.analysis.orbits.family import Range, SystemFamily
 from rotorgear.analysis.orbits.follow import Branch
 from rotorgear.analysis.orbits.places import Told
 from rotorgear.analysis.orbits.refined import refined
-from rotorgear.results.motion.orbits import OrbitBranch, SpecialCurve, SpecialPoint
+from rotorgear.results.orbits import OrbitBranch, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.cycle import Cycle
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import answered

@@ -25,7 +25,7 @@ from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.motion.orbits import OrbitsResult
+from rotorgear.results.orbits import OrbitsResult
 from rotorgear.solvers.periodic.arclength import Walk
 from rotorgear.solvers.periodic.balance import Grid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits, static_displacements

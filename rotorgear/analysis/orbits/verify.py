@@ -11,7 +11,7 @@ import numpy as np
 from rotorgear.analysis.orbits.family import Range, SystemFamily
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch
 from rotorgear.analysis.orbits.start import run_periods
-from rotorgear.results.motion.orbits import OrbitVerification
+from rotorgear.results.orbits import OrbitVerification
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.special import Certified

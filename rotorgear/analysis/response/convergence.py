@@ -17,8 +17,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.steady.frequency_response import FrequencyResponse
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.frequency_response import FrequencyResponse
+from rotorgear.results.response import ResponseResult
 
 ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)
 REFERENCE = 1e-9

@@ -30,7 +30,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.frequency_response import FrequencyResponse
+from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.contacts import contact_lines

@@ -15,7 +15,7 @@ from rotorgear.analysis.modal.solve import solve
 from rotorgear.model.layout.spring import constant_spring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

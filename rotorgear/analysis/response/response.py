@@ -30,7 +30,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.system import System

@@ -26,7 +26,7 @@ from rotorgear.analysis.response.run_up import solve_orders
 from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.response import Peak
+from rotorgear.results.response import Peak
 
 _SAME_FREQUENCY = 1e-9
 # Harmonics of r that move the contacts: so many of the strongest, down to this share of the largest.

@@ -33,7 +33,7 @@ from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.steady.state_space import StateSpace
+from rotorgear.results.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general, single_thread
 from rotorgear.system.components import dof_motions, independent_groups

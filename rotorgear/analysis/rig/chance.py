@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.results.rig.comparison import Chance
+from rotorgear.results.comparison import Chance
 from rotorgear.solvers.eigen.assignment import assign, covered_share, miss_cost
 
 # A random list that does as well to the last digit is a hit; rounding must not decide it.

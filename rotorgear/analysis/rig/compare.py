@@ -18,7 +18,7 @@ from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.rig.chance import estimate_chance
 from rotorgear.analysis.rig.learnt import learnt_stiffnesses
 from rotorgear.errors import AnalysisError
-from rotorgear.results.rig.comparison import (
+from rotorgear.results.comparison import (
     Candidate,
     Comparison,
     ExcitationLine,

@@ -16,8 +16,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import warn_old
 from rotorgear.progress import Progress, silent
-from rotorgear.results.rig.comparison import Comparison, RigLine
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.comparison import Comparison, RigLine
+from rotorgear.results.modal import ModalResult
 
 # Modes of a model are found up to this much above the highest line of the rig, so that every line meets all its candidates.
 ABOVE_RIG = 1.15

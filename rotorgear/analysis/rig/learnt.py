@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.model.layout.state import SPRING_TABLES
-from rotorgear.results.rig.comparison import RigLine
-from rotorgear.results.rig.learnt import LearntParameter
+from rotorgear.results.comparison import LearntParameter, RigLine
 
 # What a designer usually knows of the stiffness of a mesh, bearing or support, and what a rig of a frequency that states nothing.
 STIFFNESS_PRIOR = 0.30

@@ -11,7 +11,7 @@ from rotorgear.analysis.common.points import coordinates
 from rotorgear.analysis.rig.sensor_table import Sensor
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.comparison import RigLine
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.model.model import Model
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from rotorgear.analysis.rig.csv_rows import csv_rows
 from rotorgear.errors import ModelError, Problem
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
-from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.comparison import RigLine
 
 # Column -> units that its header may carry, the first being that of a plain number.
 _UNITS = {

@@ -11,7 +11,7 @@ from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.sensor_table import sensors_of
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
-from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.comparison import RigLine
 from rotorgear.uff.datasets import Shape, UniversalFile
 from rotorgear.uff.read import read_universal
 

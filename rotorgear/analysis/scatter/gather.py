@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.samples import Study, nearest_margin, participations, signs
-from rotorgear.results.design.scatter import (
+from rotorgear.results.scatter import (
     HIGH,
     LOW,
     FrequencyBand,

@@ -23,7 +23,7 @@ from rotorgear.analysis.static.static import solved
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import silent
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.system.plan import Plan
 
 # Modes beside those that are wanted, so that the last ones find themselves again.

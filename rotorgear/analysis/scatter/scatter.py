@@ -37,8 +37,8 @@ from rotorgear.model.model_hash import model_hash
 from rotorgear.model.parts.scatter import Scatter
 from rotorgear.model.spreads import DISTRIBUTIONS, Spreads, graded_errors, spreads_of
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.design.scatter import ScatterResult
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.scatter import ScatterResult
 from rotorgear.solvers.sampling.points import SAMPLINGS, unit_points
 from rotorgear.solvers.sampling.sobol_indices import design
 from rotorgear.solvers.sparse.factor import single_thread

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rotorgear.results.steady.standards import RuleTable
+from rotorgear.results.standards import RuleTable
 
 LATERAL = "API 617, 8th edition, 2014"
 BALANCE = "ISO 21940-11:2016"

@@ -25,10 +25,10 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.campbell import ExcitationOrder
-from rotorgear.results.steady.critical import CriticalResult
-from rotorgear.results.steady.modal import ModalResult
-from rotorgear.results.steady.standards import (
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.critical import CriticalResult
+from rotorgear.results.modal import ModalResult
+from rotorgear.results.standards import (
     NOT_APPLICABLE,
     NOT_WITHIN,
     WITHIN,

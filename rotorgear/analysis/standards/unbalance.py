@@ -18,7 +18,7 @@ from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.steady.modal import NodeTable
+from rotorgear.results.modal import NodeTable
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to
 from rotorgear.system.loads import weight_loads

@@ -13,7 +13,7 @@ from rotorgear.analysis.static.static import forces_of, solved, static
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.steady.static import StaticResult
+from rotorgear.results.static import StaticResult
 from rotorgear.system.plan import Plan
 
 ELEMENTS = (1, 2, 4, 8, 16)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rotorgear.analysis.static.solve import LawState
-from rotorgear.results.steady.static import LawRow
+from rotorgear.results.static import LawRow
 
 
 def law_rows(states: Iterable[LawState]) -> tuple[LawRow, ...]:

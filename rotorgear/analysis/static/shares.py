@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated
-from rotorgear.results.steady.static import Share
+from rotorgear.results.static import Share
 
 # A share moves with an index error in a loop; a derivative below this share of the mesh stiffness is rounding.
 _DECIDED = 1e-7

@@ -36,7 +36,7 @@ from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.steady.static import LoopAssembly, MeshFace, StaticResult
+from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
 from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

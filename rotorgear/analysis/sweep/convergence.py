@@ -14,8 +14,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.motion.sweep import SweepResult
-from rotorgear.results.motion.sweep_convergence import SweepConvergenceStudy, SweepRung
+from rotorgear.results.convergence import SweepConvergenceStudy, SweepRung
+from rotorgear.results.sweep import SweepResult
 
 STEPS = (50, 100, 200, 400)
 COUNTS = (50, 200, 800)

@@ -15,8 +15,7 @@ from rotorgear.analysis.sweep.notes import notes
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.model.model import Model
-from rotorgear.results.motion.reduction import Reduction
-from rotorgear.results.motion.sweep import SweepResult
+from rotorgear.results.sweep import Reduction, SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit
 from rotorgear.solvers.time.statistics import STATISTICS
 

@@ -13,8 +13,8 @@ from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress
-from rotorgear.results.motion.portrait import Portraits
-from rotorgear.results.motion.sweep import SweepResult
+from rotorgear.results.portrait import Portraits
+from rotorgear.results.sweep import SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit
 from rotorgear.solvers.lanes.trajectory import recorded
 

@@ -13,7 +13,7 @@ import numpy as np
 from rotorgear.analysis.common.law_rates import rates
 from rotorgear.analysis.sweep.probes import probes_for
 from rotorgear.errors import AnalysisError
-from rotorgear.results.motion.reduction import Reduction
+from rotorgear.results.sweep import Reduction
 from rotorgear.solvers.frequency.contact_basis import Candidates, Choice, candidates, choose, reduced
 from rotorgear.solvers.frequency.receptance import Scale, full_receptances
 from rotorgear.solvers.lanes.columns import PRESCRIBED

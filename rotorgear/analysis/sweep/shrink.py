@@ -8,7 +8,7 @@ from rotorgear.analysis.sweep.point import Point, ready_reduced
 from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
 from rotorgear.errors import RotorgearError
 from rotorgear.progress import Progress
-from rotorgear.results.motion.reduction import Reduction
+from rotorgear.results.sweep import Reduction
 
 
 def shrunk(

@@ -26,7 +26,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.motion.sweep import SweepResult
+from rotorgear.results.sweep import SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start
 from rotorgear.solvers.sparse.factor import single_thread
 

@@ -19,8 +19,8 @@ from rotorgear.gears.tooth_fe.settings import PRESETS, sized
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.parts.mesh import MeshErrors
-from rotorgear.results.parts.mesh_convergence import MeshConvergenceStudy, MeshRung
+from rotorgear.results.convergence import MeshConvergenceStudy, MeshRung
+from rotorgear.results.mesh import MeshErrors
 
 POSITIONS = 64
 # Meshes between the presets, and the reference: rows and columns, and thickness of a layer in normal modules.

@@ -30,7 +30,7 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe, coarser_size
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.parts.mesh import MeshErrors
+from rotorgear.results.mesh import MeshErrors
 
 # Share of the difference between two meshes that remains on the finer one, in the plane; and p in space, as measured there.
 _REMAINING = {"preview": 1.5, "default": 0.35, "fine": 0.6}

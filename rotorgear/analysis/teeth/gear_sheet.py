@@ -31,7 +31,7 @@ from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
-from rotorgear.results.parts.gear_sheet import GearRow, GearSheet, MeshSheetRow
+from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
 
 _POSITIONS = 256
 

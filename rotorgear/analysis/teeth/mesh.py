@@ -20,7 +20,7 @@ from rotorgear.gears.tooth_fe.settings import PRESETS
 from rotorgear.memory import largest_memory
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.parts.mesh import HelixContact, LoadPoint, MeshResult
+from rotorgear.results.mesh import HelixContact, LoadPoint, MeshResult
 
 POSITIONS = 64
 # More positions or periods than these are a slip of the keyboard.

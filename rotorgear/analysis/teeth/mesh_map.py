@@ -15,7 +15,7 @@ from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.parts.mesh_map import MeshMap
+from rotorgear.results.mesh_map import MeshMap
 
 
 @recorded

@@ -41,7 +41,7 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.quantity import QuantityError, parse_quantity
-from rotorgear.results.parts.mesh_optimum import FlankVariable, MeshOptimum
+from rotorgear.results.mesh_optimum import FlankVariable, MeshOptimum
 
 # Flanks that are tried for each variable, and the share of them that the evolution takes; the simplex has the rest.
 _TRIES = 60

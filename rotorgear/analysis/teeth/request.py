@@ -13,7 +13,7 @@ from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
-from rotorgear.results.parts.mesh import MeshLoad
+from rotorgear.results.mesh import MeshLoad
 
 
 @dataclass(frozen=True)

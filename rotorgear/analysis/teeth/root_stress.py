@@ -25,7 +25,7 @@ from rotorgear.gears.tooth_fe.tooth_solution import solve_teeth, tooth_inside
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.parts.root_stress import GearRootStress, RootStress
+from rotorgear.results.root_stress import GearRootStress, RootStress
 
 POSITIONS = 24
 

@@ -25,7 +25,7 @@ from rotorgear.gears.tooth_fe.tooth_solution import TeethSolution, solve_teeth
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.parts.tooth_field import ContactField, ToothField, ToothFields
+from rotorgear.results.tooth_field import ContactField, ToothField, ToothFields
 
 
 @recorded

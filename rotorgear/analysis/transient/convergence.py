@@ -15,7 +15,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 from rotorgear.system.flow_system import flow_system
 
 STEPS = (40, 80, 160, 320, 640)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.results.motion.transient import EnergyLedger
+from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.local_system import LocalSystem, Records, State, local_values
 
 # Records of a chunk at which stored energies are evaluated.

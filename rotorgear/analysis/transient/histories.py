@@ -11,7 +11,7 @@ from rotorgear.analysis.transient.channels import Channels
 from rotorgear.analysis.transient.energy_ledger import LedgerBook
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, silent
-from rotorgear.results.motion.transient import EnergyLedger
+from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.arguments import Gathered
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State
 from rotorgear.solvers.time.run import Schedule, run

@@ -9,7 +9,7 @@ from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_o
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, unbalanced
 from rotorgear.system.local import LocalModel
 

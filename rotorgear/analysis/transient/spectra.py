@@ -11,8 +11,8 @@ import numpy as np
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.errors import AnalysisError
-from rotorgear.results.motion.spectrum import SpectralLines, Spectrum
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.spectrum import SpectralLines, Spectrum
+from rotorgear.results.transient import TransientResult
 
 # Width of a line in bins between its half heights.
 _WIDTH = {"hann": 2.0, "flattop": 3.8, "boxcar": 1.2}

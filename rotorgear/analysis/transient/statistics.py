@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.transient.histories import Histories
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.statistics import (
     STATISTICS,
     MotionStatistics,

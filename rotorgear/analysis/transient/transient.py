@@ -24,7 +24,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.explicit import Explicit, check_length
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator

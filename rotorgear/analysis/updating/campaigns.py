@@ -20,7 +20,7 @@ from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes, Shapes
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.numbers import FreeNumbers
-from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.comparison import RigLine
 from rotorgear.system.system import System
 
 _KEYS = ("name", "rig", "shapes", "frf", "points", "speed", "changes")

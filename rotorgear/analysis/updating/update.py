@@ -35,8 +35,8 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.progress import Progress, silent
-from rotorgear.results.rig.comparison import RigLine
-from rotorgear.results.rig.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
+from rotorgear.results.comparison import RigLine
+from rotorgear.results.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
 from rotorgear.system.plan import Plan
 
 # Noise of a measured displacement, as a share of the root mean square of its shape.

@@ -7,7 +7,7 @@ from functools import lru_cache
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.model.load import loads
 from rotorgear.model.model import Model
-from rotorgear.results.steady.modal import ModalResult
+from rotorgear.results.modal import ModalResult
 
 PAIR = """
 schema_version = 1

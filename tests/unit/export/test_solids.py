@@ -9,7 +9,7 @@ from rotorgear.export.solids import KINDS, LARGEST_TURN, Solids, build_solids
 from rotorgear.export.surface import make_surface
 from rotorgear.export.teeth import contour_of, tooth_phases, twist_rates
 from rotorgear.model.load import loads
-from rotorgear.results.steady.modal import NodeTable
+from rotorgear.results.modal import NodeTable
 from tests.unit.export.small_models import CHAIN, HERRINGBONE, PAIR, model_of, modes_of
 
 

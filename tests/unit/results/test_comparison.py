@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from rotorgear.results.rig.comparison import (
+from rotorgear.results.comparison import (
     Candidate,
     Chance,
     Comparison,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.results.steady.frequency_response import peak_between
+from rotorgear.results.frequency_response import peak_between
 
 
 @pytest.mark.parametrize("power", [0, 1, 2])

@@ -9,8 +9,8 @@ import sys
 from rich.console import Console
 
 from rotorgear.analysis.rig.compare import compare_lines as compare
-from rotorgear.results.rig.comparison import ExcitationLine, RigLine
-from rotorgear.results.tables.rig.comparison import compare_table
+from rotorgear.results.comparison import ExcitationLine, RigLine
+from rotorgear.results.tables.comparison import compare_table
 
 
 def render(comparison, encoding="utf-8"):
@@ -61,5 +61,5 @@ def test_a_comparison_without_matches_has_no_empty_table():
 
 
 def test_the_module_imports_without_rich_or_numpy():
-    code = "import sys, rotorgear.results.tables.rig.comparison; sys.exit(any(n in sys.modules for n in ('rich', 'numpy')))"
+    code = "import sys, rotorgear.results.tables.comparison; sys.exit(any(n in sys.modules for n in ('rich', 'numpy')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 from rich.console import Console
 
-from rotorgear.results.motion.transient import ChannelStatistics
-from rotorgear.results.tables.motion.transient import _channels
+from rotorgear.results.tables.transient import _channels
+from rotorgear.results.transient import ChannelStatistics
 
 
 def row(name: str, mean: float, rms: float, largest: float, smallest: float) -> ChannelStatistics:

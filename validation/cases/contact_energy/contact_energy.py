@@ -9,7 +9,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.results.motion.transient import TransientResult
+from rotorgear.results.transient import TransientResult
 from validation.oscillators import integrate, local_system
 
 _PERIODS = 10

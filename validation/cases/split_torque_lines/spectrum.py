@@ -9,7 +9,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.model.parts.excitation import ErrorHarmonic
-from rotorgear.results.motion.spectrum import RigSpectrum, SpectralLines
+from rotorgear.results.spectrum import RigSpectrum, SpectralLines
 
 _MODELS = Path(__file__).resolve().parents[3] / "models"
 _HARMONICS = (5.2e-6, 3.1e-6, 1.8e-6, 0.9e-6, 0.4e-6)

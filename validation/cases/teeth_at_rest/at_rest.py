@@ -21,7 +21,7 @@ import rotorgear as rg
 from rotorgear.analysis.static.along_faces import misalignments
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.results.steady.static import StaticResult
+from rotorgear.results.static import StaticResult
 from rotorgear.system.system import System
 
 _MODELS = Path(__file__).resolve().parents[3] / "models"

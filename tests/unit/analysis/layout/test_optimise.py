@@ -17,7 +17,7 @@ from rotorgear.analysis.scatter.modes import modes_of
 from rotorgear.analysis.static import state_at
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.numbers import numbers_of
-from rotorgear.results.steady.campbell import ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.plan import Plan
 from tests.paths import ROOT

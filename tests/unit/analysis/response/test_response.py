@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.results.steady.response import ResponseResult
+from rotorgear.results.response import ResponseResult
 from tests.paths import MODELS, ROOT
 
 Data = dict[str, Any]

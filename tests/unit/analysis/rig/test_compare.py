@@ -11,7 +11,7 @@ import pytest
 from rotorgear.analysis.rig.chance import binomial_tail
 from rotorgear.analysis.rig.compare import compare_lines as compare
 from rotorgear.errors import AnalysisError, ModelError
-from rotorgear.results.rig.comparison import ExcitationLine, RigLine
+from rotorgear.results.comparison import ExcitationLine, RigLine
 
 MODES = [0.0, 50.0, 120.0, 333.0, 700.0, 1500.0]
 

@@ -6,7 +6,7 @@ import pytest
 
 from rotorgear.analysis.rig.rig_file import read_rig_lines
 from rotorgear.errors import ModelError
-from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.comparison import RigLine
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import rotorgear as rg
 from rotorgear.analysis.standards import rules
-from rotorgear.results.steady.standards import StandardsResult
+from rotorgear.results.standards import StandardsResult
 from tests.paths import ROOT
 
 MASS = 10.0

@@ -12,7 +12,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.elements.shaft import cowper
-from rotorgear.results.steady.static import StaticResult
+from rotorgear.results.static import StaticResult
 from tests.paths import ROOT
 
 DOWN = (0.0, -9.81, 0.0)

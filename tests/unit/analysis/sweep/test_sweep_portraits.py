@@ -21,7 +21,7 @@ from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.torque_curve import TorqueCurve
-from rotorgear.results.motion.portrait import DISPLACEMENT, FORCE, Portraits
+from rotorgear.results.portrait import DISPLACEMENT, FORCE, Portraits
 from rotorgear.solvers.lanes.lanes import Plan, run_block
 from rotorgear.solvers.lanes.trajectory import recorded
 from tests.unit.analysis.sweep.test_sweep import PAIR, TWO_STAGES

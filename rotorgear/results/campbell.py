@@ -1,0 +1,207 @@
+"""Result of a Campbell analysis: branches of modes over speed, excitation lines, crossings, margins, onset of instability."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
+
+
+class ExcitationOrder(Record):
+    """A line of excitation: `order` times the speed of the input shaft."""
+
+    name: str = of("name", note=' of an excitation line, such as "mesh stage_1 2x"')
+    kind: str = of("kind", note=': `"shaft"`, `"mesh"` or `"sideband"`')
+    parts: tuple[str, ...] = of("parts", "", "part", note=": shafts or meshes that excite at this order")
+    order: float = of("order", note=": frequency over that of the input shaft")
+
+    def frequency_hz(self, speed: float) -> float:
+        """Frequency in Hz at a speed of the input shaft in rad/s."""
+        return float(self.order * abs(speed) / (2.0 * np.pi))
+
+
+class Crossing(Record):
+    """Where a branch meets a line.
+
+    First order of a shaft: the participation is forward whirl of its bending only, which is what unbalance can drive.
+    """
+
+    line: str = of("excitation line", note=" that is met")
+    branch: int = of("branch", note=", from 1")
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm", note=" there", form=".2f")
+    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f")
+    damping_ratio: float = of("damping ratio", note=" of the mode there")
+    whirl: str = of("sense of whirl", note=" there, for the shaft whose line it is")
+    participation: float = of(
+        "share of the exciting part in the energy of the mode",
+        note=": a mesh in the strain energy, a shaft in the kinetic energy",
+    )
+    excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
+
+
+class Margin(Record):
+    """The mode next to a line at the operating speed, among those that the line can excite."""
+
+    line: str = of("excitation line")
+    frequency_hz: float = of("frequency", "Hz", note=" of the line at the operating speed", form=".2f")
+    branch: int = of(
+        "branch", note=", from 1: the nearest that the line can excite; 0: none, or the line lies above all"
+    )
+    mode_hz: float = of("damped frequency of that branch", "Hz", note="; `null`: none", form=".2f")
+    margin: float = of("margin", note=": `mode_hz` over `frequency_hz`, less 1", form="+.4f")
+    whirl: str = of("sense of whirl", note=" of that branch for the shaft whose line it is")
+    participation: float = of("share of the exciting part in the energy of the mode", note=", as at a crossing")
+    crossing_speed: float = of(
+        "nearest speed, in the range, at which the line meets a mode that it can excite",
+        "rad/s",
+        json="crossing_speed_rpm",
+        note="; `null`: none",
+    )
+
+
+class Onset(Record):
+    """Where a branch becomes unstable."""
+
+    branch: int = of("branch", note=" that becomes unstable, from 1; 0: a motion that does not oscillate")
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm", note=" from which on it is unstable")
+    frequency_hz: float = of("frequency", "Hz", note=" there")
+
+
+def by_branch(key: str) -> Written:
+    """A key that is written by branch, then by speed."""
+    return Written(key, lambda result, values: _turned(values), axes=("branch", "speed"))
+
+
+def shares_by_branch(key: str, name: str) -> Written:
+    """The same of a dictionary."""
+    return Written(
+        key, lambda result, shares: {part: _turned(v) for part, v in shares.items()}, axes=(name, "branch", "speed")
+    )
+
+
+def _turned(values: np.ndarray) -> np.ndarray:
+    return values.T
+
+
+class CampbellResult(ModelResult, kind="campbell"):
+    """b branches of modes over k speeds; values are NaN where a branch does not oscillate, or is out of reach.
+
+    The displacements of a branch at the p nodes and stations are `basis @ coordinates`; see `shapes`.
+    """
+
+    speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm", note=", ascending in size")
+    operating_speed: float | None = of(
+        "operating speed of the model", "rad/s", json="operating_speed_rpm", note="; `null` without one"
+    )
+    eigenvalues: np.ndarray = of("eigenvalue s", "rad/s", "speed", "branch", json=None)
+
+    @property
+    def speed_rpm(self) -> np.ndarray:
+        """Speeds of the input shaft in rpm, (k,)."""
+        return np.asarray(self.speeds * RPM_PER_RAD_S)
+
+    @derived("frequency", "Hz", "speed", "branch", json=by_branch("frequency_hz"), note=" of a branch, the damped one")
+    def frequency_hz(self) -> np.ndarray:
+        """Damped frequency Im s / 2 pi, (k, b)."""
+        return np.asarray(self.eigenvalues.imag / (2.0 * np.pi))
+
+    @derived("natural frequency", "Hz", "speed", "branch", json=by_branch("natural_frequency_hz"), note=", |s| / 2π")
+    def natural_frequency_hz(self) -> np.ndarray:
+        """|s| / 2 pi, (k, b)."""
+        return np.asarray(np.abs(self.eigenvalues) / (2.0 * np.pi))
+
+    @derived(
+        "damping ratio", "", "speed", "branch", json=by_branch("damping_ratio"), note=", below 0 where the motion grows"
+    )
+    def damping_ratio(self) -> np.ndarray:
+        """-Re s / |s|, (k, b)."""
+        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues) + 0.0)
+
+    @derived(
+        "logarithmic decrement",
+        "",
+        "speed",
+        "branch",
+        json=by_branch("log_decrement"),
+        note=", below 0 where the motion grows",
+    )
+    def log_decrement(self) -> np.ndarray:
+        """2 pi zeta / sqrt(1 - zeta^2), (k, b); negative where the motion grows."""
+        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag + 0.0)
+
+    whirl: np.ndarray = of(
+        "sense of whirl",
+        "",
+        "speed",
+        "branch",
+        json=Written(
+            "whirl",
+            lambda result, whirl: [[WHIRL_WORDS[number] for number in branch] for branch in whirl.T.tolist()],
+            axes=("branch", "speed"),
+        ),
+        note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"` or `""`; in Python numbers into `WHIRL_WORDS`',
+    )
+    whirl_by_shaft: dict[str, np.ndarray] = of(
+        "sense of whirl of each shaft",
+        "",
+        "SHAFT",
+        "speed",
+        "branch",
+        json=shares_by_branch("whirl_by_shaft", "SHAFT"),
+        note=", -1 (backward circle) to +1 (forward circle)",
+    )
+    kinetic_by_motion: dict[str, np.ndarray] = of(
+        "share of a motion in the kinetic energy",
+        "",
+        "MOTION",
+        "speed",
+        "branch",
+        json=shares_by_branch("kinetic_by_motion", "MOTION"),
+    )
+    strain_by_motion: dict[str, np.ndarray] = of(
+        "share of a motion in the strain energy",
+        "",
+        "MOTION",
+        "speed",
+        "branch",
+        json=shares_by_branch("strain_by_motion", "MOTION"),
+    )
+    mesh_strain: dict[str, np.ndarray] = of(
+        "share of each mesh in the strain energy",
+        "",
+        "MESH",
+        "speed",
+        "branch",
+        json=shares_by_branch("mesh_strain", "MESH"),
+    )
+    description: tuple[str, ...] = of("what moves", "", "branch", note=", at the first speed")
+    error_estimate: np.ndarray = of(
+        "estimated relative discretisation error", "", "branch", note=", the larger of both ends", form=".0e"
+    )
+    basis_error: float = of(
+        "largest relative error of the reduced eigenvalues",
+        note=" against true solutions at speeds outside of the basis",
+        form=".0e",
+    )
+    basis: np.ndarray = of("displacements of the basis", "m, rad", "node", "component", "vector", json=None)
+    coordinates: np.ndarray = of("coordinates in the basis", "", "speed", "vector", "branch", json=None)
+    nodes: NodeTable = of("nodes", record=NodeTable, json=None)
+    lines: tuple[ExcitationOrder, ...] = of("excitation lines", "", "line", record=ExcitationOrder)
+    crossings: tuple[Crossing, ...] = of("crossings", "", "crossing", record=Crossing)
+    margins: tuple[Margin, ...] = of("margins", "", "margin", record=Margin)
+    onsets: tuple[Onset, ...] = of("onsets of instability", "", "onset", record=Onset)
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
+
+    def __len__(self) -> int:
+        return int(self.eigenvalues.shape[1])
+
+    def whirl_word(self, speed: int, branch: int) -> str:
+        """Sense of whirl of a branch at a speed, by their numbers from 0."""
+        return WHIRL_WORDS[int(self.whirl[speed, branch])]
+
+    def shapes(self, speed: int) -> np.ndarray:
+        """Displacements x y z tx ty tz of all branches at a speed (number from 0), (p, 6, b) complex, modal mass 1."""
+        return np.asarray(self.basis @ self.coordinates[speed])

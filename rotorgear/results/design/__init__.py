@@ -1,1 +1,0 @@
-"""What scatter and search say of a design."""

@@ -1,0 +1,122 @@
+"""Result of a frequency response analysis: receptances between places."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rotorgear.results.modal import Piece
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Written, of
+
+# What the receptance is multiplied with: a power of i w.
+QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
+
+
+# Half-power width of a peak, in steps of the frequencies, from which on three of them describe it.
+_RESOLVED = 1.0
+
+
+class Peak(NamedTuple):
+    """A peak of one response: its frequency in Hz and its size; `resolved` is False where the frequencies are too far apart.
+
+    The size of such a peak is that at the highest frequency of the grid, and the true one is larger.
+    """
+
+    frequency_hz: float
+    size: float
+    resolved: bool
+
+
+def peak_between(x: np.ndarray, size: np.ndarray, power: int) -> Peak | None:
+    """The peak of x^(power/2) |H| within three points, from |H| alone; None where they don't describe one.
+
+    Of one mode 1/|H|^2 = ((x_r - x)^2 + 4 zeta^2 x_r x)/|A|^2 in x = w^2, a parabola q(x): three points give it exactly, and
+    x^p/q(x) is largest where (p - 2) a x^2 + (p - 1) b x + p c = 0, with q = a x^2 + b x + c.
+
+    Args:
+        x: squares of three frequencies in rad/s, ascending; size: |H| there, largest in the middle or beside it.
+        power: 0, 1, 2 for receptance, mobility, accelerance.
+    """
+    middle = x[1]
+    a, b, c = np.polyfit(x / middle, 1.0 / size**2, 2)
+    if not a > 0.0:
+        return None
+    candidates = np.roots([(power - 2) * a, (power - 1) * b, power * c])
+    at = [float(z.real) for z in candidates if z.imag == 0.0 and x[0] <= z.real * middle <= x[2]]
+    if not at:
+        return None
+    z = at[0]
+    least = a * z * z + b * z + c
+    if least <= 0.0:
+        return None
+    # Half-power points of q stand sqrt(least/a) to both sides, in x; the wider step of the grid beside that.
+    width = 2.0 * np.sqrt(least / a) * middle
+    resolved = bool(width >= _RESOLVED * np.diff(x).max())
+    w = float(np.sqrt(z * middle))
+    return Peak(w / (2.0 * np.pi), float(w**power / np.sqrt(least)), resolved)
+
+
+class FrequencyResponse(ModelResult, kind="frf"):
+    """Response of o places to unit forces (or moments) at i places, at f frequencies; Re(x e^{+iwt})."""
+
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    frequency_hz: np.ndarray = of("frequency", "Hz", "frequency")
+    inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
+    outputs: tuple[str, ...] = of("where the response is read", "", "output", json="output")
+    input_units: tuple[str, ...] = of("units of what acts", "", "input", note=": N or N m")
+    output_units: tuple[str, ...] = of("units of the displacements read", "", "output", note=": m or rad")
+    receptance: np.ndarray = of(
+        "receptance: displacement over force",
+        "m/N, rad/N, m/(N m) or rad/(N m)",
+        "frequency",
+        "output",
+        "input",
+        json=(
+            Written(
+                "receptance_real",
+                lambda result, values: values.real.transpose(1, 2, 0),
+                axes=("output", "input", "frequency"),
+                note=", real part",
+            ),
+            Written(
+                "receptance_imag",
+                lambda result, values: values.imag.transpose(1, 2, 0),
+                axes=("output", "input", "frequency"),
+                note=", imaginary part; negative where the response lags",
+            ),
+        ),
+    )
+    damping_ratio: float = of("damping ratio", note=" added to every elastic mode")
+    residual: float = of("residual", note=" of the equations, the largest, relative to the forces inside", form=".0e")
+    error_estimate: float = of(
+        "estimated relative discretisation error",
+        note=": change on a finer mesh at the largest responses, relative to the largest; 0 without shaft elements",
+        form=".0e",
+    )
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
+
+    def of(self, quantity: str) -> np.ndarray:
+        """Receptance, mobility or accelerance, (f, o, i)."""
+        w = 2.0 * np.pi * self.frequency_hz
+        return np.asarray(self.receptance * ((1j * w) ** QUANTITIES[quantity])[:, None, None])
+
+    def unit(self, output: int, entry: int, quantity: str = "receptance") -> str:
+        """Unit of one response, such as "m/N" or "rad/(N m s)"."""
+        seconds = ("", "s", "s²")[QUANTITIES[quantity]]
+        below = " ".join(word for word in (self.input_units[entry], seconds) if word)
+        return f"{self.output_units[output]}/({below})" if " " in below else f"{self.output_units[output]}/{below}"
+
+    def peaks(self, output: int, entry: int, quantity: str = "receptance") -> list[Peak]:
+        """The local maxima of one response, largest first, between the frequencies where these resolve them."""
+        power = QUANTITIES[quantity]
+        x = (2.0 * np.pi * self.frequency_hz) ** 2
+        receptance = np.abs(self.receptance[:, output, entry])
+        size = np.abs(self.of(quantity)[:, output, entry])
+        inside = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+        found = []
+        for k in inside:
+            peak = peak_between(x[k - 1 : k + 2], receptance[k - 1 : k + 2], power)
+            found.append(peak if peak and peak.resolved else Peak(float(self.frequency_hz[k]), float(size[k]), False))
+        return sorted(found, key=lambda peak: -peak.size)

@@ -1,0 +1,184 @@
+"""Result of a modal analysis: frequencies, damping, shapes by node, energies by part and motion, and what it cost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
+
+# The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
+WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
+
+
+def body_name(gear: str) -> str:
+    """What the points on the surface of a gear's elastic body are called among those of casings."""
+    return f"gears.{gear}.body"
+
+
+class NodeTable(Record):
+    """Where the p nodes are.
+
+    The nodes of the model come first, then stations inside elements of higher order, where the shape is known as well, then the
+    points on the surfaces of casings and elastic gear bodies, which only displace.
+    """
+
+    shaft: tuple[str, ...] = of("shaft", "", "node")
+    position: np.ndarray = of("position", "m", "node", "xyz")
+    pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
+    casing: tuple[str, ...] = of(
+        "casing or gear body whose surface the node is on",
+        "",
+        "node",
+        note=', gear bodies as `"gears.NAME.body"`, else `""`; empty without them',
+        default=(),
+    )
+
+    def of_casing(self, casing: str) -> np.ndarray:
+        """Numbers of the points of a casing's surface, in its order."""
+        return np.array([k for k, name in enumerate(self.casing) if name == casing], dtype=int)
+
+    def on_shaft(self, shaft: str) -> np.ndarray:
+        """Numbers of a shaft's nodes from left to right, without pedestals."""
+        on_it = np.array([i for i, name in enumerate(self.shaft) if name == shaft and not self.pedestal[i]], dtype=int)
+        return on_it[np.argsort(self.position[on_it, 2], kind="stable")] if on_it.size else on_it
+
+    def nearest(self, shaft: str, z: float) -> int:
+        """Number of the node of a shaft nearest to z."""
+        numbers = self.on_shaft(shaft)
+        return int(numbers[np.argmin(np.abs(self.position[numbers, 2] - z))])
+
+
+class Piece(Record):
+    """A stretch of shaft between two neighbouring places, and how it was cut into elements."""
+
+    shaft: str = of("shaft")
+    start: float = of("z of the left end", "m")
+    end: float = of("z of the right end", "m")
+    elements: int = of("number of elements")
+    order: int = of("polynomial order of the elements")
+
+
+# How many nodes there are is all of the table of nodes that is written.
+NODE_COUNT = Written("nodes", lambda result, nodes: len(nodes.shaft), axes=(), label="number of nodes")
+
+
+class ModalResult(ModelResult, kind="modal"):
+    """m modes of a model, lowest natural frequency first.
+
+    Of each conjugate pair of eigenvalues s one is kept; s is real for overdamped and 0 for rigid-body modes. Shapes are those
+    of all p nodes, with modal mass 1 (q^H M q) and the largest displacement real and positive.
+    """
+
+    speed: float | None = of(
+        "speed of the input shaft", "rad/s", json="speed_rpm", note="; `null`: undamped, at standstill"
+    )
+
+    @derived("frequency", "Hz", "mode", note=" of each mode, the damped one; 0 for rigid-body modes", form=".4f")
+    def frequency_hz(self) -> np.ndarray:
+        """Damped frequency |Im s| / 2 pi, (m,)."""
+        return np.where(self.rigid, 0.0, np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
+
+    @derived(
+        "natural frequency",
+        "Hz",
+        "mode",
+        note=", |s| / 2π of the eigenvalue s; equal to the former without damping",
+        form=".4f",
+    )
+    def natural_frequency_hz(self) -> np.ndarray:
+        """|s| / 2 pi, (m,)."""
+        return np.where(self.rigid, 0.0, np.abs(self.eigenvalues) / (2.0 * np.pi))
+
+    @derived("damping ratio", "", "mode", note=", −Re s / |s|, as a fraction; negative: unstable")
+    def damping_ratio(self) -> np.ndarray:
+        """-Re s / |s|, (m,); 0 for rigid modes, 1 for overdamped and -1 for divergent ones."""
+        size = np.abs(self.eigenvalues)
+        safe = np.where(size > 0.0, size, 1.0)
+        return np.where(self.rigid | (size == 0.0), 0.0, -self.eigenvalues.real / safe) + 0.0
+
+    rigid: np.ndarray = of("whether the mode is a rigid-body motion", "", "mode")
+    description: tuple[str, ...] = of("what moves", "", "mode", note=", in a line")
+    whirl: tuple[str, ...] = of(
+        "sense of whirl",
+        "",
+        "mode",
+        note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"`, or `""` where nothing whirls',
+    )
+    error_estimate: np.ndarray = of(
+        "estimated relative discretisation error",
+        "",
+        "mode",
+        note=" of the frequency; `null`: the mesh can't follow that mode, or the estimate was left out",
+        form=".0e",
+    )
+    eigenvalues: np.ndarray = of(
+        "eigenvalue s",
+        "rad/s",
+        "mode",
+        json=(
+            Written("eigenvalue_real_1_per_s", lambda r, s: s.real, label="real part of s in rad/s"),
+            Written("eigenvalue_imag_1_per_s", lambda r, s: s.imag, label="imaginary part of s in rad/s"),
+        ),
+    )
+    kinetic_energy: dict[str, np.ndarray] = of(
+        "share in the kinetic energy",
+        "",
+        "PART",
+        "mode",
+        note=" of each mode, of a part such as `gears.pinion`; sums to 1 over the parts",
+    )
+    strain_energy: dict[str, np.ndarray] = of(
+        "share in the strain energy", "", "PART", "mode", note=", the same; 0 for rigid-body modes"
+    )
+    kinetic_by_motion: dict[str, np.ndarray] = of(
+        "share of a motion in the kinetic energy",
+        "",
+        "MOTION",
+        "mode",
+        note=": bending, axial motion, torsion, casings as `casing`, gear bodies (two and more nodal diameters) as `gear body`",
+    )
+    strain_by_motion: dict[str, np.ndarray] = of(
+        "share of a motion in the strain energy",
+        "",
+        "MOTION",
+        "mode",
+        note=": bending, axial and torsional strain of the shafts; meshes, elastic gears, casings, supports and couplings",
+    )
+    whirl_by_shaft: dict[str, np.ndarray] = of(
+        "sense of whirl of each shaft",
+        "",
+        "SHAFT",
+        "mode",
+        json=None,
+        note=", -1 (backward circle) to +1 (forward circle)",
+    )
+    shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "mode", json=None)
+    nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
+    backward_error: np.ndarray = of("residual relative to the matrices", "", "mode", form=".0e")
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
+    point_amplitudes: dict[str, np.ndarray] = of(
+        "amplitude at a named point",
+        "m, rad",
+        "POINT",
+        "mode",
+        json=Written(
+            "point_amplitude",
+            lambda r, amplitudes: {name: np.abs(value) for name, value in amplitudes.items()},
+            note=", along its direction, of the shape with modal mass 1 kg",
+        ),
+        default_factory=dict,
+    )
+
+    def __len__(self) -> int:
+        return len(self.eigenvalues)
+
+    @property
+    def mesh_text(self) -> str:
+        """The discretisation in a few words."""
+        if not self.discretisation:
+            return "no shaft elements"
+        elements = sum(piece.elements for piece in self.discretisation)
+        orders = sorted({piece.order for piece in self.discretisation})
+        text = f"order {orders[0]}" if len(orders) == 1 else f"orders {orders[0]} to {orders[-1]}"
+        return f"{elements} shaft element{'s'[: elements != 1]} of {text} in {len(self.discretisation)} pieces"

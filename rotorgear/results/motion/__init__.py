@@ -1,1 +1,0 @@
-"""Motions in time: runs, sweeps over a parameter, periodic orbits."""

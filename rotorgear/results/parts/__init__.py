@@ -1,1 +1,0 @@
-"""Sheets of single parts: gears and their meshes, bearings, casings."""

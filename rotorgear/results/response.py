@@ -1,0 +1,298 @@
+"""Result of a run-up: forces, transmission errors and accelerations by order and speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
+
+
+def _by_contact(key: str) -> Written:
+    """Values of the contacts by mesh."""
+
+    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
+        return {mesh: values[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)}
+
+    return Written(key, value, axes=("MESH", "helix"))
+
+
+def _amplitudes_by_mesh(key: str) -> Written:
+    """Amplitudes by mesh, contact, order and speed."""
+
+    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
+        meshes = dict.fromkeys(result.contact_mesh)
+        return {mesh: [np.abs(values[:, :, k]) for k in result.contacts_of(mesh)] for mesh in meshes}
+
+    return Written(key, value, axes=("MESH", "helix", "order", "speed"))
+
+
+def _amplitudes_by_axis(key: str, names: str, name: str) -> Written:
+    """Amplitudes along x, y and z of each entry of the field `names`, by order and speed."""
+
+    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
+        return {
+            part: {axis: np.abs(values[:, :, k, j]) for j, axis in enumerate("xyz")}
+            for k, part in enumerate(getattr(result, names))
+        }
+
+    return Written(key, value, axes=(name, "AXIS", "order", "speed"))
+
+
+def _wrenches(kind: str, names: str, name: str, on: str) -> tuple[Written, Written]:
+    """Amplitudes of force and moment along x, y and z of each entry of the field `names`, under keys of their own."""
+
+    def part(first: int) -> Callable[[Any, Any], Any]:
+        return lambda result, values: {
+            place: {axis: np.abs(values[:, :, k, first + j]) for j, axis in enumerate("xyz")}
+            for k, place in enumerate(getattr(result, names))
+        }
+
+    axes = (name, "AXIS", "order", "speed")
+    return (
+        Written(f"{kind}_force_n", part(0), unit="N", axes=axes, label=f"force on {on}"),
+        Written(f"{kind}_moment_n_m", part(3), unit="N m", axes=axes, label=f"moment on {on}"),
+    )
+
+
+class Peak(Record):
+    """The largest amplitude of a quantity over orders and speeds, and what the linear analysis leaves out there."""
+
+    quantity: str = of(
+        "quantity",
+        note=": mesh force, transmission error, approach, bearing force, seat force, ground force, acceleration, "
+        "displacement or normal velocity",
+    )
+    part: str = of("mesh, bearing, point, place, seat, or held set or mount")
+    unit: str = of("unit of the amplitudes")
+    order: int = of("number of the order", note=", from 0")
+    speed_rpm: float = of("speed of the input shaft", "rpm")
+    frequency_hz: float = of("frequency", "Hz")
+    amplitude: float = of("amplitude", note=" in that unit")
+    left_out: float | None = of(
+        "size of what the linear analysis of loaded teeth leaves out",
+        note=" of this quantity at this order and speed; `null` where no loaded teeth shake, or where they part",
+    )
+    teeth_part: bool = of("whether the linear solution would part loaded teeth there")
+
+
+# rho c of air at 20 degrees and 1 atm, in kg/(m^2 s).
+AIR_IMPEDANCE = 1.204 * 343.2
+
+
+def _by_casing(key: str) -> Written:
+    return Written(
+        key,
+        lambda result, values: {name: values[:, :, k] for k, name in enumerate(result.casings)},
+        axes=("CASING", "order", "speed"),
+    )
+
+
+class ResponseResult(ModelResult, kind="response"):
+    """Linear response of a model at s speeds to o orders, complex amplitudes of Re(x e^{+iwt}) about the static forces."""
+
+    speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm")
+    orders: tuple[str, ...] = of("name of each order", "", "order", json="order")
+    ratio: np.ndarray = of("frequency over that of the input shaft", "", "order", json="frequency_ratio")
+    fixed_frequency: np.ndarray = of(
+        "frequency that does not go with the speed", "Hz", "order", note=" of a load in Hz; else 0"
+    )
+
+    @property
+    def speed_rpm(self) -> np.ndarray:
+        """Speeds of the reference shaft in rpm, (s,)."""
+        return self.speeds * RPM_PER_RAD_S
+
+    @derived("frequency", "Hz", "order", "speed", note=" of each order at each speed")
+    def frequency_hz(self) -> np.ndarray:
+        """Frequency of each order at each speed, (o, s)."""
+        return self.ratio[:, None] * np.abs(self.speeds) / (2.0 * np.pi) + self.fixed_frequency[:, None]
+
+    contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
+    contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
+    mean_force: np.ndarray = of(
+        "mean force",
+        "N",
+        "contact",
+        note=": the static force of each contact, about which the response is linear",
+        json=_by_contact("mean_mesh_force_n"),
+    )
+    mesh_stiffness: np.ndarray = of(
+        "stiffness along the flank normal",
+        "N/m",
+        "contact",
+        note=" about which the response is linear; of loaded teeth the mean tangent over the mesh cycle",
+        json=_by_contact("mesh_stiffness_n_per_m"),
+    )
+    mesh_force: np.ndarray = of(
+        "force along the flank normal",
+        "N",
+        "order",
+        "speed",
+        "contact",
+        json=_amplitudes_by_mesh("mesh_force_n"),
+        note=": the dynamic force, without the mean",
+    )
+    transmission_error: np.ndarray = of(
+        "transmission error",
+        "m",
+        "order",
+        "speed",
+        "contact",
+        json=_amplitudes_by_mesh("transmission_error_m"),
+        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, of each helix",
+    )
+    approach: np.ndarray = of(
+        "approach",
+        "m",
+        "order",
+        "speed",
+        "contact",
+        json=_amplitudes_by_mesh("approach_m"),
+        note=" of the flanks in the transverse plane, bending and axial motion included",
+    )
+    bearings: tuple[str, ...] = of("names of the bearings", "", "bearing", json=None)
+    bearing_force: np.ndarray = of(
+        "force on the shaft",
+        "N",
+        "order",
+        "speed",
+        "bearing",
+        "xyz",
+        json=_amplitudes_by_axis("bearing_force_n", "bearings", "BEARING"),
+    )
+    points: tuple[str, ...] = of("names of the points", "", "point", json=None)
+    acceleration: np.ndarray = of(
+        "acceleration of a named point",
+        "m/s^2, rad/s^2",
+        "order",
+        "speed",
+        "point",
+        json=Written(
+            "acceleration",
+            lambda result, values: {name: np.abs(values[:, :, k]) for k, name in enumerate(result.points)},
+            axes=("POINT", "order", "speed"),
+        ),
+        note=" along its direction",
+    )
+    places: tuple[str, ...] = of("gears, disks and bearings by address", "", "place", json=None)
+    displacement: np.ndarray = of(
+        "displacements x y z tx ty tz",
+        "m, rad",
+        "order",
+        "speed",
+        "place",
+        "component",
+        json=_amplitudes_by_axis("displacement_m", "places", "PLACE"),
+        note=" of each gear, disk and bearing; x, y and z are written",
+    )
+    casings: tuple[str, ...] = of(
+        "names of the casings with a surface", "", "casing", json=None, default=(), kw_only=True
+    )
+    casing_seats: tuple[str, ...] = of(
+        "seats that something stands in", "", "seat", json=None, default=(), kw_only=True
+    )
+    casing_seat_force: np.ndarray = of(
+        "force and moment on a seat of a casing",
+        "N, N m",
+        "order",
+        "speed",
+        "seat",
+        "component",
+        json=_wrenches("casing_seat", "casing_seats", "CASING.SEAT", "the casing"),
+        note="; the moment about the point of the seat",
+        default_factory=lambda: np.zeros((0, 0, 0, 6)),
+        kw_only=True,
+    )
+    casing_grounds: tuple[str, ...] = of(
+        "held sets and mounts of casings", "", "ground", json=None, default=(), kw_only=True
+    )
+    casing_ground_force: np.ndarray = of(
+        "force and moment of the ground on a casing at one held set or mount",
+        "N, N m",
+        "order",
+        "speed",
+        "ground",
+        "component",
+        json=_wrenches("casing_ground", "casing_grounds", "CASING.SET", "the casing"),
+        note="; the moment about the origin of the model",
+        default_factory=lambda: np.zeros((0, 0, 0, 6)),
+        kw_only=True,
+    )
+    normal_velocity: np.ndarray = of(
+        "normal velocity of a casing",
+        "m/s",
+        "order",
+        "speed",
+        "casing",
+        json=_by_casing("normal_velocity_m_per_s"),
+        note=": root of the mean over its surface of the square of the amplitude",
+        default_factory=lambda: np.zeros((0, 0, 0)),
+        kw_only=True,
+    )
+    surface_area: np.ndarray = of(
+        "surface of a casing",
+        "m^2",
+        "casing",
+        note=", inside and out",
+        json=Written(
+            "casing_surface_m2",
+            lambda result, values: dict(zip(result.casings, values.tolist(), strict=True)),
+            axes=("CASING",),
+        ),
+        default_factory=lambda: np.zeros(0),
+        kw_only=True,
+    )
+
+    @derived(
+        "equivalent radiated power",
+        "W",
+        "order",
+        "speed",
+        "casing",
+        json=_by_casing("radiated_power_w"),
+        note=" of a casing, 1/2 ρ c ∑ v_n² A with ρ c = 413 kg/m²s of air, as if all of its surface radiated like a large plate",
+    )
+    def radiated_power(self) -> np.ndarray:
+        """1/2 rho c sum of v_n^2 A in W, (o, s, k); those of the orders add up."""
+        return 0.5 * AIR_IMPEDANCE * self.normal_velocity**2 * self.surface_area
+
+    shape_speed: float = of("speed of the deflection shapes", "rad/s", json="shape_speed_rpm")
+    shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "order", json=None)
+    nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
+    damping_ratio: float = of("damping ratio", note=" added to every elastic mode")
+    solver_error: float = of(
+        "solver error",
+        note=": largest relative error of the reduced basis against direct solutions at the points checked; "
+        "direct: largest relative residual",
+        form=".0e",
+    )
+    checked: int = of("number of points checked")
+    error_estimate: float = of(
+        "estimated relative discretisation error", note=": change of the largest forces on a finer mesh", form=".0e"
+    )
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
+
+    largest: tuple[Peak, ...] = of(
+        "largest amplitudes", "", "peak", note=" of each quantity", record=Peak, default=(), kw_only=True
+    )
+
+    def contacts_of(self, mesh: str) -> list[int]:
+        """Numbers of the contacts of a mesh."""
+        return [k for k, name in enumerate(self.contact_mesh) if name == mesh]
+
+    def peaks(self) -> list[tuple[str, str, float, float, float]]:
+        """Largest dynamic force of each mesh: (mesh, order, rpm, Hz, amplitude in N of its most loaded helix)."""
+        rows = []
+        for mesh in dict.fromkeys(self.contact_mesh):
+            size = np.abs(self.mesh_force[:, :, self.contacts_of(mesh)]).max(axis=2)
+            o, s = np.unravel_index(int(np.argmax(size)), size.shape)
+            rows.append(
+                (mesh, self.orders[o], float(self.speed_rpm[s]), float(self.frequency_hz[o, s]), float(size[o, s]))
+            )
+        return rows

@@ -1,1 +1,0 @@
-"""Comparison with test rigs, updating by them, places of sensors."""

@@ -1,0 +1,77 @@
+"""Result of a state-space export: the equations of motion between inputs and outputs, whole or reduced to modes."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+
+from rotorgear.results.modal import Piece
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import of
+
+
+class StateSpace(ModelResult, kind="state_space"):
+    """M x'' + D x' + K x = B u,  y = C x  with s coordinates x, forces u and displacements y.
+
+    Whole, x are the free displacements; reduced, they are coordinates of modes and of static shapes. D = C + W G holds damping
+    and gyroscopic moments at the speed.
+    """
+
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    fmax: float = of("highest frequency that the system is meant for", "Hz", json="fmax_hz")
+    inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
+    outputs: tuple[str, ...] = of("where the response is read", "", "output", json="output")
+    input_units: tuple[str, ...] = of("units of what acts", "", "input", note=": N or N m")
+    output_units: tuple[str, ...] = of("units of the displacements read", "", "output", note=": m or rad")
+    mass_matrix: np.ndarray = of("mass matrix", "", "coordinate", "coordinate", json=None)
+    velocity_terms: np.ndarray = of("damping and gyroscopic matrix", "", "coordinate", "coordinate", json=None)
+    stiffness_matrix: np.ndarray = of("stiffness matrix", "", "coordinate", "coordinate", json=None)
+    input_matrix: np.ndarray = of("forces on the coordinates", "", "coordinate", "input", json=None)
+    output_matrix: np.ndarray = of("displacements of the coordinates", "", "output", "coordinate", json=None)
+    reduced: bool = of("whether it is reduced to modes and static shapes")
+    kept_modes: int = of("number of modes that were kept", note="; 0 without a reduction")
+    reduction_error: float = of(
+        "estimated error of the reduction",
+        note=": twice the largest difference from the whole system that was found, over the largest size of that response",
+        form=".0e",
+    )
+    error_estimate: float = of(
+        "estimated relative discretisation error",
+        note=" of the frequencies that the mesh was refined for; `null` where its elements were given",
+        form=".0e",
+    )
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates; there are twice as many states."""
+        return int(self.mass_matrix.shape[0])
+
+    def first_order(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """A (2s, 2s), B (2s, i), C (o, 2s), D (o, i) of x' = A x + B u, y = C x + D u, with states (L^T x, L^T x').
+
+        M = L L^T: coordinates of unit mass keep the rounding of M^-1 K small.
+        """
+        L = la.cholesky(self.mass_matrix, lower=True)
+
+        def reduced(matrix: np.ndarray) -> np.ndarray:
+            half = la.solve_triangular(L, matrix, lower=True)
+            return np.asarray(la.solve_triangular(L, half.T, lower=True).T)
+
+        n = self.size
+        zero = np.zeros((n, n))
+        forces = la.solve_triangular(L, self.input_matrix, lower=True)
+        A = np.block([[zero, np.eye(n)], [-reduced(self.stiffness_matrix), -reduced(self.velocity_terms)]])
+        B = np.vstack([np.zeros_like(forces), forces])
+        read = la.solve_triangular(L, self.output_matrix.T, lower=True).T
+        C = np.hstack([read, np.zeros_like(read)])
+        return A, B, C, np.zeros((len(self.outputs), len(self.inputs)))
+
+    def receptance(self, frequencies: np.ndarray) -> np.ndarray:
+        """C (K + i w D - w^2 M)^-1 B at frequencies in Hz, (f, o, i)."""
+        found = []
+        for hz in np.asarray(frequencies, float).ravel():
+            w = 2.0 * np.pi * hz
+            Z = self.stiffness_matrix + 1j * w * self.velocity_terms - w**2 * self.mass_matrix
+            found.append(self.output_matrix @ la.solve(Z, self.input_matrix.astype(complex)))
+        return np.array(found)

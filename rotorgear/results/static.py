@@ -1,0 +1,325 @@
+"""Result of a static analysis: deflections, forces of meshes and bearings, how branches and helices share the load."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rotorgear.results.modal import NODE_COUNT, NodeTable
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
+
+# Of the largest component of a force, below which another one is not told.
+_NEGLIGIBLE = 1e-6
+
+
+class Share(Record):
+    """Share of a mesh in the load of a gear that it drives, or is driven by, together with other meshes.
+
+    The sharing factor K_gamma of the group is the largest factor in it.
+    """
+
+    gear: str = of("gear", note=" whose meshes share a load")
+    mesh: str = of("mesh", note=": one of these meshes")
+    share: float = of("share", note=" of the mesh in the force of them all", form=".3f")
+    factor: float = of("factor", note=": the share times the number of meshes", form=".4f")
+    decided_by: str = of(
+        "what decides the share",
+        note=': `"stiffness"`: a loop, which stiffness and index errors divide; `"loads"`: the torques alone decide',
+    )
+
+
+class LoopAssembly(Record):
+    """How a closed loop of gears goes together."""
+
+    mesh: str = of("mesh", note=" that closes the loop")
+    gear: str = of("gear", note=' that closes it by its place on the shaft; `""` where all clockings are given')
+    clocking_deg: float = of("angle of that gear's tooth from the shaft's mark", "deg", form="+.4f")
+    rest_pitches: float = of(
+        "what is missing where the gear stands at angle 0, or as the file says, in pitches", form="+.4f"
+    )
+
+
+class Sensitivity(Record):
+    """What one parameter changes: derivatives of forces and shares."""
+
+    parameter: str = of("parameter", note=", such as `meshes.stage_1a.index_error`")
+    unit: str = of("unit", note=" of the force derivatives; for a stiffness they are for 100 % of it")
+    mesh_force_n: dict[str, np.ndarray] = of(
+        "derivative of the force of each contact", "N over the unit of the parameter", "MESH", "helix"
+    )
+    share: np.ndarray = of("derivative of each row of `shares`", "", "share")
+
+
+class MeshFace(Record):
+    """How a helix carries along its face, in equilibrium with its shafts."""
+
+    mesh: str = of("mesh")
+    helix: int = of("helix", note=": 0 at the smaller z, 1 at the larger")
+    shaft_misalignment_m: float = of(
+        "misalignment over the face by the shafts",
+        "m",
+        note=": f_ma, from the tilt of both gears; positive where the flanks stand apart at larger z",
+        form=".2e",
+    )
+    given_misalignment_m: float = of("misalignment over the face that the model gives", "m", form=".2e")
+    fed_back: bool = of("whether the teeth feel the misalignment by the shafts", note="; what follows is `null` if not")
+    face_load_factor: float | None = of(
+        "face load factor", note=" K_Hbeta: largest load per width over the mean one", form=".3f"
+    )
+    load_place_m: float | None = of("place of the resulting force", "m", note=" from the middle of the face along z")
+    peak_place_m: float | None = of("place of the largest load per width", "m", note=" from the middle of the face")
+    peak_pressure_pa: float | None = of(
+        "largest contact pressure", "Pa", note=" of the mesh cycle; `null` where the teeth are not looked at"
+    )
+    tilt_stiffness_n_m: float | None = of(
+        "stiffness against tilt", "N m", note=": moment for a tilt of the flanks in m/m, about the centre of stiffness"
+    )
+    z_m: np.ndarray = of("places along the face", "m", "place", note=" from its middle")
+    line_load_n_per_m: np.ndarray = of("load per width, mean of the mesh cycle", "N/m", "place")
+
+    @property
+    def misalignment_m(self) -> float:
+        """The whole misalignment (m): what `misalignment` of the mesh in a file would be for rigid shafts."""
+        return self.shaft_misalignment_m + self.given_misalignment_m
+
+
+class LawRow(Record):
+    """A bearing or nonlinear element in equilibrium, by its force law."""
+
+    part: str = of("bearing or nonlinear element")
+    force: np.ndarray = of(
+        "force of the shaft on it", "N and N m", "component", note=" along its displacements", json="force"
+    )
+    displacement: np.ndarray = of("displacement of the shaft against it", "m and rad", "component")
+    stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
+    damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
+    averaged: bool = of("whether these are means over a pitch of its rolling elements")
+
+    @property
+    def sentence(self) -> str:
+        """Its state in words: "bearings.front: 15.11 um, 99.2 N/um at 1000 N", with the stiffness along the force, F.KF/F^2."""
+        across = slice(0, min(2, len(self.force)))
+        F = self.force[across]
+        moved = 1e6 * float(np.linalg.norm(self.displacement[across]))
+        size = float(np.linalg.norm(F))
+        whole = float(np.abs(self.force).max(initial=0.0))
+        if not whole:
+            return f"{self.part}: carries nothing at {moved:.4g} um"
+        words = []
+        if size > _NEGLIGIBLE * whole:
+            along = float(F @ self.stiffness[across, across] @ F) / size**2
+            words.append(f"{moved:.4g} um, {1e-6 * along:.4g} N/um at {size:.4g} N")
+        if len(self.force) >= 3 and abs(self.force[2]) > _NEGLIGIBLE * whole:
+            stiffness = 1e-6 * float(self.stiffness[2, 2])
+            pushed = 1e6 * float(self.displacement[2])
+            words.append(f"{pushed:.4g} um, {stiffness:.4g} N/um at {self.force[2]:.4g} N along z")
+        mean = ", mean over a pitch of its elements" if self.averaged else ""
+        return f"{self.part}: {' and '.join(words)}{mean}"
+
+
+def by_mesh(key: str, *axes: str) -> Written:
+    """A key under which the values of contacts stand by mesh; `axes` are those behind the contact's."""
+
+    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
+        return {mesh: values[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)}
+
+    return Written(key, value, axes=("MESH", "helix", *axes))
+
+
+def _forces(name: str, kind: str, on: str = "the shaft") -> tuple[Written, Written]:
+    """Force and moment of a support stand under keys of their own."""
+    return (
+        Written(
+            f"{kind}_force_n",
+            lambda result, loads: {part: load[:3] for part, load in loads.items()},
+            unit="N",
+            axes=(name, "xyz"),
+            label=f"force on {on}",
+        ),
+        Written(
+            f"{kind}_moment_n_m",
+            lambda result, loads: {part: load[3:] for part, load in loads.items()},
+            unit="N m",
+            axes=(name, "xyz"),
+            label=f"moment on {on}",
+        ),
+    )
+
+
+class StaticResult(ModelResult, kind="static"):
+    """Static equilibrium of a model with p nodes and c contacts (helices of meshes, in the order of the file).
+
+    `force_derivative` and `share_derivative` are the changes for a unit of each parameter; for a stiffness the unit is 100 %.
+    """
+
+    speed: float | None = of(
+        "speed of the input shaft",
+        "rad/s",
+        json="speed_rpm",
+        note=", for flanks and bearings with tables; `null` without one",
+    )
+    torque: dict[str, float] = of("applied torque", "N m", "TORQUE", json="torque_n_m", note=" about +z, by name")
+    load_force: dict[str, np.ndarray] = of(
+        "constant force and moment of each load",
+        "N, N m",
+        "LOAD",
+        "component",
+        json=_forces("LOAD", "load", "the structure"),
+    )
+    contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
+    contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
+    mesh_force: np.ndarray = of(
+        "force along the flank normal",
+        "N",
+        "contact",
+        json=by_mesh("mesh_force_n"),
+        note=" of each contact",
+        form=".1f",
+    )
+    mesh_force_on_gear: np.ndarray = of(
+        "force of the pinion on the gear",
+        "N",
+        "contact",
+        "xyz",
+        json=by_mesh("mesh_force_on_gear_n", "xyz"),
+        form=".0f",
+    )
+    mesh_stiffness: np.ndarray = of(
+        "stiffness along the flank normal",
+        "N/m",
+        "contact",
+        json=by_mesh("mesh_stiffness_n_per_m"),
+        note="; of loaded teeth the mean tangent over the mesh cycle",
+    )
+    mesh_deflection: np.ndarray = of(
+        "deflection of the teeth along the flank normal", "m", "contact", json=by_mesh("mesh_deflection_m")
+    )
+    carries: np.ndarray = of("whether the contact is closed", "", "contact", json=by_mesh("mesh_carries"))
+    driver: tuple[str, ...] = of(
+        "gear that drives",
+        "",
+        "contact",
+        json=Written(
+            "mesh_driver",
+            lambda result, driver: {m: driver[result.contacts_of(m)[0]] for m in dict.fromkeys(result.contact_mesh)},
+            axes=("MESH",),
+        ),
+    )
+    helix_share: np.ndarray = of(
+        "share of a contact in the force of its mesh", "", "contact", json=by_mesh("helix_share")
+    )
+    shares: tuple[Share, ...] = of("sharing of each gear with several meshes", "", "share", record=Share)
+
+    @derived("largest sharing factor", note=", like K_gamma; 1 where no meshes share")
+    def sharing_factor(self) -> float:
+        """The largest sharing factor of all groups of meshes; 1 where none shares."""
+        return max((row.factor for row in self.shares), default=1.0)
+
+    faces: tuple[MeshFace, ...] = of(
+        "load along the faces",
+        "",
+        "face",
+        note=", of meshes that feel the tilt of their shafts, or whose stiffness is that of loaded teeth",
+        record=MeshFace,
+        default=(),
+        kw_only=True,
+    )
+    laws: tuple[LawRow, ...] = of(
+        "state of each force law",
+        "",
+        "law",
+        record=LawRow,
+        default=(),
+        kw_only=True,
+        note=" of bearings and nonlinear elements",
+    )
+    passes: int = of(
+        "passes until shafts and loads along the faces agreed",
+        note="; 0 where no mesh feels the tilt",
+        default=0,
+        kw_only=True,
+    )
+    bearing_force: dict[str, np.ndarray] = of(
+        "force and moment on the shaft", "N, N m", "BEARING", "component", json=_forces("BEARING", "bearing")
+    )
+    support_force: dict[str, np.ndarray] = of(
+        "force and moment on the shaft", "N, N m", "SUPPORT", "component", json=_forces("SUPPORT", "support")
+    )
+    casing_force: dict[str, np.ndarray] = of(
+        "force and moment of the ground on a casing",
+        "N, N m",
+        "CASING",
+        "component",
+        json=_forces("CASING", "casing", "the casing"),
+        note=", all that holds it together; the moment about the origin of the model",
+        default_factory=dict,
+        kw_only=True,
+    )
+    casing_ground_force: dict[str, np.ndarray] = of(
+        "force and moment of the ground on a casing at one held set or mount",
+        "N, N m",
+        "CASING.SET",
+        "component",
+        json=_forces("CASING.SET", "casing_ground", "the casing"),
+        note="; the moment about the origin of the model",
+        default_factory=dict,
+        kw_only=True,
+    )
+    casing_seat_force: dict[str, np.ndarray] = of(
+        "force and moment on a seat of a casing",
+        "N, N m",
+        "CASING.SEAT",
+        "component",
+        json=_forces("CASING.SEAT", "casing_seat", "the casing"),
+        note="; the moment about the point of the seat",
+        default_factory=dict,
+        kw_only=True,
+    )
+    nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
+    displacement: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", json=None)
+    point_displacement: dict[str, float] = of(
+        "displacement of a named point", "m, rad", "POINT", note=" along its direction"
+    )
+    parameter: tuple[str, ...] = of("parameters on which the shares depend", "", "parameter", json=None)
+    parameter_unit: tuple[str, ...] = of("their units", "", "parameter", json=None)
+    force_derivative: np.ndarray = of("change of each contact's force", "N", "parameter", "contact", json=None)
+    share_derivative: np.ndarray = of("change of each row of `shares`", "", "parameter", "share", json=None)
+
+    @derived("what the forces depend on", "", "parameter", record=Sensitivity)
+    def sensitivity(self) -> tuple[Sensitivity, ...]:
+        """The derivatives, a record for each parameter."""
+        return tuple(
+            Sensitivity(
+                name,
+                unit,
+                {mesh: self.force_derivative[k, self.contacts_of(mesh)] for mesh in dict.fromkeys(self.contact_mesh)},
+                self.share_derivative[k],
+            )
+            for k, (name, unit) in enumerate(zip(self.parameter, self.parameter_unit, strict=True))
+        )
+
+    mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
+    assembly: tuple[LoopAssembly, ...] = of("how closed loops go together", "", "loop", record=LoopAssembly)
+    imbalance: float = of(
+        "largest force that is missing for equilibrium", note=" of the whole, relative to the sum of all", form=".0e"
+    )
+    error_estimate: float = of(
+        "estimated relative discretisation error",
+        note=": change of mesh and bearing forces when every element is halved",
+        form=".0e",
+    )
+    place_displacement: dict[str, np.ndarray] = of(
+        "displacements of gears, disks and bearings",
+        "m, rad",
+        "PLACE",
+        "component",
+        json="displacement",
+        note=": x, y, z in m, tilts and twist in rad",
+        default_factory=dict,
+    )
+
+    def contacts_of(self, mesh: str) -> list[int]:
+        """Numbers of the contacts of a mesh."""
+        return [k for k, name in enumerate(self.contact_mesh) if name == mesh]

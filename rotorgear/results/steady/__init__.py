@@ -1,1 +1,0 @@
-"""Steady states and small motions about them: statics, modes, speeds, responses."""

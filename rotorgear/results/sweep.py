@@ -1,0 +1,324 @@
+"""Result of a sweep: Poincare sections, Lyapunov exponents, response types and indicators over one or two parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.old_names import warn_old
+from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, derived, of
+
+
+class Reduction(Record):
+    """A basis of modes and static shapes in place of all degrees of freedom; of several bases, the largest values."""
+
+    dofs: int = of("degrees of freedom", note=" before the reduction; of several bases, the largest values")
+    coordinates: int = of("coordinates after the reduction")
+    modes: int = of("elastic modes among them")
+    highest: float = of("frequency of the highest of these modes", "Hz", json="highest_mode_hz")
+    rigid: int = of("rigid-body motions among them", json="rigid_motions")
+    static: int = of("static shapes of loads and contacts among them", json="static_shapes")
+    closed: float = of(
+        "FRF error: largest relative error of the receptances at the contacts, all of them closed",
+        json="error_closed",
+        note=", against those of the whole system (solvers/frequency/receptance.py)",
+    )
+    apart: float = of(
+        "FRF error: largest relative error of the receptances at the contacts, all of them open", json="error_apart"
+    )
+    up_to: float = of("frequency up to which they were compared", "Hz", json="up_to_hz")
+    frequencies: int = of("at how many frequencies")
+    bases: int = of("how many bases there are")
+    seconds: float = of("wall time", "s", note=" to find and check them")
+
+    @property
+    def error(self) -> float:
+        """The larger of the two differences."""
+        return max(self.closed, self.apart)
+
+    @property
+    def sentence(self) -> str:
+        """One sentence that describes the reduction."""
+        parts = [f"{self.modes} modes up to {_hertz(self.highest)}"] if self.modes else []
+        parts += [f"{self.rigid} rigid"] if self.rigid else []
+        parts += [f"{self.static} static shapes"] if self.static else []
+        return (
+            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): FRF error at the contacts "
+            f"{100.0 * self.error:.2g} % up to {_hertz(self.up_to)}"
+        )
+
+
+def _hertz(value: float) -> str:
+    return f"{value / 1000.0:.3g} kHz" if value >= 1000.0 else f"{value:.3g} Hz"
+
+
+class Parameter(Record):
+    """What was changed."""
+
+    address: str = of("address of a parameter", note=": what was changed")
+    unit: str = of("unit", note=' of its values, or `""` for SI')
+
+
+class SweepContact(Record):
+    """A contact in one run."""
+
+    name: str = of("name", note=": mesh and helix")
+    static_force_n: float = of(
+        "static force",
+        "N",
+        note=" along the flank normal in static equilibrium, without excitation; negative on the coast flank",
+    )
+    static_deflection_m: float = of("static force over mean stiffness", "m")
+    peak_to_peak_m: float = of(
+        "penetration of the flanks, peak to peak",
+        "m",
+        note=": displacement along their normal less the error of the teeth",
+    )
+    peak_to_peak_transmission_error_m: float = of(
+        "transmission error, peak to peak",
+        "m",
+        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2",
+    )
+    peak_to_peak_approach_m: float = of(
+        "approach, peak to peak",
+        "m",
+        note=" of the flanks in the transverse plane, bending and axial motion included",
+    )
+    rms_approach_m: float = of("root mean square of the approach about its mean", "m")
+    mean_force_n: float = of("mean force", "N")
+    rms_force_n: float = of("root mean square of the force about its mean", "N")
+    largest_force_n: float = of("largest force", "N")
+    dynamic_factor: float = of(
+        "dynamic factor", note=": largest over static force; `null` without load on the working flank"
+    )
+    driving_share: float = of("share of the time on the working flank")
+    apart_share: float = of("contact-loss ratio")
+    back_share: float = of("share of the time on the coast flank", note=" (impact time ratio)")
+    losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
+    statistics_error: np.ndarray = of(
+        "estimated errors of the statistics",
+        "",
+        "statistic",
+        note=", each in its unit, by a run with half or twice the steps",
+    )
+
+    @property
+    def peak_to_peak_dte_m(self) -> float:
+        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
+        return self.peak_to_peak_approach_m
+
+    @property
+    def rms_dte_m(self) -> float:
+        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
+        return self.rms_approach_m
+
+
+class SweepRun(Record):
+    """One run of a point."""
+
+    start: str = of("where the run started", note=': `"static"`, `"start 2"`, `"up"`, `"down"`')
+    motion: str = of(
+        "response type",
+        note=': `"1T"`, `"2T"`, ..., `"quasi-periodic"`, `"chaotic"`, `"not settled"`, `"not periodic"` (without exponents), '
+        '`"failed"`',
+    )
+    lyapunov: np.ndarray = of(
+        "Lyapunov exponents", "", "exponent", note=" per period of the fastest mesh, largest first"
+    )
+    lyapunov_error: np.ndarray = of("standard errors of the Lyapunov exponents", "", "exponent")
+    contacts: tuple[SweepContact, ...] = of("contacts", "", "contact", record=SweepContact)
+
+
+class SweepPoint(Record):
+    """One point of the grid."""
+
+    values: np.ndarray = of("value of each parameter", "", "parameter")
+    mesh_frequency_hz: float = of("mesh frequency", "Hz", note=" of the fastest mesh")
+    mesh_periods: int = of("periods of the fastest mesh in the common one")
+    steps: int = of("steps", note=" in a period of the fastest mesh")
+    failure: str = of("why the point failed", note=', or `""`')
+    runs: tuple[SweepRun, ...] = of("runs", "", "run", record=SweepRun)
+
+
+class SweepResult(ModelResult, kind="sweep"):
+    """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
+
+    `section` holds displacement and velocity of the contacts along their normal (without the error e of the teeth) at the end of
+    each least common period T of all meshes. `peak_to_peak_transmission_error` is of the rotation at the base circles,
+    `peak_to_peak_approach` of v.q / cos(beta_b) in the transverse plane, `peak_to_peak` of the penetration d - e. The criterion
+    that `tolerance` and `chaos` belong to stands in analysis/sweep/classify.py.
+    """
+
+    address: tuple[str, ...] = of("address of a parameter", "", "parameter", json=None)
+    unit: tuple[str, ...] = of("unit", "", "parameter", json=None)
+    values: np.ndarray = of("values", "", "point", "parameter", json=None)
+    shape: np.ndarray = of("points along each parameter", "", "parameter", json=None)
+    run: tuple[str, ...] = of("where the runs started", "", "run", json=None)
+    contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
+    frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json=None)
+    turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "point", json=None)
+    section: np.ndarray = of("Poincare points", "m, m/s", "point", "run", "period", "contact", "phase_space", json=None)
+    motion: tuple[str, ...] = of("response type", "", "point_and_run", json=None)
+    lyapunov: np.ndarray = of("Lyapunov exponents", "", "point", "run", "exponent", json=None)
+    lyapunov_error: np.ndarray = of(
+        "standard errors of the Lyapunov exponents", "", "point", "run", "exponent", json=None
+    )
+    peak_to_peak: np.ndarray = of("penetration of the flanks, peak to peak", "m", "point", "run", "contact", json=None)
+    peak_to_peak_transmission_error: np.ndarray = of(
+        "transmission error, peak to peak", "m", "point", "run", "contact", json=None
+    )
+    peak_to_peak_approach: np.ndarray = of("approach, peak to peak", "m", "point", "run", "contact", json=None)
+    rms_approach: np.ndarray = of(
+        "root mean square of the approach about its mean", "m", "point", "run", "contact", json=None
+    )
+    mean_force: np.ndarray = of("mean force", "N", "point", "run", "contact", json=None)
+    rms_force: np.ndarray = of(
+        "root mean square of the force about its mean", "N", "point", "run", "contact", json=None
+    )
+    largest_force: np.ndarray = of("largest force", "N", "point", "run", "contact", json=None)
+    static_force: np.ndarray = of("static force", "N", "point", "contact", json=None)
+    static_deflection: np.ndarray = of("static force over mean stiffness", "m", "point", "contact", json=None)
+    driving: np.ndarray = of("share of the time on the working flank", "", "point", "run", "contact", json=None)
+    apart: np.ndarray = of("contact-loss ratio", "", "point", "run", "contact", json=None)
+    back: np.ndarray = of("share of the time on the coast flank", "", "point", "run", "contact", json=None)
+    losses: np.ndarray = of("contact losses in a period of the fastest mesh", "", "point", "run", "contact", json=None)
+    failure: tuple[str, ...] = of("why the point failed", "", "point", json=None)
+    steps: np.ndarray = of("steps", "", "point", json=None)
+    settle: int = of("transient periods discarded (least common periods)", json="settle_periods")
+    count: int = of("periods sampled (least common periods)", json="counted_periods")
+    tolerance: float = of("tolerance", note=": share of the peak to peak within which a motion repeats")
+    chaos: float = of("exponent above which a motion is chaotic")
+    reduction: Reduction | None = of(
+        "reduction of large systems", record=Reduction, default=None, note="; `null` where there was none"
+    )
+    portraits: Portraits | None = of("trajectories of some points", record=Portraits, json=None, default=None)
+    statistic: tuple[str, ...] = of(
+        "name of the statistic",
+        "",
+        "statistic",
+        note=" of a contact whose error is estimated; transmission error and approach peak to peak",
+        default=(),
+    )
+    statistics_error: np.ndarray = of(
+        "estimated errors of the statistics",
+        "",
+        "point",
+        "run",
+        "contact",
+        "statistic",
+        json=None,
+        default_factory=lambda: np.zeros((0, 0, 0, 0)),
+    )
+
+    @derived("parameters", "", "parameter", record=Parameter)
+    def parameters(self) -> tuple[Parameter, ...]:
+        """What was changed."""
+        return tuple(map(Parameter, self.address, self.unit))
+
+    @derived("points", "", "point", record=SweepPoint)
+    def points(self) -> tuple[SweepPoint, ...]:
+        """All points with their runs."""
+        return tuple(
+            SweepPoint(
+                values=self.values[p],
+                mesh_frequency_hz=float(self.frequency[p]),
+                mesh_periods=int(self.turns[p]),
+                steps=int(self.steps[p]),
+                failure=self.failure[p],
+                runs=tuple(self._run(p, r) for r in range(len(self.run))),
+            )
+            for p in range(len(self.values))
+        )
+
+    def _run(self, p: int, r: int) -> SweepRun:
+        contacts = tuple(self._contact(p, r, c) for c in range(len(self.contact)))
+        return SweepRun(self.run[r], self.motion_at(p, r), self.lyapunov[p, r], self.lyapunov_error[p, r], contacts)
+
+    def _contact(self, p: int, r: int, c: int) -> SweepContact:
+        at = (p, r, c)
+        static = float(self.static_force[p, c])
+        largest = float(self.largest_force[at])
+        return SweepContact(
+            name=self.contact[c],
+            static_force_n=static,
+            static_deflection_m=float(self.static_deflection[p, c]),
+            peak_to_peak_m=float(self.peak_to_peak[at]),
+            peak_to_peak_transmission_error_m=float(self.peak_to_peak_transmission_error[at]),
+            peak_to_peak_approach_m=float(self.peak_to_peak_approach[at]),
+            rms_approach_m=float(self.rms_approach[at]),
+            mean_force_n=float(self.mean_force[at]),
+            rms_force_n=float(self.rms_force[at]),
+            largest_force_n=largest,
+            dynamic_factor=largest / static if static > 0.0 else float("nan"),
+            driving_share=float(self.driving[at]),
+            apart_share=float(self.apart[at]),
+            back_share=float(self.back[at]),
+            losses_per_mesh_period=float(self.losses[at]),
+            # Files of earlier versions have none.
+            statistics_error=self.statistics_error[at] if self.statistic else np.zeros(0),
+        )
+
+    @derived("lines of the points that keep their trajectory", "", "portrait", record=Portrait, json="portraits")
+    def portrait_lines(self) -> tuple[Portrait, ...]:
+        """Length and lines of the trajectories; none where none were kept."""
+        kept = self.portraits
+        if kept is None:
+            return ()
+        return tuple(
+            Portrait(
+                values=tuple(self.values[p].tolist()),
+                start=self.run[r],
+                periods=int(kept.periods[k]),
+                records_per_period=int(kept.records[k]),
+                contacts=tuple(
+                    ContactLines(name, tuple(SpectrumLine(order, a) for order, a in kept.lines(k, j, c)))
+                    for c, name in enumerate(self.contact)
+                ),
+            )
+            for k, p in enumerate(kept.point.tolist())
+            for j, r in enumerate(kept.run.tolist())
+        )
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Former name of `peak_to_peak_approach`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a sweep", "amplitude", "peak_to_peak_approach (transverse)")
+        return self.peak_to_peak_approach
+
+    @property
+    def rms(self) -> np.ndarray:
+        """Former name of `rms_approach`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a sweep", "rms", "rms_approach (transverse)")
+        return self.rms_approach
+
+    @property
+    def dynamic_factor(self) -> np.ndarray:
+        """(p, r, c) largest force over the static one; NaN where no load flows."""
+        static = self.static_force[:, None, :]
+        return np.where(static > 0.0, self.largest_force / np.where(static > 0.0, static, 1.0), np.nan)
+
+    @property
+    def period_words(self) -> str:
+        """The least common period T in words."""
+        turns = sorted({int(n) for n in self.turns if n})
+        if turns == [1]:
+            return "the mesh period"
+        return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
+
+    def motion_at(self, point: int, run: int = 0) -> str:
+        """Response type of a run."""
+        return self.motion[point * len(self.run) + run]
+
+    def route(self, run: int = 0) -> list[tuple[str, int, int]]:
+        """Response types along the points with the first and last point of each."""
+        stretches: list[tuple[str, int, int]] = []
+        for p in range(len(self.values)):
+            kind = self.motion_at(p, run)
+            if stretches and stretches[-1][0] == kind:
+                stretches[-1] = (kind, stretches[-1][1], p)
+            else:
+                stretches.append((kind, p, p))
+        return stretches

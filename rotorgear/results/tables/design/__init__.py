@@ -1,1 +1,0 @@
-"""Tables of what scatter and search say of a design."""

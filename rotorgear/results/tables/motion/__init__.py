@@ -1,1 +1,0 @@
-"""Tables of motions in time: runs, sweeps over a parameter, periodic orbits."""

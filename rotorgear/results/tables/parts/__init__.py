@@ -1,1 +1,0 @@
-"""Tables of sheets of single parts: gears and their meshes, bearings, casings."""

@@ -1,1 +1,0 @@
-"""Tables of comparison with test rigs, updating by them, places of sensors."""

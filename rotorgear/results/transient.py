@@ -1,0 +1,294 @@
+"""Result of a transient analysis: histories, statistics with their error, contact events, energies, cost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.old_names import warn_old
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.modal import NodeTable
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
+
+# What a history of a contact is called, and the table it stands in; the last one by its former name.
+_OF_CONTACTS = {
+    "force": "mesh_force",
+    "transmission_error": "transmission_error",
+    "approach": "approach",
+    "deflection": "deflection",
+}
+
+
+def _at_end(key: str, label: str) -> Written:
+    return Written(key, lambda energy, values: float(values[-1]), axes=(), label=label)
+
+
+class EnergyLedger(Record):
+    """Energies at times (e,), all since t = 0: what came in, what is stored, what was dissipated, and the rest.
+
+    numerical = stored - stored(0) - load_work - excitation_work + dissipated: what the integration itself made or lost.
+    """
+
+    time: np.ndarray = of("time", "s", "instant", json=None)
+    kinetic: np.ndarray = of("kinetic energy", "J", "instant", json=None)
+    strain: np.ndarray = of("strain energy", "J", "instant", json=None)
+    contact: np.ndarray = of("energy in the contacts", "J", "instant", json=None)
+    load_work: np.ndarray = of(
+        "work of the constant torques", "J", "instant", json=_at_end("load_work_j", "work of the constant torques")
+    )
+    excitation_work: np.ndarray = of(
+        "work of the excitation",
+        "J",
+        "instant",
+        json=_at_end(
+            "excitation_work_j",
+            "work of transmission errors, stiffness variation, unbalances and torques that vary",
+        ),
+    )
+    dissipated: np.ndarray = of(
+        "energy that dampers took", "J", "instant", json=_at_end("dissipated_j", "energy that dampers took")
+    )
+    numerical: np.ndarray = of(
+        "what the integration made",
+        "J",
+        "instant",
+        json=_at_end("numerical_j", "energy error of the integration: what it made, or lost if negative"),
+    )
+    share: float = of(
+        "numerical energy",
+        json=Written("numerical_share", lambda energy, share: share),
+        note=", its largest size over the largest of the other terms",
+    )
+
+
+class ContactStatistics(Record):
+    """A contact in the time that counts."""
+
+    name: str = of("name", note=": mesh and helix")
+    static_force_n: float = of(
+        "static force", "N", note=" along the flank normal, in static equilibrium, without excitation"
+    )
+    mean_force_n: float = of("mean force", "N", note=" in the time that counts")
+    rms_force_n: float = of("root mean square of the force about its mean", "N")
+    largest_force_n: float = of("largest force", "N")
+    smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
+    driving_impulse_n_s: float = of(
+        "impulse on the working flank", "N s", note=": the integral of its force over that time"
+    )
+    back_impulse_n_s: float = of("impulse on the coast flank", "N s", note=", positive")
+    dynamic_factor: float = of("dynamic factor", note=": largest over static force; `null` without load", form=".3f")
+    peak_to_peak_transmission_error_m: float = of(
+        "transmission error, peak to peak",
+        "m",
+        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, at all steps in the time that counts",
+    )
+    peak_to_peak_approach_m: float = of(
+        "approach, peak to peak",
+        "m",
+        note=" of the flanks in the transverse plane, bending and axial motion included, at all steps in the time that counts",
+    )
+    driving_share: float = of("share of the time on the working flank")
+    apart_share: float = of("contact-loss ratio")
+    back_share: float = of("share of the time on the coast flank")
+    losses: int = of("contact losses", note=": how often contact was lost")
+
+    @property
+    def peak_to_peak_dte_m(self) -> float:
+        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
+        return self.peak_to_peak_approach_m
+
+
+class ChannelStatistics(Record):
+    """A channel in the time that counts."""
+
+    name: str = of("name", note=": force of a bearing, motion of a point, a bearing or a gear")
+    unit: str = of("unit")
+    mean: float = of("mean", note=" in the time that counts")
+    rms: float = of("root mean square about the mean")
+    largest: float = of("largest value")
+    smallest: float = of("smallest value")
+
+
+class Quantity(Record):
+    """A statistic whose error is estimated."""
+
+    name: str = of("name", note=" of the statistic whose error is estimated")
+    value: float = of("value")
+    error: float = of("estimated error", note=", absolute; `null` where none was asked for")
+
+
+class TransientResult(ModelResult, kind="transient"):
+    """r recorded instants of c contacts and p channels.
+
+    Statistics count from the time `settle` on, and are those of all steps, with a cubic between steps where a largest or least
+    value is sought; the histories serve pictures and spectra. `transmission_error` is the rotation at the base circles, r_b1
+    theta_1 + r_b2 theta_2; `approach` that of the flanks in the transverse plane, v.q / cos(beta_b), bending and axial motion
+    included: both positive where the working flanks come together. Forces are positive on the working flank. One of `every` steps
+    is recorded; ranges are of all steps. Where frames were asked for, `motion` holds the displacements of the nodes at the last w
+    records.
+    """
+
+    speed: np.ndarray = of(
+        "speed of the input shaft",
+        "rad/s",
+        "record",
+        json=Written(
+            "speed_rpm",
+            lambda result, speed: [float(speed[k] * RPM_PER_RAD_S) for k in (0, -1)],
+            "rpm",
+            ("end",),
+            note=" at the start and at the end",
+        ),
+    )
+    angle: np.ndarray = of("angle of the input shaft", "rad", "record", json=None)
+    time: np.ndarray = of(
+        "time",
+        "s",
+        "record",
+        json=(
+            Written("time_s", lambda result, time: float(time[-1]), axes=(), label="end of the run"),
+            Written("records", lambda result, time: len(time), "", (), "number of recorded instants"),
+        ),
+    )
+    settle: float = of("time from which statistics count", "s", json="settle_s")
+    step: float = of("time step", "s", json="step_s")
+    steps: int = of("steps", note=" done")
+    every: int = of("steps from one record to the next", json=None)
+    mesh_frequency: dict[str, float] = of(
+        "mesh frequency", "Hz", "MESH", json="mesh_frequency_hz", note=" of each mesh, at the first speed"
+    )
+    contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
+    transmission_error: np.ndarray = of("transmission error", "m", "record", "contact", json=None)
+    approach: np.ndarray = of("approach", "m", "record", "contact", json=None)
+    transmission_error_range: np.ndarray = of(
+        "least and largest transmission error in the time that counts", "m", "contact", "end", json=None
+    )
+    approach_range: np.ndarray = of(
+        "least and largest approach in the time that counts", "m", "contact", "end", json=None
+    )
+    mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
+    mean_force: np.ndarray = of("mean force", "N", "contact", json=None, note=": the static force")
+    force_mean: np.ndarray = of("mean of the force in the time that counts", "N", "contact", json=None)
+    force_rms: np.ndarray = of("root mean square of the force about that mean", "N", "contact", json=None)
+    force_range: np.ndarray = of("least and largest force in the time that counts", "N", "contact", "end", json=None)
+    impulse: np.ndarray = of(
+        "impulse on the working and on the coast flank in the time that counts", "N s", "contact", "side", json=None
+    )
+    contact_time: np.ndarray = of(
+        "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
+    )
+    contact_losses: np.ndarray = of("contact losses", "", "contact", json=None)
+    channel: tuple[str, ...] = of("names of the channels", "", "channel", json=None)
+    unit: tuple[str, ...] = of("unit", "", "channel", json=None)
+    values: np.ndarray = of("values", "", "record", "channel", json=None)
+    value_mean: np.ndarray = of("mean values of the channels in the time that counts", "", "channel", json=None)
+    value_rms: np.ndarray = of("root mean squares of the channels about these", "", "channel", json=None)
+    value_range: np.ndarray = of(
+        "least and largest values of the channels in the time that counts", "", "channel", "end", json=None
+    )
+    quantity: tuple[str, ...] = of("names of the statistics with an error", "", "quantity", json=None)
+    quantity_value: np.ndarray = of("values of the statistics", "", "quantity", json=None)
+    quantity_error: np.ndarray = of("estimated errors of the statistics", "", "quantity", json=None)
+    quantity_scale: np.ndarray = of(
+        "sizes that the errors of the statistics are taken relative to", "", "quantity", json=None
+    )
+
+    @derived("contacts in the time that counts", "", "contact", record=ContactStatistics)
+    def contacts(self) -> tuple[ContactStatistics, ...]:
+        """Statistics of the contacts."""
+        return tuple(self._contact(i) for i in range(len(self.contact)))
+
+    def _contact(self, i: int) -> ContactStatistics:
+        return ContactStatistics(
+            name=self.contact[i],
+            static_force_n=float(self.mean_force[i]),
+            mean_force_n=float(self.force_mean[i]),
+            rms_force_n=float(self.force_rms[i]),
+            largest_force_n=float(self.force_range[i, 1]),
+            smallest_force_n=float(self.force_range[i, 0]),
+            driving_impulse_n_s=float(self.impulse[i, 0]),
+            back_impulse_n_s=float(self.impulse[i, 1]),
+            dynamic_factor=float(self.dynamic_factor[i]),
+            peak_to_peak_transmission_error_m=float(np.ptp(self.transmission_error_range[i])),
+            peak_to_peak_approach_m=float(np.ptp(self.approach_range[i])),
+            driving_share=float(self.contact_time[i, 0]),
+            apart_share=float(self.contact_time[i, 1]),
+            back_share=float(self.contact_time[i, 2]),
+            losses=int(self.contact_losses[i]),
+        )
+
+    @derived("channels in the time that counts", "", "channel", record=ChannelStatistics)
+    def channels(self) -> tuple[ChannelStatistics, ...]:
+        """Statistics of the channels."""
+        return tuple(
+            ChannelStatistics(
+                name=name,
+                unit=self.unit[i],
+                mean=float(self.value_mean[i]),
+                rms=float(self.value_rms[i]),
+                largest=float(self.value_range[i, 1]),
+                smallest=float(self.value_range[i, 0]),
+            )
+            for i, name in enumerate(self.channel)
+        )
+
+    @derived("statistics with an error", "", "quantity", record=Quantity)
+    def quantities(self) -> tuple[Quantity, ...]:
+        """The statistics whose error is estimated."""
+        rows = zip(self.quantity, self.quantity_value.tolist(), self.quantity_error.tolist(), strict=True)
+        return tuple(Quantity(name, value, error) for name, value, error in rows)
+
+    error_estimate: float = of(
+        "largest relative error of the statistics", note=", each relative to the size of its kind", form=".1e"
+    )
+    energy: EnergyLedger = of("energies", record=EnergyLedger)
+    reason: str = of("why the method was chosen")
+    nodes: NodeTable = of("nodes", record=NodeTable, json=None)
+    motion_time: np.ndarray = of("time of the frames", "s", "frame", json=None)
+    motion: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "frame", json=None)
+
+    @property
+    def counted(self) -> np.ndarray:
+        """(r,) whether a record counts in the statistics."""
+        return self.time >= self.settle * (1.0 - 1e-12)
+
+    @property
+    def spacing(self) -> float:
+        """Time between two records in s."""
+        return self.step * self.every
+
+    @property
+    def dynamic_factor(self) -> np.ndarray:
+        """(c,) largest mesh force over the static mean force; NaN where no load flows."""
+        peak = self.force_range[:, 1]
+        safe = np.where(self.mean_force > 0.0, self.mean_force, 1.0)
+        return np.where(self.mean_force > 0.0, peak / safe, np.nan)
+
+    @property
+    def deflection(self) -> np.ndarray:
+        """Former name of `approach`, along the flank normal, (r, c)."""
+        warn_old("attribute of a transient", "deflection", "approach (transverse)")
+        return self.approach * self._transverse
+
+    @property
+    def _transverse(self) -> np.ndarray:
+        """cos(beta_b) of each contact, (c,)."""
+        meshes = (self.model.layout.mesh(name.partition(" ")[0]) for name in self.contact)
+        return np.cos([mesh.pinion.base_helix_angle for mesh in meshes])
+
+    def history(self, name: str) -> np.ndarray:
+        """History (r,) of a channel, or of "force NAME", "transmission_error NAME" or "approach NAME" of a contact.
+
+        "deflection NAME", the approach along the flank normal, is read for the last time.
+
+        Raises:
+            KeyError: no such history.
+        """
+        if name in self.channel:
+            return np.asarray(self.values[:, self.channel.index(name)])
+        what, _, contact = name.partition(" ")
+        if contact in self.contact and what in _OF_CONTACTS:
+            table = getattr(self, _OF_CONTACTS[what])
+            return np.asarray(table[:, self.contact.index(contact)])
+        raise KeyError(name)

@@ -1,0 +1,149 @@
+"""A model updated by the lines and shapes of a rig: what they teach, what they don't, and how far to trust it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.model.model import Model
+from rotorgear.model.numbers import free_numbers
+from rotorgear.results.comparison import IDENTIFIED, LearntParameter, RigLine
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, derived, of
+
+# Rarer than this by chance, the misfit is the model's: no numbers of it fit the lines.
+MISFIT = 0.01
+# Two estimates that move together beyond this are one piece of knowledge.
+TIED = 0.7
+
+
+class UpdatedParameter(LearntParameter):
+    """One free number: its factor beside what was known before and is known after."""
+
+    factor: float = of("most probable value over the value in the file")
+
+    @derived("whether the lines settle it to more than a half")
+    def identified(self) -> bool:
+        """Below a half learnt, an estimate is mostly the prior's."""
+        return self.learnt >= IDENTIFIED
+
+
+class UpdatedLine(Record):
+    """One measured line and its mode; the held-out frequency is predicted from the others, to first order about the estimate."""
+
+    rig: RigLine = of("rig line", record=RigLine)
+    campaign: str = of("name of the campaign that measured it", note="; empty where there is one only")
+    mode_number: int = of("number of the mode", note=", from 1, elastic modes counted")
+    before_hz: float = of("frequency of the model before the update", "Hz")
+    after_hz: float = of("frequency after the update", "Hz")
+    held_out_hz: float = of("frequency predicted from the other lines alone", "Hz")
+    held_out_sigma: float = of("relative standard deviation of that prediction, noise of the line included")
+    mac_before: float | None = of("MAC of the shape before the update", note="; `null` without shapes", form=".3f")
+    mac_after: float | None = of("MAC after the update", note="; `null` without shapes", form=".3f")
+
+
+class UpdatedResponse(Record):
+    """One measured frequency response beside the model's; the held-out one is predicted from all else that was measured."""
+
+    campaign: str = of("name of the campaign that measured it", note="; empty where there is one only")
+    response: str = of("place of the response")
+    reference: str = of("place of the force")
+    frac_before: float = of("FRAC before the update", form=".3f")
+    frac_after: float = of("FRAC after the update", form=".3f")
+    frac_held_out: float = of("FRAC of the response predicted from the others", form=".3f")
+
+
+class UpdateResult(ModelResult, kind="update"):
+    """The update of a model; `model` is the one before, `updated_model()` the one after."""
+
+    parameters: tuple[UpdatedParameter, ...] = of("free numbers", "", "parameter", record=UpdatedParameter)
+    lines: tuple[UpdatedLine, ...] = of("measured lines with a mode", "", "line", record=UpdatedLine)
+    unmatched: tuple[RigLine, ...] = of("measured lines without a mode", "", "unmatched_line", record=RigLine)
+    responses: tuple[UpdatedResponse, ...] = of("measured frequency responses", "", "response", record=UpdatedResponse)
+    correlation: np.ndarray = of("correlation of the estimates", "", "parameter", "parameter")
+    points: tuple[str, ...] = of("names of the points", "", "point", note=" where shapes were measured")
+    chi_squared: float = of("weighted sum of squares at the estimate", note=": measured values and priors together")
+    measured_values: int = of("number of independent measured values")
+    misfit_probability: float = of("chance of so large a sum of squares if the model is right")
+    modal_solutions: int = of("modal solutions that were needed")
+
+    @derived("effective number of parameters that the lines teach", note=": the sum of the learnt shares", form=".1f")
+    def learnt_parameters(self) -> float:
+        """Sum of the learnt shares."""
+        return float(sum(row.learnt for row in self.parameters))
+
+    @derived("root mean square error of the frequencies before the update", form=".2e")
+    def error_before(self) -> float:
+        """Relative."""
+        return self._rms([row.before_hz for row in self.lines])
+
+    @derived("root mean square error of frequencies predicted from the other lines alone", form=".2e")
+    def error_held_out(self) -> float:
+        """Relative."""
+        return self._rms([row.held_out_hz for row in self.lines])
+
+    @derived("what the update is worth", "", "sentence", note=", in sentences")
+    def findings(self) -> tuple[str, ...]:
+        """What was proven on held-out lines, whether the model can fit at all, and what stays unknown."""
+        return tuple(_findings(self))
+
+    def updated_model(self) -> Model:
+        """The model with the most probable numbers."""
+        numbers = free_numbers(self.model, [row.address for row in self.parameters])
+        return numbers.at(np.log([row.factor for row in self.parameters]))
+
+    def _rms(self, found_hz: list[float]) -> float:
+        errors = np.log([hz / row.rig.frequency_hz for hz, row in zip(found_hz, self.lines, strict=True)])
+        return float(np.sqrt(np.mean(errors**2))) if len(errors) else float("nan")
+
+
+def _findings(result: UpdateResult) -> list[str]:
+    said = []
+    before = 100.0 * result.error_before
+    held_out = 100.0 * result.error_held_out
+    if len(result.lines) > 1:
+        better = (
+            "predicts lines it has not seen better" if held_out < before else "does NOT predict unseen lines better"
+        )
+        said.append(
+            f"Each line held out and predicted from the others: {held_out:.2g} % rms, against {before:.2g} % before: the "
+            f"updated model {better}."
+        )
+    if len(result.responses) > 1:
+        mean_before = float(np.mean([row.frac_before for row in result.responses]))
+        mean_held_out = float(np.mean([row.frac_held_out for row in result.responses]))
+        verdict = "better" if mean_held_out > mean_before else "no better"
+        said.append(
+            f"Each frequency response held out and predicted from the others: FRAC {mean_held_out:.3f} in the mean, against "
+            f"{mean_before:.3f} before: the updated model predicts responses it has not seen {verdict}."
+        )
+    per = result.chi_squared / max(result.measured_values, 1)
+    if result.misfit_probability < MISFIT:
+        said.append(
+            f"Misfit {per:.1f} times what noise and priors allow (chance {result.misfit_probability:.1g}): the model is wrong "
+            "in more than these numbers, or the noise is understated, or a line has the wrong mode"
+            + (
+                ", or a sensor looks otherwise than its table says (`compare --shapes` names such)"
+                if result.points
+                else ""
+            )
+            + ". Don't use the estimates."
+        )
+    elif result.unmatched:
+        count = len(result.unmatched)
+        said.append(
+            f"Misfit {per:.2f} of what noise and priors allow, without the {count} of {count + len(result.lines)} lines "
+            "that have no mode: these are no natural frequencies, or speak against the model."
+        )
+    else:
+        said.append(f"Misfit {per:.2f} of what noise and priors allow: nothing speaks against the form of the model.")
+    names = [row.address for row in result.parameters]
+    tied = [
+        (float(result.correlation[i, j]), names[i], names[j])
+        for i in range(len(names))
+        for j in range(i)
+        if abs(result.correlation[i, j]) > TIED
+    ]
+    for value, first, second in sorted(tied, key=lambda row: -abs(row[0]))[:3]:
+        known = "their product, not their ratio" if value < 0 else "their ratio, not their product"
+        said.append(f"Of {second} and {first} the lines know {known} (correlation {value:+.2f}).")
+    return said
