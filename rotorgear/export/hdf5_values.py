@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.results.schema import Record, record_name, record_of
 
 
@@ -69,6 +70,9 @@ def digest_of(file: Any) -> str:
 def _listed(value: Any) -> Any:
     """Texts of an array in full; numpy shortens long ones."""
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+_OF_A_NOTE = ("part", "what", "why", "value")
 
 
 @dataclass(frozen=True)
@@ -136,6 +140,21 @@ class Texts(Kind):
 
     def read(self, item: Any) -> tuple[str, ...]:
         return _get_texts(item)
+
+
+class Notes(Kind):
+    """A tuple of facts: a group of columns."""
+
+    def fits(self, value: Any) -> bool:
+        return isinstance(value, tuple) and bool(value) and all(isinstance(entry, Note) for entry in value)
+
+    def write(self, h5: ModuleType, parent: Any, name: str, value: tuple[Note, ...]) -> None:
+        group = parent.create_group(name)
+        for key in _OF_A_NOTE:
+            _put_texts(h5, group, key, tuple(getattr(note, key) for note in value))
+
+    def read(self, item: Any) -> tuple[Note, ...]:
+        return tuple(Note(*row) for row in zip(*(_get_texts(item[key]) for key in _OF_A_NOTE), strict=True))
 
 
 class ListsOfTexts(Kind):
@@ -262,6 +281,7 @@ _KINDS: tuple[Kind, ...] = (
     OneRecord("record", Record),
     Records("records"),
     Text("text", str),
+    Notes("notes"),
     Texts("texts"),
     ListsOfTexts("lists"),
     Kind("array", np.ndarray),

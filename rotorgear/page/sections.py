@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from rotorgear.export.solids import LIGHT, build_solids
+from rotorgear.note import sentences
 from rotorgear.page.at_rest import model_section, modes_section, static_section
 from rotorgear.page.cells import RESULTS, Cell, Figure, Numbers, Section, Table, words
 from rotorgear.page.contents import Contents, error_of
@@ -89,18 +90,16 @@ def _left_out(found: Contents) -> Section:
     rows = [words(name, reason) for name, reason in found.missing.items()]
     if rows:
         section.tables.append(Table("Sections that are not there", ("section", "reason"), rows, left=2))
-    notes: dict[str, list[str]] = {}
-    for name, result in found.results.items():
-        for note in result.left_out:
-            notes.setdefault(note, []).append(name)
-    if notes:
-        rows = [words(", ".join(names), note) for note, names in notes.items()]
-        section.tables.append(Table("Left out of the analyses", ("analysis", "what"), rows, left=2))
-    warned: dict[str, list[str]] = {}
-    for name, result in found.results.items():
-        for note in result.warnings:
-            warned.setdefault(note, []).append(name)
-    if warned:
-        rows = [words(", ".join(names), note) for note, names in warned.items()]
-        section.tables.append(Table("Warnings", ("analysis", "warning"), rows, left=2))
+    both = (
+        ("left_out", "Left out of the analyses", "what and why"),
+        ("warnings", "Warnings", "warning"),
+    )
+    for name, title, heading in both:
+        said: dict[str, list[str]] = {}
+        for analysis, result in found.results.items():
+            for sentence in sentences(getattr(result, name)):
+                said.setdefault(sentence, []).append(analysis)
+        if said:
+            rows = [words(", ".join(analyses), sentence) for sentence, analyses in said.items()]
+            section.tables.append(Table(title, ("analysis", heading), rows, left=2))
     return section

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rotorgear.drawing import picture_of
+from rotorgear.note import Note, as_notes, sentences
 from rotorgear.results.schema import Record, Written, derived, of
 from rotorgear.version import VERSION
 
@@ -20,10 +21,23 @@ _LINES = 40
 _WIDTH = 80
 
 
+class Fact(Record):
+    """One thing that a sentence of `left_out` or `warnings` says of one part."""
+
+    about: str = of("what it tells", note=': `"left out"` or `"warning"`')
+    part: str = of(
+        "address of the part or of its key", note=' in the model file; `""` of what belongs to no single part'
+    )
+    what: str = of("what was left out, or what the warning is", note='; `""` where the address says it')
+    why: str = of("reason")
+    value: str = of("size")
+
+
 class Result(Record):
     """Base of all results.
 
-    `kind` names a class of results in files; `analysis` is the word that JSON output begins with.
+    `kind` names a class of results in files; `analysis` is the word that JSON output begins with. `left_out` and `warnings`
+    hold a fact for each part, which is its own sentence; JSON has one sentence for each cause, and beside them the facts.
     """
 
     kind: ClassVar[str] = ""
@@ -47,10 +61,23 @@ class Result(Record):
         default_factory=dict,
         kw_only=True,
     )
-    left_out: tuple[str, ...] = of(
-        "sentences", "", "left_out_note", note=": what the analysis did not need or take in", default=(), kw_only=True
+    left_out: tuple[Note, ...] = of(
+        "sentences",
+        "",
+        "left_out_note",
+        note=": what the model holds and the analysis did not take, and why",
+        json=Written("left_out", lambda record, notes: sentences(notes)),
+        default=(),
+        kw_only=True,
     )
-    warnings: tuple[str, ...] = of("sentences", "", "warning", default=(), kw_only=True)
+    warnings: tuple[Note, ...] = of(
+        "sentences",
+        "",
+        "warning",
+        json=Written("warnings", lambda record, notes: sentences(notes)),
+        default=(),
+        kw_only=True,
+    )
     method: str = of("method", note=": solver, and what its guards said", default="", kw_only=True)
     status: str = of(
         "status",
@@ -65,6 +92,17 @@ class Result(Record):
     settings: dict[str, Any] = of(
         "arguments of the analysis", "", "ARGUMENT", note=", by name", default_factory=dict, kw_only=True
     )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("left_out", "warnings"):
+            object.__setattr__(self, name, as_notes(getattr(self, name)))
+
+    @derived("facts behind the sentences of `left_out` and `warnings`", "", "fact", record=Fact)
+    def facts(self) -> tuple[Fact, ...]:
+        """Each of them by itself, of one part."""
+        both = (("left out", self.left_out), ("warning", self.warnings))
+        return tuple(Fact(about, n.part, n.what, n.why, n.value) for about, notes in both for n in notes)
 
     def __init_subclass__(cls, *, kind: str = "", analysis: str = "") -> None:
         super().__init_subclass__()

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Literal
 
+from rotorgear.note import NAMED, sentences
+
 if TYPE_CHECKING:
     from rotorgear.results.result import Result
 
@@ -72,8 +74,8 @@ def error_words(value: float) -> str:
 
 
 def notes_of(result: Result) -> list[str]:
-    """What every table ends with: what the analysis left out, and its warnings."""
+    """What every table ends with: what the analysis left out, and its warnings, one sentence for each cause."""
     return [
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
+        *(f"left out: {text}" for text in sentences(result.left_out, named=NAMED)),
+        *(f"Warning: {text}" for text in sentences(result.warnings, named=NAMED)),
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.note import NAMED, Note, sentences
 from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
 from rotorgear.results.tables.common import heading, lines, notes_of
 
@@ -144,9 +145,9 @@ def gear_table(sheet: GearSheet) -> RenderableType:
     for rows, columns, head in ((GEAR_ROWS, sheet.gears, "gear"), (MESH_ROWS, sheet.meshes, "mesh")):
         for first in range(0, len(columns), _COLUMNS):
             parts += ["", _table(head, rows, columns[first : first + _COLUMNS])]
-    notes = notes_of(sheet)
-    for table, members in (("gears", sheet.gears), ("meshes", sheet.meshes)):
-        notes += [f"Warning: {table}.{member.name}: {text}" for member in members for text in member.warnings]
+    both = (("gears", sheet.gears), ("meshes", sheet.meshes))
+    own = [Note(f"{table}.{one.name}", text) for table, members in both for one in members for text in one.warnings]
+    notes = [*notes_of(sheet), *(f"Warning: {text}" for text in sentences(own, NAMED))]
     for row in sheet.meshes:
         method = f"{'' if row.dynamic_factor is None else 'K_v by '}{row.dynamic_factor_method}"
         if row.stiffness_definition is not None:

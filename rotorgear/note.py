@@ -1,0 +1,63 @@
+"""A fact that an analysis states beside its numbers: of which part, what it left out or warns about, why, and how much.
+
+It is made where the decision is made, and is its own sentence: `Note("meshes.pair", "the backlash", "teeth in contact do not
+reach it", "0.1 mm")` reads "meshes.pair (0.1 mm): the backlash; teeth in contact do not reach it". Facts of one cause that hold
+for several parts become one sentence where they are shown (`sentences`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+# On a screen, a sentence names so many of the parts that it holds for; of more, two and how many there are.
+NAMED = 3
+
+
+class Note(str):
+    """A sentence that knows what it is made of.
+
+    Attributes:
+        part: address of the part, or of one of its keys, as in the model file; "" of what belongs to no single part.
+        what: what is left out, or what the warning is. why: the reason. value: its size. Each of them may be "".
+    """
+
+    part: str
+    what: str
+    why: str
+    value: str
+
+    def __new__(cls, part: str, what: str, why: str = "", value: str = "") -> Note:
+        note = str.__new__(cls, _sentence([(part, value)], what, why, NAMED))
+        note.part, note.what, note.why, note.value = part, what, why, value
+        return note
+
+    def __reduce__(self) -> tuple[type[Note], tuple[str, str, str, str]]:
+        return Note, (self.part, self.what, self.why, self.value)
+
+
+def as_notes(texts: Iterable[str]) -> tuple[Note, ...]:
+    """Facts, each once; a plain sentence is one about no single part."""
+    return tuple(dict.fromkeys(text if isinstance(text, Note) else Note("", text) for text in texts))
+
+
+def sentences(notes: Iterable[Note], named: int | None = None) -> list[str]:
+    """One sentence for each cause, in the order in which the causes come first; it names all parts, or at most some of them."""
+    causes: dict[tuple[bool, str, str], list[tuple[str, str]]] = {}
+    for note in notes:
+        causes.setdefault((bool(note.part), note.what, note.why), []).append((note.part, note.value))
+    return [_sentence(where, what, why, named) for (_, what, why), where in causes.items()]
+
+
+def _sentence(where: list[tuple[str, str]], what: str, why: str, named: int | None) -> str:
+    """Parts with their values, what and why; a value that neighbours share stands behind the last of them."""
+    shown = where if named is None or len(where) <= named else where[:2]
+    parts = []
+    for k, (part, value) in enumerate(shown):
+        shared = k + 1 < len(shown) and shown[k + 1][1] == value
+        parts.append(" ".join(filter(None, (part, f"({value})" if value and not shared else ""))))
+    if not where[0][0]:  # of no single part
+        return ": ".join(filter(None, (" ".join(filter(None, (what, *parts))), why)))
+    if len(shown) < len(where):
+        parts.append(f"{len(where) - len(shown)} more")
+    names = " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
+    return f"{names}: {'; '.join(filter(None, (what, why)))}"
