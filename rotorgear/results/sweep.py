@@ -22,7 +22,7 @@ class Reduction(Record):
     closed: float = of(
         "FRF error: largest relative error of the receptances at the contacts, all of them closed",
         json="error_closed",
-        note=", against those of the whole system (solvers/frequency/receptance.py)",
+        note=", against those of the whole system (solvers/frequency/contact_basis.py)",
     )
     apart: float = of(
         "FRF error: largest relative error of the receptances at the contacts, all of them open", json="error_apart"

@@ -73,7 +73,7 @@ ROOMS = {
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
     "results": {"": set(), "tables": {""}},
     "solvers": {
-        "sampling": set(),
+        "": set(),
         "sparse": set(),
         "eigen": {"sparse"},
         "time": {"eigen", "sparse"},

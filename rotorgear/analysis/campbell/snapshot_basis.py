@@ -18,7 +18,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, eigen
-from rotorgear.solvers.eigen.subspace import Subspace
+from rotorgear.solvers.eigen.undamped_basis import Subspace
 from rotorgear.system.components import dof_motions
 from rotorgear.system.system import System
 

@@ -28,7 +28,7 @@ from rotorgear.model.numbers import numbers_of
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.optimise import LayoutMargin, LayoutMode, LayoutNumber, OptimiseResult
-from rotorgear.solvers.sampling.points import unit_points
+from rotorgear.solvers.sampling import unit_points
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.plan import Plan
 

@@ -18,7 +18,7 @@ from rotorgear.results.scatter import (
     ScatterResult,
     ShareBand,
 )
-from rotorgear.solvers.sampling.sobol_indices import SobolIndices, sobol_indices
+from rotorgear.solvers.sampling import SobolIndices, sobol_indices
 
 Values = dict[str, NDArray[np.float64]]
 

@@ -19,7 +19,7 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS
-from rotorgear.solvers.eigen.skew import largest_pairs
+from rotorgear.solvers.eigen.reduced_pencil import largest_pairs
 from rotorgear.solvers.sparse.entries import times
 
 # Shapes of modes in columns, complex where the system rotates.

@@ -39,8 +39,7 @@ from rotorgear.model.spreads import DISTRIBUTIONS, Spreads, graded_errors, sprea
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.scatter import ScatterResult
-from rotorgear.solvers.sampling.points import SAMPLINGS, unit_points
-from rotorgear.solvers.sampling.sobol_indices import design
+from rotorgear.solvers.sampling import SAMPLINGS, design, unit_points
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.plan import Plan
 

@@ -20,8 +20,8 @@ from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.solvers.sparse.equilibrium import Equilibrium, UnbalancedLoadError
 from rotorgear.solvers.sparse.newton import EVALUATIONS, settle
+from rotorgear.solvers.sparse.nullspace import StaticSolver, UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.groups import ElementGroup
@@ -63,7 +63,7 @@ class Equilibrated:
     groups: list[ElementGroup]
     lines: ContactLines
     closed: np.ndarray
-    solver: Equilibrium
+    solver: StaticSolver
     motions: np.ndarray
     loads: np.ndarray
     q: np.ndarray
@@ -149,7 +149,7 @@ def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawS
     size = max(float(np.abs(loads).max(initial=0.0)), 1.0)
     about = [expansion_stiffness(part.law, size, speed) for part in parts]
     K, R = _held(system, [*groups, *map(law_group, parts, about)], speed)
-    solver = Equilibrium(K, R)
+    solver = StaticSolver(K, R)
     laws = _laws_at_rest(system, parts, about, solver, f, speed, near)
     # Of a model without such laws this is the one linear solution.
     pushed = sum((part.columns @ (k @ law.d - law.force) for part, k, law in zip(parts, about, laws, strict=True)), 0.0)
@@ -160,7 +160,7 @@ def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawS
     q = _placed(system, R, q)
     if parts:  # derivatives are about the state found
         K, R = _held(system, [*groups, *(law_group(law.part, law.stiffness) for law in laws)], speed)
-        solver = Equilibrium(K, R)
+        solver = StaticSolver(K, R)
     force = np.where(closed, lines.force(q), 0.0)
     moment = np.where(closed, lines.moment(q), 0.0)
     return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, moment, notes, tuple(laws))
@@ -188,7 +188,7 @@ def _laws_at_rest(
     system: System,
     parts: list[LocalPart],
     about: list[np.ndarray],
-    solver: Equilibrium,
+    solver: StaticSolver,
     f: np.ndarray,
     speed: float,
     known: Sequence[LawState],

@@ -14,8 +14,15 @@ from rotorgear.analysis.common.law_rates import rates
 from rotorgear.analysis.sweep.probes import probes_for
 from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction
-from rotorgear.solvers.frequency.contact_basis import Candidates, Choice, candidates, choose, reduced
-from rotorgear.solvers.frequency.receptance import Scale, full_receptances
+from rotorgear.solvers.frequency.contact_basis import (
+    Candidates,
+    Choice,
+    Scale,
+    candidates,
+    choose,
+    full_receptances,
+    reduced,
+)
 from rotorgear.solvers.lanes.columns import PRESCRIBED
 from rotorgear.solvers.lanes.small_system import Shapes
 from rotorgear.solvers.time.local_system import LocalSystem

@@ -14,8 +14,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.eigen.ritz import ritz_residuals
 from rotorgear.solvers.sparse.factor import single_thread
-from rotorgear.solvers.sparse.residual_vectors import ritz_residuals
 
 _EPS = float(np.finfo(float).eps)
 # Condition of the eigenvectors beyond which the exponential would lose ten digits.

@@ -1,7 +1,9 @@
 """Damped modes (lambda^2 M + lambda D + K) v = 0, smallest |lambda| first; D holds damping and gyroscopic terms.
 
-The eigenvalues come from `quadratic_search`; here they are cut to what was asked for, checked and scaled back.
-Tisseur and Meerbergen, SIAM Review 43 (2001) 235.
+Block Arnoldi on the inverse of the quadratic pencil at a small positive real shift sigma, where K + sigma D + sigma^2 M
+of a passive structure is always regular. Eigenvalues are found in the order of |lambda - sigma| up to some R, hence all with
+|lambda| <= R - sigma. When n is small LAPACK's `eig` takes the same inverse.
+Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 5 and 6.
 """
 
 from __future__ import annotations
@@ -11,12 +13,279 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.errors import AnalysisError
-from rotorgear.solvers.eigen.quadratic_search import prepared, solve
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.eigen.krylov import BlockKrylov
+from rotorgear.solvers.eigen.quadratic import (
+    InverseState,
+    Quadratic,
+    corrected,
+    first_guess,
+    infinite_states,
+    newton,
+    scaled,
+)
 from rotorgear.solvers.sparse.factor import single_thread
-from rotorgear.solvers.sparse.pencil import EPS
+from rotorgear.solvers.sparse.pencil import EDGE, EPS, check_finite, check_wanted
 
-_EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
+_DENSE_UP_TO = 80  # dofs up to which LAPACK is as fast
+_BLOCK = 4
+_CONVERGED = 1e-12  # residual of T x = mu x relative to mu
+_EQUAL = 1e-6  # relative distance of Ritz values that may be copies: one too many costs time, one too few a mode
+_SOUND = 1e-9  # backward error, and distance of two pairs, above and below which a Krylov result is not taken
+_TOO_BLURRED = 1e-8  # rounding of the smallest mu from which the upper spectrum is taken from the companion matrix
+_LARGEST_DENSE = 6000  # states: 0.6 GB a complex matrix
+_SPARE = 8  # pairs beyond those that matter which are refined too, since refinement may change their order
+_SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
+_BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
+_TWINS = 1.0  # imaginary part over rounding up to which a pair is two real roots
+_ONE_DIRECTION = 1e-6  # length of a vector's imaginary part, over the whole, below which it is no direction of its own
+_BLUR_LARGE = 1e-12  # the same for a large pencil, where a refinement costs more
+
+
+@dataclass
+class Search:
+    """The inverse at a chosen shift, its Krylov basis so far, and the number of factorisations spent."""
+
+    inverse: InverseState
+    krylov: BlockKrylov
+    factorisations: int
+
+    def ritz(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """mu (m,) in descending size, coordinates (m, m), residuals relative to |mu| (m,)."""
+        mu, Y = np.linalg.eig(self.krylov.projection)
+        order = np.argsort(-np.abs(mu), kind="stable")
+        mu = mu[order]
+        Y = Y[:, order]
+        keep = np.abs(mu) > EPS * np.abs(mu[:1]).max(initial=0.0)
+        return mu[keep], Y[:, keep], self.krylov.residuals(Y[:, keep]) / np.abs(mu[keep])
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Scaled eigenvalues (k,) with Im >= 0 and vectors (n, k); all with |lambda| <= reach are among them."""
+
+    values: np.ndarray
+    vectors: np.ndarray
+    reach: float
+    method: str
+
+
+def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None) -> Search:
+    """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade.
+
+    Where they lie is the geometric mean of the lowest few |lambda|.
+    """
+    w0 = first_guess(M, D, K) if frequency_scale is None else frequency_scale
+    best = None
+    off = np.inf
+    for attempt in range(1, 12):
+        quadratic = scaled(M, D, K, w0)
+        inverse = InverseState(quadratic, _SHIFT, R / quadratic.scale[:, None])
+        search = Search(inverse, BlockKrylov(inverse.apply_balanced, 2 * quadratic.n, _BLOCK), attempt)
+
+        # Three blocks see the eigenvalues nearest to the shift; nothing but zero ones leaves nothing to move to.
+        for _ in range(3):
+            if not search.krylov.exhausted:
+                search.krylov.expand()
+        if search.krylov.size == 0:
+            return search
+        mu, _, residuals = search.ritz()
+        settled = mu[residuals < 0.3][: 2 * _BLOCK]
+        near = np.abs(inverse.sigma + 1.0 / (settled if settled.size else mu[:1]))
+        lowest = float(np.exp(np.mean(np.log(np.maximum(near, np.finfo(float).tiny)))))
+        if 0.1 <= lowest <= 10.0:
+            return search
+        if abs(np.log(lowest)) < off:
+            best = search
+            off = abs(np.log(lowest))
+        w0 *= lowest
+    if best is None:
+        raise ConvergenceError(
+            "The lowest frequencies could not be located: inertia, damping and stiffness lie too many decades apart."
+        )
+    return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
+
+
+def solve(search: Search, rows: int | None, below: float | None, dense: bool = False) -> Pairs:
+    """At least `rows` pairs, and all up to `below`: more and more of the spectrum until the reach suffices."""
+    quadratic = search.inverse.quadratic
+    limit = np.inf if below is None else below / quadratic.w0
+    wanted = 2 * rows + 4 if rows is not None else 40
+    while (
+        not dense and quadratic.n > _DENSE_UP_TO and wanted < quadratic.n // 2 and not (rows is None and below is None)
+    ):
+        pairs = _arnoldi(search, wanted)
+        inside = int(np.count_nonzero(np.abs(pairs.values) <= pairs.reach))
+        if (rows is not None and inside >= rows) or pairs.reach >= limit:
+            shown = slice(0, inside if rows is None else rows)
+            # Pairs that rounding in the Krylov basis has blurred too much are refined on the pencil itself.
+            errors = quadratic.residuals(pairs.values[shown], pairs.vectors[:, shown])
+            for i in np.flatnonzero(errors > _SOUND):
+                pairs.values[i], pairs.vectors[:, i], spent = newton(quadratic, pairs.values[i], pairs.vectors[:, i])
+                search.factorisations += spent
+            if _sound(quadratic, pairs.values[shown], pairs.vectors[:, shown]):
+                return pairs
+            break
+        wanted += max(8, wanted // 4)
+    return _dense(search, rows)
+
+
+def _sound(quadratic: Quadratic, values: np.ndarray, V: np.ndarray) -> bool:
+    """Whether all pairs satisfy the pencil and none was found twice: a wide spectrum may blur a Krylov basis too much."""
+    if np.any(quadratic.residuals(values, V) > _SOUND):
+        return False
+    V = V / np.linalg.norm(V, axis=0)
+    close = np.abs(values[:, None] - values) <= _SOUND * np.abs(values)
+    close &= np.abs(V.conj().T @ V) > 1.0 - _SOUND
+    return int(np.count_nonzero(close)) == values.size
+
+
+def _arnoldi(search: Search, wanted: int) -> Pairs:
+    """The `wanted` eigenvalues nearest to the shift, each with all its copies.
+
+    A block of width b holds at most b copies of a repeated eigenvalue: where that many are found there may be more, and
+    fresh directions are added until fewer copies than directions are found.
+    """
+    krylov = search.krylov
+    mu, Y = _converged(search, wanted)
+    while not krylov.exhausted:
+        shown = mu[:wanted]
+        equal = np.abs(shown[:, None] - shown) <= _EQUAL * np.abs(shown)
+        if int(equal.sum(axis=0).max(initial=0)) < krylov.width:
+            break
+        krylov.widen(krylov.width)
+        for _ in range(3):
+            krylov.expand()
+        mu, Y = _converged(search, wanted)
+    last = np.abs(mu[min(wanted, mu.size) - 1])
+    size = float(np.linalg.norm(krylov.projection, 1))
+    Y = Y[:, :wanted]
+    X = krylov.polished(np.hstack([Y.real, Y.imag]))
+    X = search.inverse.unbalanced(X[:, : Y.shape[1]] + 1j * X[:, Y.shape[1] :])
+    return _selected(search, mu[:wanted], X, search.inverse.zeros, size, reach=float(1.0 / last))
+
+
+def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
+    """Expand until the first `wanted` Ritz values have settled: all mu (m,) and coordinates (m, m)."""
+    krylov = search.krylov
+    goal = int(3.25 * wanted)
+    while True:
+        while krylov.size < goal and not krylov.exhausted:
+            krylov.expand()
+        mu, Y, residuals = search.ritz()
+        if krylov.exhausted:
+            return mu, Y
+        worst = residuals[:wanted].max() if mu.size >= wanted else 1.0
+        if worst < _CONVERGED:
+            return mu, Y
+        if krylov.size > 10 * wanted + 200:
+            raise ConvergenceError(f"The {wanted} eigenvalues nearest to zero did not converge.", mu)
+        # Residuals fall geometrically from about 1 at size = wanted: go to where the line meets the tolerance
+        slope = np.log(min(worst, 0.1)) / max(krylov.size - wanted, 1)
+        goal = krylov.size + int(np.clip(np.log(_CONVERGED / worst) / slope, 1, wanted))
+
+
+def _dense(search: Search, rows: int | None) -> Pairs:
+    """All finite eigenvalues, of which the first `rows` matter: `eig` of the inverse off the zero and infinite states.
+
+    Rounding goes with the largest mu, hence with the lowest eigenvalues; where it swamps the highest ones they are taken
+    from the companion matrix itself, whose rounding goes with them. The two are equally good at the geometric mean.
+    """
+    inverse = search.inverse
+    size = 2 * inverse.quadratic.n
+    if size > _LARGEST_DENSE:
+        raise ConvergenceError(
+            f"All eigenvalues of {size} states were needed, which is too many: the spectrum is too wide, or too much of it was"
+            " asked for. Ask for fewer modes."
+        )
+    known = np.hstack([inverse.zeros, infinite_states(inverse.quadratic)])
+    rest = np.linalg.qr(known, mode="complete")[0][:, known.shape[1] :] if known.shape[1] else np.eye(size)
+    # Off the states of zero and of infinite eigenvalues: these would spoil the others by their defective pairs.
+    T = rest.T @ inverse.apply(rest)
+    mu, X = np.linalg.eig(T)
+    finite = np.abs(mu) > size * EPS**2 * np.abs(mu).max(initial=0.0)
+    mu = mu[finite]
+    X = rest @ X[:, finite]
+    norm = float(np.linalg.norm(T, 1)) if T.size else 0.0
+    if mu.size and EPS * norm > _TOO_BLURRED * np.abs(mu).min():
+        mu, X = _with_direct(inverse, mu, X)
+    return _selected(search, mu, X, known, norm, reach=np.inf, rows=rows)
+
+
+def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The pairs of the inverse with the upper part of the spectrum from the companion matrix, where M is regular."""
+    quadratic = inverse.quadratic
+    n = inverse.quadratic.n
+    M = quadratic.M.toarray()
+    if np.any(M.diagonal() <= 0.0) or np.linalg.cond(M) > 1e12:
+        return mu, X
+    A = np.zeros((2 * n, 2 * n))
+    A[:n, n:] = np.eye(n)
+    A[n:] = -np.linalg.solve(M, np.hstack([quadratic.K.toarray(), quadratic.D.toarray()]))
+    direct, Y = np.linalg.eig(A)
+    order = np.argsort(np.abs(inverse.sigma + 1.0 / mu))
+    upper = np.argsort(np.abs(direct))[::-1]
+    size = np.abs(inverse.sigma + 1.0 / mu[order])
+    middle = np.sqrt(size[0] * size[-1])
+    # Conjugate pairs and close groups stay together: the spectrum is cut in its widest gap around the middle.
+    places = np.flatnonzero((size[1:] > 0.1 * middle) & (size[:-1] < 10.0 * middle)) + 1
+    if places.size == 0:
+        return mu, X
+    cut = int(places[np.argmax(size[places] / size[places - 1])])
+    high = upper[: mu.size - cut]
+    if np.abs(direct[high]).min() < size[cut - 1]:
+        return mu, X
+    return (
+        np.concatenate([mu[order[:cut]], 1.0 / (direct[high] - inverse.sigma)]),
+        np.hstack([X[:, order[:cut]], Y[:, high]]),
+    )
+
+
+def _real_twins(mu: np.ndarray, X: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Two equal real roots that rounding has made a conjugate pair as two real ones again, whose vectors are its two parts.
+
+    `size` as in `_selected`. Where both parts of the vector are one direction, the double root has one vector and stays a pair.
+    """
+    distance = 1.0 / mu
+    rounding = EPS * np.abs(distance) ** 2 * size
+    pair = (mu.imag != 0.0) & (np.abs(distance.imag) <= _TWINS * rounding)
+    if not pair.any():
+        return mu, X
+    pair &= np.linalg.norm(X.imag, axis=0) > _ONE_DIRECTION * np.linalg.norm(X, axis=0)
+    X = np.where(pair, np.where(mu.imag < 0.0, X.real, X.imag), X)
+    return np.where(pair, mu.real, mu), X
+
+
+def _selected(
+    search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, size: float, reach: float, rows: int | None = None
+) -> Pairs:
+    """One eigenpair a conjugate pair, refined, in ascending |lambda|; `size` is the norm of the matrix that gave mu.
+
+    That norm, not the largest |mu|, is what rounding goes with: a fast spin makes the matrix far from normal.
+    """
+    quadratic = search.inverse.quadratic
+    sigma = search.inverse.sigma
+    mu, X = _real_twins(mu, X, size)
+    one = mu.imag <= 0.0  # Im lambda >= 0, since mu = 1 / (lambda - sigma)
+    mu = mu[one].astype(complex)
+    V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
+    values = sigma + 1.0 / mu
+
+    # An error e of mu is one of |lambda - sigma|^2 e of lambda. What it blurs is refined on the pencil itself.
+    rounding = EPS * np.abs(values - sigma) ** 2 * size / np.abs(values)
+    rank = np.argsort(np.argsort(np.abs(values), kind="stable"), kind="stable")
+    blurred = (rounding > _BLUR) & (rank < (values.size if rows is None else rows + _SPARE))
+    if np.isfinite(reach):  # a large pencil: refinements cost, and a quotient does as well where little damps
+        values = corrected(values, rounding, quadratic.forms(V))
+        blurred = rounding * np.minimum(np.abs(values.real) / np.abs(values) + rounding, 1.0) > _BLUR_LARGE
+    for i in np.flatnonzero(blurred):
+        values[i], V[:, i], spent = newton(quadratic, values[i], V[:, i])
+        search.factorisations += spent
+        if values[i].imag < 0.0:  # of a pair next to the real axis the other one may be found
+            values[i] = np.conj(values[i])
+            V[:, i] = np.conj(V[:, i])
+    order = np.lexsort((values.imag, np.abs(values)))
+    return Pairs(values[order], V[:, order], reach - sigma, "dense" if np.isinf(reach) else "block Arnoldi")
 
 
 @dataclass(frozen=True)
@@ -24,7 +293,7 @@ class DampedModes:
     """Eigenvalues of lambda^2 M + lambda D + K, one per conjugate pair, in ascending |lambda|, rigid ones first.
 
     Attributes:
-        eigenvalues: (m,) complex, Im >= 0, in rad/s; real ones (overdamped or divergent) stand singly; Re > 0 is unstable.
+        eigenvalues: (m,) complex, Im >= 0, in rad/s; real ones (overdamped or divergent) have no partner; Re > 0 is unstable.
         vectors: (n, m) complex, the largest component is 1.
         rigid: (m,) True for the zero eigenvalue of each rigid vector. A drift partner is not listed.
         backward_error: (m,) ||Q v|| / ((|lambda|^2 ||M|| + |lambda| ||D|| + ||K||) ||v||), scaled to unit diagonals.
@@ -71,16 +340,11 @@ def damped_modes(
 
     Raises:
         AnalysisError: K has a rigid-body motion that was not given, or a given one is strained or without inertia.
-        ConvergenceError: the iteration did not settle; `partial` holds what was found.
+        ConvergenceError: the iteration did not converge; `partial` holds the modes found so far.
     """
-    if count is not None and count < 1:
-        raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
-    if below is not None and not below > 0.0:
-        raise AnalysisError(f"The highest frequency wanted must be positive, got {below} rad/s.")
+    check_wanted(count, below)
     M, D, K = (sp.csc_array(A, dtype=float) for A in (M, D, K))
-    for name, A in (("M", M), ("D", D), ("K", K)):
-        if not np.all(np.isfinite(A.data)):
-            raise AnalysisError(f"{name} holds entries that are not finite; check the input for NaN.")
+    check_finite(M=M, D=D, K=K)
     R = np.zeros((K.shape[0], 0)) if rigid_vectors is None else np.asarray(rigid_vectors, dtype=float)
     with single_thread(K.shape[0]):
         search = prepared(M, D, K, R, frequency_scale)
@@ -89,7 +353,7 @@ def damped_modes(
 
         # Rigid motions come first; the search has left them out. All is scaled here to unit diagonals.
         quadratic = search.inverse.quadratic
-        limit = np.inf if below is None else below * (1.0 + _EDGE) / quadratic.w0
+        limit = np.inf if below is None else below * (1.0 + EDGE) / quadratic.w0
         inside = np.count_nonzero(np.abs(pairs.values) <= min(limit, pairs.reach))
         shown = slice(0, inside if rows is None else min(inside, rows))
         rigid = R / quadratic.scale[:, None]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.ritz import combine, count_rigid, orthonormalise, stiffness_ritz, strain_ritz
 from rotorgear.solvers.eigen.shift_invert import (
     ShiftInvert,
@@ -24,7 +24,15 @@ from rotorgear.solvers.eigen.shift_invert import (
     unstable,
 )
 from rotorgear.solvers.sparse.factor import SymmetricFactor, single_thread
-from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
+from rotorgear.solvers.sparse.pencil import (
+    EDGE,
+    Strain,
+    backward_errors,
+    check_pencil,
+    check_wanted,
+    count_below,
+    rounding_noise,
+)
 
 _DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
 _FEW = (100, 12)  # above so many unknowns it is not, where so many times the modes are fewer than those
@@ -34,7 +42,6 @@ _UNCOUNTED = (0.0, 0)  # a shift below which there is nothing to count
 _ATTEMPTS = 6  # each with three times the spare pairs of the one before
 _UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
 _ENDLESS = 1e100  # rad/s; no limit at all, and its square is still a number
-_EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
 
 
 @dataclass(frozen=True)
@@ -110,10 +117,7 @@ def lowest_modes(
         AnalysisError: the matrices are not symmetric or K is not positive semidefinite.
         ConvergenceError: the Sturm count does not confirm the modes; `partial` holds them.
     """
-    if count is not None and count < 1:
-        raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
-    if below is not None and not below > 0.0:
-        raise AnalysisError(f"The highest frequency wanted must be positive, got {below} rad/s.")
+    check_wanted(count, below)
     if below is not None and below > _ENDLESS:
         below = None
     M = sp.csc_array(M, dtype=float)
@@ -126,14 +130,14 @@ def lowest_modes(
         target = K.shape[0] - massless.size
         if below is not None:
             # Counted a little beyond the edge, so that a mode on the limit is computed before it is judged.
-            target = min(target, count_below(operator.M, operator.K, below**2 * (1.0 + 1e3 * _EDGE)))
+            target = min(target, count_below(operator.M, operator.K, below**2 * (1.0 + 1e3 * EDGE)))
             operator.factorisations += 1
         if count is not None:
             target = min(count, target)
 
         # Compute and refine, then count below a gap above the last mode; with more pairs while there is no gap, or while the
         # count finds modes that are missing.
-        limit = np.inf if below is None else below**2 * (1.0 + _EDGE)
+        limit = np.inf if below is None else below**2 * (1.0 + EDGE)
         spare = _SPARE if counted else 0
         modes = None
         for _ in range(_ATTEMPTS):

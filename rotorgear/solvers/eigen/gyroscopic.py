@@ -18,11 +18,12 @@ import scipy.sparse as sp
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, with_near
-from rotorgear.solvers.sparse.factor import Factor, single_thread
+from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.sparse.pencil import EDGE
 
 # Error of an eigenvalue by its residual, and of a vector, at which a round is the last.
-_SETTLED = 1e-12
-_SETTLED_VECTOR = 1e-7
+_CONVERGED = 1e-12
+_CONVERGED_VECTOR = 1e-7
 # Part of a correction that is not worth a column of the basis, relative to the largest correction.
 _COARSE = 2e-3
 _ROUNDS = 8
@@ -32,23 +33,20 @@ _SOUND = 2e-9
 _LARGEST_SHARE = 0.8
 # Least relative gap between two frequencies in which modes are counted.
 _GAP = 1e-4
-# A mode this close above the limit `below` counts as on it.
-_EDGE = 1e-9
 
 
 def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | None) -> DampedModes | None:
-    """The modes of smallest |s| as `damped_modes` gives them; None where a basis does not serve or the count differs.
+    """The modes of smallest |s| as `damped_modes` gives them; None where the basis fails or the count differs.
 
     Args:
         problem: the pencil, whose D = G is skew, and its undamped modes, some more than are asked for.
-        count: so many rows, rigid-body motions included; below: only |s| up to this in rad/s. One of them at least.
+        count: number of modes, rigid-body motions included. below: highest |s| in rad/s. At least one of the two is given.
     """
     if problem.moves_rigid_bodies():
         return None
     rows = len(problem.frequencies) if count is None else max(count - problem.rigid.shape[1], 0)
     limit = np.inf if below is None else below
     with single_thread(problem.K.shape[0]):
-        factor = problem.factor
         space = UndampedBasis(problem)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
@@ -60,20 +58,24 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
             if wanted >= len(w):
                 return None
             V = basis @ Y[:, :wanted]
-            corrections, settled = _corrections(problem, factor, w[:wanted], V)
-            if settled:
-                asked = min(rows, int(np.count_nonzero(w <= limit * (1.0 + _EDGE))))
+            corrections, converged = _corrections(problem, w[:wanted], V)
+            if converged:
+                asked = min(rows, int(np.count_nonzero(w <= limit * (1.0 + EDGE))))
                 found = counted_modes(problem, 1j * w[:asked], V[:, :asked], count, "basis of undamped modes")
-                sound = found.backward_error.max(initial=0.0) <= _SOUND
-                return found if sound and _count_agrees(problem, w, wanted) else None
+                # No mode may be missing below a gap above the wanted ones; a basis without such a gap is not taken.
+                gap = next((k for k in range(max(wanted, 1), len(w)) if w[k] - w[k - 1] > _GAP * w[k]), None)
+                if gap is None or not found.backward_error.max(initial=0.0) <= _SOUND:
+                    return None
+                middle = float(0.5 * (w[gap - 1] + w[gap]))
+                return found if problem.counted_below(middle) == gap + problem.rigid.shape[1] else None
             space.add(corrections, space.sizes(V), _COARSE)
     return None
 
 
-def _corrections(problem: NearUndamped, factor: Factor, w: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, bool]:
-    """(K + sigma^2 M)^-1 Q(i w) v of each pair, (n, m), and whether eigenvalues and vectors have settled by them."""
+def _corrections(problem: NearUndamped, w: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, bool]:
+    """(K + sigma^2 M)^-1 Q(i w) v of each pair, (n, m), and whether eigenvalues and vectors have converged by them."""
     residual = problem.K @ V + (problem.D @ V) * (1j * w) - (problem.M @ V) * w**2
-    found = problem.without_rigid(factor.solve(residual))
+    found = problem.without_rigid(problem.factor.solve(residual))
 
     def form(A: sp.csc_array, X: np.ndarray) -> np.ndarray:
         return np.asarray(np.real(np.einsum("ij,ij->j", X.conj(), A @ X)))
@@ -81,25 +83,15 @@ def _corrections(problem: NearUndamped, factor: Factor, w: np.ndarray, V: np.nda
     # v^H Q'(w) v = -(v^H K v + w^2 v^H M v)/w, since v^H Q v = 0.
     error = np.abs(np.einsum("ij,ij->j", residual.conj(), found)) / (form(problem.K, V) + w**2 * form(problem.M, V))
     turned = np.sqrt(np.maximum(form(problem.K, found), 0.0) / form(problem.K, V))
-    settled = error.max(initial=0.0) <= _SETTLED and turned.max(initial=0.0) <= _SETTLED_VECTOR
-    return found, bool(settled)
-
-
-def _count_agrees(problem: NearUndamped, w: np.ndarray, wanted: int) -> bool:
-    """Whether no mode is missing below a gap above the wanted ones; a basis without a gap is not taken."""
-    gaps = [k for k in range(max(wanted, 1), len(w)) if w[k] - w[k - 1] > _GAP * w[k]]
-    if not gaps:
-        return False
-    middle = float(0.5 * (w[gaps[0] - 1] + w[gaps[0]]))
-    return problem.counted_below(middle) == gaps[0] + problem.rigid.shape[1]
+    return found, bool(error.max(initial=0.0) <= _CONVERGED and turned.max(initial=0.0) <= _CONVERGED_VECTOR)
 
 
 def counted_modes(problem: NearUndamped, s: np.ndarray, V: np.ndarray, count: int | None, basis: str) -> DampedModes:
-    """Rigid-body motions and modes, that pivot signs have counted, with their backward errors.
+    """Rigid-body motions and modes that pivot signs have counted, with their backward errors.
 
     Args:
-        problem: what is solved. s, V: eigenvalues (m,) and vectors (n, m) of its elastic modes. count: of rigid-body motions, at
-            most; None for all. basis: in which the modes were found, in words.
+        problem: the pencil and its undamped modes. s, V: eigenvalues (m,) and vectors (n, m) of its elastic modes.
+        count: the most rigid-body motions to list; None for all. basis: name of the basis, for the result.
     """
     rigid = problem.rigid[:, :count]
     values = np.concatenate([np.zeros(rigid.shape[1]), s])

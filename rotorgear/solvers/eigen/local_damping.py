@@ -18,8 +18,6 @@ Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3 and 6; Lancaster, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rotorgear.solvers.eigen.damped import DampedModes
@@ -27,16 +25,17 @@ from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, forces, with_near
 from rotorgear.solvers.sparse.entries import columns_of, times
-from rotorgear.solvers.sparse.factor import Factor, negative_eigenvalues, single_thread
+from rotorgear.solvers.sparse.factor import negative_eigenvalues, single_thread
+from rotorgear.solvers.sparse.pencil import EDGE
 
 _BASIS = "basis of undamped modes and responses to dampers"
-# Dofs on which dampers act: so many at most, and this share of all.
+# Largest number of dofs on which dampers act, and largest share of all dofs.
 _MOST_PLACES = 96
 _MOST_OF = 0.2
 # Relative size of an eigenvalue of the damping matrix that is rounding.
 _RANK = 1e-12
 # By how much the two corrections of an eigenvalue may differ, relative to it; what is left is a tenth of that or less.
-_SETTLED = 2e-9
+_CONVERGED = 2e-9
 # Eigenvalues this close to each other are corrected together.
 _CLOSE = 1e-3
 # Share of the largest correction that is not worth a column yet.
@@ -51,16 +50,14 @@ _COUNT_AT = (1.02, 1.035, 1.05)
 _AROUND = 1e-4
 # Share of the first frequency below which a pair is two motions that dampers slow, split by rounding.
 _SLOW = 1e-5
-# A mode this close above the limit `below` counts as on it.
-_EDGE = 1e-9
 
 
 def locally_damped_modes(problem: NearUndamped, count: int | None, below: float | None) -> DampedModes | None:
-    """The modes of smallest |s| as `damped_modes` gives them; None where a basis does not serve.
+    """The modes of smallest |s| as `damped_modes` gives them; None where the basis fails.
 
     Args:
         problem: the pencil and its undamped modes, some more than are asked for.
-        count: so many rows, rigid-body motions included; below: only |s| up to this in rad/s. One of them at least.
+        count: number of modes, rigid-body motions included. below: highest |s| in rad/s. At least one of the two is given.
     """
     places = _places(problem)
     if places is None or problem.moves_rigid_bodies():
@@ -69,8 +66,13 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
     rows = most if count is None else max(count - problem.rigid.shape[1], 0)
     limit = np.inf if below is None else below
     with single_thread(problem.K.shape[0]):
-        factor = problem.factor
-        space = _begun(problem, factor, places, rows)
+        # Undamped modes, static responses to dampers, and what the velocities of the first `rows` modes excite.
+        space = UndampedBasis(problem)
+        modes = problem.modes[:, :rows]
+        forced = problem.without_rigid(problem.factor.solve(np.hstack([places, problem.D @ modes])))
+        local = forced[:, : places.shape[1]]
+        space.add(local, np.maximum(space.sizes(local), np.finfo(float).tiny), 0.0)
+        space.add(forced[:, places.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
                 return None
@@ -86,26 +88,18 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
                 return None
             if size[0] <= _SLOW * problem.frequencies[0]:
                 return None
-            pairs = _Pairs(found.s[:wanted], basis @ found.q[:, :wanted], basis @ found.y[:, :wanted])
-            corrected, e, unsure = _corrected(problem, factor, pairs)
-            if unsure <= _SETTLED:
-                asked = min(rows, int(np.count_nonzero(np.abs(corrected.s) <= limit * (1.0 + _EDGE))))
-                chosen = _Pairs(corrected.s[:asked], corrected.v[:, :asked], corrected.y[:, :asked])
-                modes = counted_modes(problem, chosen.s, _polished(problem, factor, chosen), count, _BASIS)
-                if modes.backward_error.max(initial=0.0) <= _SOUND:
+            right = basis @ found.q[:, :wanted]
+            s, v, e, unsure = _corrected(problem, found.s[:wanted], right, basis @ found.y[:, :wanted])
+            if unsure <= _CONVERGED:
+                asked = min(rows, int(np.count_nonzero(np.abs(s) <= limit * (1.0 + EDGE))))
+                found_modes = counted_modes(
+                    problem, s[:asked], _polished(problem, s[:asked], v[:, :asked]), count, _BASIS
+                )
+                if found_modes.backward_error.max(initial=0.0) <= _SOUND:
                     last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
-                    return modes if _none_is_missing(problem, small, last) else None
-            space.add(e, space.sizes(pairs.v), _COARSE)
+                    return found_modes if _none_is_missing(problem, small, last) else None
+            space.add(e, space.sizes(right), _COARSE)
     return None
-
-
-@dataclass(frozen=True)
-class _Pairs:
-    """Eigenvalues (m,) with right and left vectors (n, m)."""
-
-    s: np.ndarray
-    v: np.ndarray
-    y: np.ndarray
 
 
 def _places(problem: NearUndamped) -> np.ndarray | None:
@@ -124,34 +118,28 @@ def _places(problem: NearUndamped) -> np.ndarray | None:
     return P
 
 
-def _begun(problem: NearUndamped, factor: Factor, places: np.ndarray, rows: int) -> UndampedBasis:
-    """Undamped modes, static responses to dampers, and what the velocities of the first `rows` modes call forth."""
-    space = UndampedBasis(problem)
-    modes = problem.modes[:, :rows]
-    forced = problem.without_rigid(factor.solve(np.hstack([places, problem.D @ modes])))
-    local = forced[:, : places.shape[1]]
-    space.add(local, np.maximum(space.sizes(local), np.finfo(float).tiny), 0.0)
-    space.add(forced[:, places.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
-    return space
+def _corrected(
+    problem: NearUndamped, z: np.ndarray, v: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Correct eigenvalues z (m,) with right and left vectors v and y (n, m).
 
-
-def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_Pairs, np.ndarray, float]:
-    """The pairs with both corrections, e (n, m), and the largest difference of the two corrections of an eigenvalue over |s|."""
-    z = pairs.s
+    Returns:
+        Eigenvalues (m,) and right vectors (n, m) with both corrections, e (n, m), and the largest difference of the two
+        corrections of an eigenvalue over its size.
+    """
     m = len(z)
-    of_both = problem.products(np.hstack([pairs.v, pairs.y]))
+    of_both = problem.products(np.hstack([v, y]))
     products = of_both[:, :, :m]
     right = forces(z, products)
-    left = forces(z.conj(), problem.mirrored(pairs.y, of_both[:, :, m:]))
-    both = problem.without_rigid(factor.solve(np.hstack([right, left])))
+    left = forces(z.conj(), problem.mirrored(y, of_both[:, :, m:]))
+    both = problem.without_rigid(problem.factor.solve(np.hstack([right, left])))
     e = both[:, :m]
     f = both[:, m:]
     values = z.copy()
-    v = pairs.v - e
-    y = pairs.y - f
+    v = v - e
     # y_i^H ((s_i + s_j) M + D) v_j: the product in which left and right vectors of a pencil are biorthogonal.
-    heavy = pairs.y.conj().T @ products[0]
-    product = pairs.y.conj().T @ products[1] + heavy * z + z[:, None] * heavy
+    heavy = y.conj().T @ products[0]
+    product = y.conj().T @ products[1] + heavy * z + z[:, None] * heavy
     once = left.conj().T @ e
     twice = f.conj().T @ problem.applied(z, e)
     groups = clusters(z, _CLOSE)
@@ -171,16 +159,16 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
         values[close], turn = np.linalg.eig(np.diag(z[close]) + second)
         v[:, close] = v[:, close] @ turn
     order = np.argsort(np.abs(values), kind="stable")
-    return _Pairs(values[order], v[:, order], y[:, order]), e, unsure
+    return values[order], v[:, order], e, unsure
 
 
-def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> np.ndarray:
+def _polished(problem: NearUndamped, s: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Right vectors (n, m) that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
 
     Along X, where r of the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
     """
-    e = problem.without_rigid(factor.solve(problem.applied(pairs.s, pairs.v)))
-    return np.asarray(pairs.v - e + problem.modes @ (problem.modes.T @ times(problem.M, e)))
+    e = problem.without_rigid(problem.factor.solve(problem.applied(s, v)))
+    return np.asarray(v - e + problem.modes @ (problem.modes.T @ times(problem.M, e)))
 
 
 def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:

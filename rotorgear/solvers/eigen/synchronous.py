@@ -224,14 +224,14 @@ def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> boo
     if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
         return True
     H = family.inertia(order)
-    low = 0.999 * min([family.high, *(r.speed for r in roots)])
-    high = family.high
-    first = max(family.low, 1e-4 * low)
-    if any(abs(r.speed - end) < 1e-7 * end for r in roots for end in (first, high)):
+    first = max(family.low, 1e-4 * 0.999 * min([family.high, *(r.speed for r in roots)]))
+    if any(abs(r.speed - end) < 1e-7 * end for r in roots for end in (first, family.high)):
         return True  # a root on the very end can't be counted
     signs = [np.sign(np.vdot(r.vector, H @ r.vector).real) for r in roots]
     try:
-        counts = [factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).pivots.real < 0.0 for W in (first, high)]
+        low, high = (
+            factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).negative_count() for W in (first, family.high)
+        )
     except ConvergenceError:
         return True  # no factors without row exchanges: nothing to count with
-    return int(counts[1].sum()) - int(counts[0].sum()) == int(sum(signs))
+    return high - low == int(sum(signs))

@@ -1,4 +1,4 @@
-"""A real basis that begins with the undamped modes and grows by what residuals ask for."""
+"""Real bases, orthonormal in scaled coordinates, that grow by modes or by what the residuals of modes ask for."""
 
 from __future__ import annotations
 
@@ -13,6 +13,64 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked_columns, times
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric
+
+
+class _ScaledBasis:
+    """Span of real vectors, orthonormal in coordinates scaled by `weight` (n,), in which metres and radians count alike."""
+
+    def __init__(self, weight: np.ndarray, scaled: np.ndarray) -> None:
+        self._weight = weight
+        self._scaled = scaled
+
+    @property
+    def size(self) -> int:
+        """Number of columns."""
+        return int(self._scaled.shape[1])
+
+    @property
+    def basis(self) -> np.ndarray:
+        """(n, size), real, in the coordinates of the dofs."""
+        return np.asarray(self._scaled / self._weight[:, None])
+
+    def _beside(self, scaled: np.ndarray) -> np.ndarray:
+        """What real scaled vectors (n, m) have beside the span."""
+        for _ in range(2):  # twice is enough for the rounding
+            scaled = scaled - self._scaled @ (self._scaled.T @ scaled)
+        return scaled
+
+
+class Subspace(_ScaledBasis):
+    """Span of the real and imaginary parts of the vectors added so far.
+
+    The first columns keep the directions of the vectors that came first: a soft mode is not turned among stiff ones.
+    """
+
+    def __init__(self, weight: np.ndarray, tolerance: float) -> None:
+        super().__init__(weight, np.zeros((len(weight), 0)))
+        self._tolerance = tolerance
+
+    def add(self, vectors: np.ndarray) -> int:
+        """Add what vectors (n, m) have beside the span; return the number of new columns."""
+        scaled = vectors * self._weight[:, None]
+        scaled = scaled / np.maximum(np.linalg.norm(scaled, axis=0), np.finfo(float).tiny)
+        # The phase of a mode is free: turned so that its real part is as large as can be, little is left for the imaginary one.
+        turn = np.sum(scaled**2, axis=0)
+        scaled = scaled * np.exp(-0.5j * np.angle(turn))
+        before = self.size
+        for part in (scaled.real, scaled.imag):
+            beside = self._beside(part.copy())
+            if self.size == 0:
+                # QR takes the first vectors one after the other: soft modes keep their directions.
+                Q, R = np.linalg.qr(beside)
+                columns = Q[:, np.abs(np.diag(R)) > self._tolerance]
+            else:
+                # Of later ones only what is new counts, largest first.
+                U, size, _ = np.linalg.svd(beside, full_matrices=False)
+                columns = U[:, size > self._tolerance]
+            columns = columns - self._scaled @ (self._scaled.T @ columns)
+            self._scaled = np.hstack([self._scaled, columns])
+        return self.size - before
+
 
 # sigma over the first frequency where no factor is there.
 _LOW = 0.3
@@ -128,7 +186,7 @@ class NearUndamped:
             factor = factor_symmetric(self.K - w**2 * self.M + turning)
         except ConvergenceError:
             return None
-        return int(np.count_nonzero(factor.pivots.real < 0.0))
+        return factor.negative_count()
 
     def without_rigid(self, X: np.ndarray) -> np.ndarray:
         """X (n, m) without its part in the rigid-body motions, which have none in elastic modes."""
@@ -147,24 +205,13 @@ def with_near(size: np.ndarray, rows: int, limit: float) -> int:
     return int(np.count_nonzero(size <= min(limit, last) * (1.0 + _CORRECTED)))
 
 
-class UndampedBasis:
-    """The basis in coordinates scaled by the weight of the problem, orthonormal."""
+class UndampedBasis(_ScaledBasis):
+    """Undamped modes and what their residuals ask for, scaled by the weight of the problem."""
 
     def __init__(self, problem: NearUndamped) -> None:
-        self._problem = problem
-        self._weight = problem.weight[:, None]
         # QR takes one vector after the other: soft modes keep their directions among stiff ones.
-        self._scaled = np.linalg.qr(problem.modes * self._weight)[0]
-
-    @property
-    def size(self) -> int:
-        """Number of columns."""
-        return int(self._scaled.shape[1])
-
-    @property
-    def basis(self) -> np.ndarray:
-        """(n, size), real, in the coordinates of the dofs."""
-        return np.asarray(self._scaled / self._weight)
+        super().__init__(problem.weight, np.linalg.qr(problem.modes * problem.weight[:, None])[0])
+        self._problem = problem
 
     def pencil(self, V: np.ndarray) -> Pencil:
         """M, D and K on a basis V (n, r); K through its strains, free of the rounding of the assembled one."""
@@ -172,21 +219,19 @@ class UndampedBasis:
         return Pencil(V.T @ (self._problem.M @ V), V.T @ (self._problem.D @ V), S.T @ S)
 
     def add(self, vectors: np.ndarray, size: np.ndarray, coarse: float) -> None:
-        """Add what real or complex vectors (n, m) bring beside the span.
+        """Add what real or complex vectors (n, m) have beside the span.
 
         Args:
             vectors: (n, m).
             size: what they correct, (m,) norms in scaled coordinates.
             coarse: share of the largest addition that waits for the next round: a correction is no better than that.
         """
-        new = vectors * self._weight / size
-        rest = np.hstack([new.real, new.imag]) if np.iscomplexobj(new) else new
-        for _ in range(2):  # twice is enough for the rounding
-            rest = rest - self._scaled @ (self._scaled.T @ rest)
-        U, sizes, _ = np.linalg.svd(rest, full_matrices=False)
+        new = vectors * self._weight[:, None] / size
+        beside = self._beside(np.hstack([new.real, new.imag]) if np.iscomplexobj(new) else new)
+        U, sizes, _ = np.linalg.svd(beside, full_matrices=False)
         least = max(_NEGLIGIBLE, coarse * float(sizes.max(initial=0.0)))
         self._scaled = np.hstack([self._scaled, U[:, sizes > least]])
 
     def sizes(self, V: np.ndarray) -> np.ndarray:
         """Norms (m,) of vectors V (n, m) in scaled coordinates."""
-        return np.asarray(np.linalg.norm(V * self._weight, axis=0))
+        return np.asarray(np.linalg.norm(V * self._weight[:, None], axis=0))

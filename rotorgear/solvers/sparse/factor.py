@@ -72,8 +72,8 @@ class SymmetricFactor(Factor):
         return pivots
 
     def negative_count(self) -> int:
-        """Number of negative eigenvalues of A (Sylvester's law of inertia)."""
-        return int(np.count_nonzero(self.pivots < 0.0))
+        """Number of negative eigenvalues of a real symmetric or complex Hermitian A (Sylvester's law of inertia)."""
+        return int(np.count_nonzero(self.pivots.real < 0.0))
 
     def pivots_by_row(self) -> np.ndarray:
         """The pivot each row of A met (n,): a tiny one marks a row that depends on rows eliminated before."""
@@ -130,9 +130,8 @@ def factor_general(A: sp.csc_array) -> Factor:
 
 def solve_error(A: sp.csc_array, factor: Factor) -> float:
     """Backward error ||A x - b|| / (||A||_1 ||x|| + ||b||) of one solve with a fixed b: 1e-16 for a healthy factor."""
-    b = np.random.default_rng(7).standard_normal(
-        factor.n
-    )  # random, so that it meets every pivot; fixed, to be repeatable
+    # Random, so that it meets every pivot; fixed, to be repeatable.
+    b = np.random.default_rng(7).standard_normal(factor.n)
     x = factor.solve(b)
     scale = norm_1(A) * np.linalg.norm(x) + np.linalg.norm(b)
     return float(np.linalg.norm(A @ x - b) / scale)

@@ -3,14 +3,22 @@
 What fills a factor of a solid body is the order of elimination. Nested dissection of the graph of nodes (METIS, by
 pymetis; Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998) takes a tenth of the time of SuperLU's own minimum degree, and half of
 its memory; Pardiso (by pypardiso) orders likewise and is faster again.
+
+Python handles an interrupt only between two of its own steps, and a factorisation is one step that may take a minute. SuperLU and
+Pardiso release Python's lock: the work runs in a thread (`watched`), and the main thread waits for it and for Ctrl-C.
 """
 
 from __future__ import annotations
 
 import importlib.util
 import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextvars import copy_context
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,7 +26,47 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, silent
 from rotorgear.solvers.sparse.factor import symmetric_superlu
-from rotorgear.solvers.sparse.watched import watched
+
+T = TypeVar("T")
+# Shorter work than this is waited for.
+_SHORT = 2.0
+_TELL_EVERY = 0.5
+# Share at which the progress stops when the forecast was too short.
+_MOST = 0.95
+
+
+def watched(work: Callable[[], T], seconds: float, tell: Callable[[float], None]) -> T:
+    """Return or raise what `work()` does; an interrupt returns to the caller at once.
+
+    The thread is a daemon: it ends with the process. A session that goes on lets it compute to its end, and drops the result.
+
+    Args:
+        work: compiled code that releases Python's lock.
+        seconds: expected duration.
+        tell: called with the share that is done, estimated by the clock.
+    """
+    if seconds < _SHORT or threading.current_thread() is not threading.main_thread():
+        return work()
+    done: dict[str, Any] = {}
+    context = copy_context()
+
+    def run() -> None:
+        try:
+            done["value"] = context.run(work)
+        except BaseException as error:  # raised where it is waited for
+            done["error"] = error
+
+    thread = threading.Thread(target=run, daemon=True)
+    started = time.perf_counter()
+    thread.start()
+    while thread.is_alive():
+        thread.join(_TELL_EVERY)
+        tell(min((time.perf_counter() - started) / seconds, _MOST))
+    if "error" in done:
+        raise done["error"]
+    found: T = done["value"]
+    return found
+
 
 Solver = Literal["pardiso", "metis", "mmd"]
 # Seconds and bytes of one factorisation of 139 000 unknowns of quadratic tetrahedra on one core, and the powers of n that other
@@ -29,7 +77,7 @@ _COST: dict[Solver, tuple[float, float, float, float]] = {
     "metis": (8.4, 1.55, 1.7e9, 1.12),
     "mmd": (65.0, 2.2, 2.8e9, 1.4),
 }
-# From here on what is about to happen is told before it starts.
+# Forecast in seconds above which it is shown before the work starts.
 _LONG = 20.0
 
 
@@ -103,8 +151,8 @@ def factor_positive(
     Args:
         A: (n, n), any sparse format, with the same pattern for all unknowns of a node.
         blocks: unknowns a node.
-        what: is factored, for progress and errors.
-        progress: told the forecast before it starts, then the share of it that has gone by.
+        what: name of what is factored, for progress and errors.
+        progress: called with the forecast before the work starts, then with the share of that time that has passed.
         solver: "pardiso", "metis" or "mmd"; None: the best that is installed.
 
     Raises:
@@ -113,8 +161,17 @@ def factor_positive(
     """
     solver = solver or best_solver()
     cost = forecast(A.shape[0], solver)
-    _enough_memory(cost, A.shape[0], what)
     text = f"{what}: factorisation of {A.shape[0]} unknowns"
+    try:
+        installed = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):  # the system does not tell
+        installed = sys.maxsize
+    if cost.memory > installed:
+        better = ", or install pymetis: pip install 'rotorgear[casing]'" if solver == "mmd" else ""
+        raise AnalysisError(
+            f"{what}: a factorisation of {A.shape[0]} unknowns takes {cost}, and this machine has {installed / 1e9:.1f} GB. "
+            f"Use a coarser model{better}."
+        )
     if cost.seconds > _LONG:
         hint = "; pymetis would take a tenth of it (pip install 'rotorgear[casing]')" if solver == "mmd" else ""
         text += f", {cost}{hint}"
@@ -143,16 +200,3 @@ def nested_dissection(A: Any, blocks: int) -> np.ndarray:
     else:  # before 2025
         permutation, _ = pymetis.nested_dissection(xadj=pattern.indptr, adjncy=pattern.indices)
     return (np.asarray(permutation)[:, None] * blocks + np.arange(blocks)).ravel()
-
-
-def _enough_memory(cost: Forecast, unknowns: int, what: str) -> None:
-    try:
-        there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):  # no such question on this system
-        return
-    if cost.memory > there:
-        better = ", or install pymetis: pip install 'rotorgear[casing]'" if cost.solver == "mmd" else ""
-        raise AnalysisError(
-            f"{what}: a factorisation of {unknowns} unknowns takes {cost}, and this machine has {there / 1e9:.1f} GB. Use a "
-            f"coarser model{better}."
-        )

@@ -1,7 +1,8 @@
-"""Systems with a known null space: K q = f with K R = 0, solved by a statically determinate support of r dofs.
+"""Static equilibrium K q = f with a known null space, K R = 0, solved on a statically determinate support of r dofs.
 
 The support dofs come from a pivoted QR of R: R restricted to them is well conditioned, so K without them is regular.
-When f is orthogonal to the left null space the support carries no load, and the solution is exact.
+Loads that do no work on R, L^T f = 0 with L^T K = 0, leave the support without a load, and the solution is exact; what
+is left open is q + R c (Geradin and Rixen, Mechanical Vibrations, 3rd ed., section 3.3, John Wiley 2015).
 Bodies that nothing joins have no dof in common: each has its own QR, of its few motions.
 Golub and Van Loan, Matrix Computations, 4th ed., section 5.4 (column pivoting).
 """
@@ -105,3 +106,78 @@ class SupportedSolver:
         q = np.zeros(f.shape)
         q[self._columns] = self._factor.solve(f[self._rows])
         return q
+
+
+_BALANCE = 1e-8  # work relative to the sum of its absolute parts that counts as none
+_RESIDUAL = 1e-11  # relative to the largest force inside, |K||q| + |f|
+_ROUNDING = 1e-11  # work on a free motion below this share of the whole load is rounding of the load itself
+_REFINEMENTS = 4
+
+
+class UnbalancedLoadError(AnalysisError):
+    """Loads push a free structure. `imbalance` (r,): their work on each rigid vector relative to its absolute parts."""
+
+    def __init__(self, imbalance: np.ndarray) -> None:
+        self.imbalance = imbalance
+        worst = int(np.argmax(imbalance))
+        super().__init__(
+            f"The loads do work on rigid-body motion {worst + 1} of {imbalance.size} (a share of {imbalance[worst]:.2g}), "
+            "so there is no equilibrium; balance the loads or support that motion."
+        )
+
+
+class StaticSolver:
+    """Solves K q = f for many loads that do no work on the free motions R (n, r): K R = 0 and R^T K = 0.
+
+    Raises:
+        AnalysisError: K is singular beyond R.
+    """
+
+    def __init__(self, K: sp.csc_array, R: np.ndarray) -> None:
+        self._K = sp.csc_array(K, dtype=float)
+        # Scaled by the root of the stiffness, metres and radians compete fairly for the support; a dof without stiffness of its
+        # own counts as a typical one.
+        diagonal = np.abs(self._K.diagonal())
+        typical = float(np.median(diagonal[diagonal > 0.0])) if np.any(diagonal > 0.0) else 1.0
+        self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))
+        self._R = orthonormal_motions(R * self._scale[:, None])  # of q * scale
+        self._solver = SupportedSolver(self._K, self._R, self._R)
+
+    def solve(self, f: np.ndarray, *, carried: bool = False) -> np.ndarray:
+        """Return q (n, p) for loads f (n, p); with `carried` their work on free motions is left out instead of refused.
+
+        Raises:
+            UnbalancedLoadError: a load does work on a free motion.
+            ConvergenceError: the residual stays above 1e-11 of the forces inside; `partial` holds q.
+        """
+        if not carried:
+            self._check_balance(f)
+        target = residual = self._without_rigid(f)
+        q = np.zeros_like(f)
+        size = abs(self._K)
+        for _ in range(_REFINEMENTS):
+            q = q + self._solver.solve(residual)
+            residual = self._without_rigid(target - self._K @ q)
+            scale = np.abs(size @ np.abs(q)) + np.abs(target)
+            noise = np.max(np.abs(residual / self._scale[:, None]), axis=0)
+            if np.all(noise <= _RESIDUAL * np.max(scale / self._scale[:, None], axis=0)):
+                return q
+        raise ConvergenceError("the static solution keeps a residual: look for stiffnesses many decades apart", q)
+
+    def _check_balance(self, f: np.ndarray) -> None:
+        """Refuse loads that do work on a free motion."""
+        if not self._R.shape[1]:
+            return
+        scaled = f / self._scale[:, None]
+        work = self._R.T @ scaled
+        parts = np.abs(self._R.T) @ np.abs(scaled)
+        noise = _ROUNDING * np.linalg.norm(scaled, axis=0)  # a motion that the loads hardly touch
+        imbalance = (np.abs(work) / np.maximum(parts, np.where(noise > 0.0, noise, 1.0))).max(axis=1)
+        imbalance[np.all(np.abs(work) <= noise, axis=1)] = 0.0
+        if np.any(imbalance > _BALANCE):
+            raise UnbalancedLoadError(imbalance)
+
+    def _without_rigid(self, f: np.ndarray) -> np.ndarray:
+        """The part of f (n, p) that does no work on the free motions."""
+        scaled = f / self._scale[:, None]
+        return np.asarray((scaled - self._R @ (self._R.T @ scaled)) * self._scale[:, None])

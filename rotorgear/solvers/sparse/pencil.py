@@ -16,6 +16,7 @@ from rotorgear.solvers.sparse.entries import norm_1, row_products
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric, solve_error
 
 EPS = float(np.finfo(float).eps)
+EDGE = 1e-9  # a mode whose frequency is this close above a limit counts as on it
 _SYMMETRY = 1e-9  # an entry may differ from its mirror image by this share of sqrt(a_ii a_jj)
 _LIFT = 4.0 * EPS  # added to diagonals, relative to them, so that an exactly zero pivot shows as a tiny one
 _ZERO_PIVOT = 100.0 * EPS  # pivots below this share of the diagonal are rounding
@@ -49,9 +50,8 @@ def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
     """
     if M.shape != K.shape or K.shape[0] != K.shape[1]:
         raise AnalysisError(f"M {M.shape} and K {K.shape} must be square and of one size.")
+    check_finite(M=M, K=K)
     for name, A in (("M", M), ("K", K)):
-        if not np.all(np.isfinite(A.data)):
-            raise AnalysisError(f"{name} holds entries that are not finite; check the input for NaN.")
         if not _is_symmetric(A):
             raise AnalysisError(f"{name} is not symmetric: use the damped solver for circulatory or gyroscopic terms.")
 
@@ -67,6 +67,21 @@ def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
         if np.any(loose):
             raise LooseDofError(massless[loose])
     return massless
+
+
+def check_finite(**matrices: sp.csc_array) -> None:
+    """Refuse matrices, given by their names, with entries that are not finite (AnalysisError)."""
+    for name, A in matrices.items():
+        if not np.all(np.isfinite(A.data)):
+            raise AnalysisError(f"{name} holds entries that are not finite; check the input for NaN.")
+
+
+def check_wanted(count: int | None, below: float | None) -> None:
+    """Refuse a number of modes below 1 and a highest frequency `below` (rad/s) that is not positive (AnalysisError)."""
+    if count is not None and count < 1:
+        raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
+    if below is not None and not below > 0.0:
+        raise AnalysisError(f"The highest frequency wanted must be positive, got {below} rad/s.")
 
 
 def _is_symmetric(A: sp.csc_array) -> bool:

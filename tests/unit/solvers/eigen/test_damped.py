@@ -239,7 +239,7 @@ def test_the_sparse_solver_agrees_with_the_dense_one_on_a_gyroscopic_damped_chai
     G = sp.csc_array(sp.kron(sp.csc_array([[0.0, 1.0], [-1.0, 0.0]]), sp.diags_array(np.linspace(0.0, 0.3, n // 2))))
     C = sp.diags_array(np.where(np.arange(n) % 60 == 7, 0.5, 0.0))
     sparse = damped_modes(M, C + G, K, count=24)
-    monkeypatch.setattr("rotorgear.solvers.eigen.quadratic_search._DENSE_UP_TO", 1000)
+    monkeypatch.setattr("rotorgear.solvers.eigen.damped._DENSE_UP_TO", 1000)
     dense = damped_modes(M, C + G, K, count=24)
     assert (sparse.method, dense.method) == ("block Arnoldi", "dense")
     np.testing.assert_allclose(sparse.eigenvalues, dense.eigenvalues, rtol=1e-11)

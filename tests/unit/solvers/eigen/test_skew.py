@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.solvers.eigen.skew import largest_pairs
+from rotorgear.solvers.eigen.reduced_pencil import largest_pairs
 
 WELL_SPREAD = np.linspace(1.0, 0.1, 30)
 CLUSTERS = np.repeat([1.0, 0.7, 0.5, 0.2, 0.1], 6)

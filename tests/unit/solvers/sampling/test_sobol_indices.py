@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.solvers.sampling.points import unit_points
-from rotorgear.solvers.sampling.sobol_indices import design, sobol_indices
+from rotorgear.solvers.sampling import design, sobol_indices, unit_points
 
 
 def test_indices_of_a_product_are_those_of_its_closed_form_and_errors_cover_them():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.sparse.equilibrium import Equilibrium, UnbalancedLoadError
+from rotorgear.solvers.sparse.nullspace import StaticSolver, UnbalancedLoadError
 from tests.unit.solvers.spring_chains import Beam, bar, copies
 
 
@@ -16,7 +16,7 @@ def test_a_supported_chain_stretches_by_its_closed_form():
     _, K, _ = bar(50, stiffness=2.0, ground={0: 2.0})
     f = np.zeros((50, 1))
     f[-1] = 3.0
-    q = Equilibrium(K, np.zeros((50, 0))).solve(f)
+    q = StaticSolver(K, np.zeros((50, 0))).solve(f)
     np.testing.assert_allclose(q[:, 0], 1.5 * np.arange(1, 51), rtol=1e-12)
 
 
@@ -26,7 +26,7 @@ def test_a_free_chain_pulled_at_both_ends_stretches_evenly():
     f = np.zeros((n, 1))
     f[0] = -1.0
     f[-1] = 1.0
-    q = Equilibrium(K, np.ones((n, 1))).solve(f)[:, 0]
+    q = StaticSolver(K, np.ones((n, 1))).solve(f)[:, 0]
     np.testing.assert_allclose(q - q.mean(), 0.5 * (np.arange(n) - 20), atol=1e-12)
 
 
@@ -35,7 +35,7 @@ def test_six_free_bodies_take_several_load_cases_at_once():
     R = np.kron(np.eye(6), np.ones((30, 1)))
     f = np.random.default_rng(0).standard_normal((180, 4))
     f -= R @ (R.T @ f) / 30
-    q = Equilibrium(K, R).solve(f)
+    q = StaticSolver(K, R).solve(f)
     assert q.shape == (180, 4)
     assert _residual(K, q, f) < 1e-14
 
@@ -51,7 +51,7 @@ def test_a_free_beam_with_mixed_units_keeps_its_residual_small():
     f[0] = 1.0
     f[20] = -2.0
     f[40] = 1.0
-    q = Equilibrium(K, R).solve(f)[:, 0]
+    q = StaticSolver(K, R).solve(f)[:, 0]
     assert _residual(K, q, f[:, 0]) < 1e-14
     sag = q[20] - 0.5 * (q[0] + q[40])
     assert abs(sag) == pytest.approx(2.0 * 2.0**3 / (48 * 1e6), rel=1e-9)
@@ -61,7 +61,7 @@ def test_a_load_that_pushes_a_free_body_is_refused_unless_something_carries_it()
     _, K, _ = bar(10)
     f = np.zeros((10, 1))
     f[3] = 1.0
-    free = Equilibrium(K, np.ones((10, 1)))
+    free = StaticSolver(K, np.ones((10, 1)))
     with pytest.raises(UnbalancedLoadError, match="balance the loads") as caught:
         free.solve(f)
     assert caught.value.imbalance[0] == pytest.approx(1.0)
@@ -73,4 +73,4 @@ def test_a_load_that_pushes_a_free_body_is_refused_unless_something_carries_it()
 def test_a_free_motion_that_was_not_given_is_refused():
     _, K, _ = bar(10)
     with pytest.raises(AnalysisError):
-        Equilibrium(K, np.zeros((10, 0))).solve(np.ones((10, 1)))
+        StaticSolver(K, np.zeros((10, 0))).solve(np.ones((10, 1)))

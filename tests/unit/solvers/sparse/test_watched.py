@@ -9,8 +9,8 @@ import pytest
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import listener, listening
-from rotorgear.solvers.sparse import watched as module
-from rotorgear.solvers.sparse.watched import watched
+from rotorgear.solvers.sparse import large as module
+from rotorgear.solvers.sparse.large import watched
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""Variance-based ranks: first-order and total Sobol indices from a pick-freeze design.
+"""Points of the unit cube, the same for the same seed, and first-order and total Sobol indices from values at such points.
 
 A and B are two independent samples (n, p), A_j is A with column j of B. With f about its mean and V its variance
 
@@ -10,12 +10,28 @@ second is Jansen's of 1999). Errors are standard deviations over bootstrap sampl
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 _BOOTSTRAPS = 100
+SAMPLINGS = ("sobol", "latin", "random")
+
+
+def unit_points(sampling: str, count: int, dimensions: int, seed: int) -> NDArray[np.float64]:
+    """Return points (count, dimensions): scrambled Sobol, a Latin hypercube, or plain random ones."""
+    from scipy.stats import qmc
+
+    if sampling == "random":
+        return np.random.default_rng(seed).random((count, dimensions))
+    if sampling == "latin":
+        return np.asarray(qmc.LatinHypercube(dimensions, seed=seed).random(count))
+    with warnings.catch_warnings():
+        # A number that is no power of two loses balance, not validity.
+        warnings.simplefilter("ignore", UserWarning)
+        return np.asarray(qmc.Sobol(dimensions, scramble=True, seed=seed).random(count))
 
 
 @dataclass(frozen=True)
@@ -33,12 +49,7 @@ def design(u: NDArray[np.float64]) -> NDArray[np.float64]:
     p = u.shape[1] // 2
     A = u[:, :p]
     B = u[:, p:]
-    mixed = []
-    for j in range(p):
-        one = A.copy()
-        one[:, j] = B[:, j]
-        mixed.append(one)
-    return np.vstack([A, B, *mixed])
+    return np.vstack([A, B, *(np.where(np.arange(p) == j, B, A) for j in range(p))])
 
 
 def sobol_indices(values: NDArray[np.float64], numbers: int, seed: int = 0) -> SobolIndices:

@@ -1,1 +1,0 @@
-"""Points of the unit cube, and variances from them."""
