@@ -33,7 +33,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Theory": ("theory", "conventions", "glossary"),
     "Reference": ("commands", "model_file", "api", "json", "errors", "stability"),
     "Validation": (
-        "validation", "seeds", "accuracy", "error_vs_runtime", "effectivity", "extreme", "run_time",
+        "validation", "seeds", "accuracy", "extreme", "run_time",
     ),
     "Development": ("architecture",),
 }  # fmt: skip

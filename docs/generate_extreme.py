@@ -21,7 +21,8 @@ HEAD = """# Stiff and extreme cases
 
 A model may be stiffer, softer, faster or odder than anything its maker tried before. Each case below is computed and
 compared with an independent reference, or refused with a sentence that says why. The cases stand in
-[tests/extreme](../tests/extreme), and every run of the tests computes them.
+[tests/extreme](../tests/extreme), and every run of the tests computes them; `python -m tests.extreme` prints what was tried
+with intent, and the site lists every case.
 
 * *40 digits*: textbook element matrices, assembled and solved by mpmath with 40 digits.
 * *closed form*: a formula, evaluated with 40 digits.
@@ -63,10 +64,17 @@ These broke an early version. `python -m tests.extreme` tries them again and pri
 
 
 def pages() -> dict[str, str]:
-    """Return the page by its path."""
+    """Return the page with the numbers of cases, by its path."""
+    with mp.workdps(DIGITS):
+        return {"docs/extreme.md": "\n".join([HEAD, _counts(), WHY + _conditioning(), WARNED])}
+
+
+def site_pages() -> dict[str, str]:
+    """The same page with every case."""
     with mp.workdps(DIGITS):
         parts = [
             HEAD,
+            _counts(),
             "## Computed\n",
             _computed(),
             "## Warned about\n",
@@ -78,6 +86,22 @@ def pages() -> dict[str, str]:
             TRIED + _table([["what was tried", "what happens"], *([hole.what, hole.outcome] for hole in HOLES)]),
         ]
     return {"docs/extreme.md": "\n".join(parts)}
+
+
+def _counts() -> str:
+    """How many cases there are of each kind, and how many of them come out as they should."""
+    right = sum(measured(case) < case.bound for case in CASES)
+    warned = sum(_warning(case) != "NOTHING" for case in FLAGGED)
+    refused = sum(_sentence(case) != "NOTHING" for case in REFUSED)
+    return _table(
+        [
+            ["cases", "number", "as they should be"],
+            ["computed, within their bound", str(len(CASES)), str(right)],
+            ["computed with a warning", str(len(FLAGGED)), str(warned)],
+            ["refused with a reason", str(len(REFUSED)), str(refused)],
+            ["tried with intent, each held by a test", str(len(HOLES)), str(len(HOLES))],
+        ]
+    )
 
 
 def _computed() -> str:

@@ -1,4 +1,7 @@
-"""Writes docs/seeds.md: every printed number of five published gear systems, the computed one, and what that is worth."""
+"""Writes docs/seeds.md: five published gear systems, their models, and how many of their printed numbers come out.
+
+The site has a row for every printed number, with the computed one and what that is worth.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ HEAD = """# Five published systems
 
 Five accounts of herringbone gear dynamics from the literature, each built as a model of [models/](../models) with the parts
 that any other model has. The accounts have misprints, lack data, and print numbers that do not follow from what they give.
-So every number of their tables stands here beside the computed one, with a verdict:
+So every number of their tables is put beside the computed one, with a verdict:
 
 | verdict | meaning |
 |---|---|
@@ -24,13 +27,13 @@ So every number of their tables stands here beside the computed one, with a verd
 | trend | the direction agrees, not the number |
 | not reproducible | and why; shown, not tuned away |
 
-`python -m validation.seeds` prints these rows, `python -m validation.seeds marine` those of one system. Rows at "follows"
-are not printed in the account but follow from its data; rows at "equations" name misprints, each shown to fail by a test in
-[tests/validation/test_seeds.py](../tests/validation/test_seeds.py); rows at "claim" are statements and figures without a
-number. A row on a motion tells where it starts, how long it settles and counts, and how many of its starts end in it: the
-static equilibrium and random states about it (`--initial-conditions 8`, say). Numbers of chaotic motions are means over the
-starts that end in chaos, with Student's interval of 99.7 % (4.5 standard errors for 8 starts); another processor gives others
-within it.
+The rows themselves are on the site; `python -m validation.seeds` prints them, `python -m validation.seeds marine` those of one
+system. Rows at "follows" are not printed in the account but follow from its data; rows at "equations" name misprints, each shown
+to fail by a test in [tests/validation/test_seeds.py](../tests/validation/test_seeds.py); rows at "claim" are statements and
+figures without a number. A row on a motion tells where it starts, how long it settles and counts, and how many of its starts end
+in it: the static equilibrium and random states about it (`--initial-conditions 8`, say). Numbers of chaotic motions are means
+over the starts that end in chaos, with Student's interval of 99.7 % (4.5 standard errors for 8 starts); another processor gives
+others within it.
 `python -m validation.seeds.kept` computes what takes runs piece by piece, tells the CPU seconds of each and goes on where it
 was interrupted. `python -m validation.seeds.settling` runs every labelled motion again after ten times the settling and tells
 which labels change and which numbers leave their error. Chaos from one start beside a motion that repeats from another may be a
@@ -145,12 +148,21 @@ every assumption of the set, so the rows after it show what other sets give.
 
 
 def pages() -> dict[str, str]:
-    """Return the page by its path."""
+    """Return the page with a line for each system, by its path."""
+    return {"docs/seeds.md": _page(whole=False)}
+
+
+def site_pages() -> dict[str, str]:
+    """The same page with a row for every printed number."""
+    return {"docs/seeds.md": _page(whole=True)}
+
+
+def _page(*, whole: bool) -> str:
     tables = {name: rows(name) for name in SYSTEMS}
     parts = [HEAD, _overview(tables)]
     for name, (title, text) in SYSTEMS.items():
-        parts.append(f"\n## {title}\n\n{text}\n\n{_table(tables[name])}")
-    return {"docs/seeds.md": "\n".join(parts)}
+        parts.append(f"\n## {title}\n\n{text}\n" + (f"\n{_table(tables[name])}" if whole else ""))
+    return "\n".join(parts)
 
 
 def _overview(tables: dict[str, list[Row]]) -> str:

@@ -9,15 +9,16 @@ import check
 from rotorgear.version import VERSION
 from tests.paths import ROOT
 
+HOOK = ROOT / "docs" / "machinery" / "package_page.py"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
 def hook() -> dict[str, object]:
     """The functions of the build hook, without hatchling, which only a build has."""
-    source = (ROOT / "hatch_build.py").read_text(encoding="utf-8")
+    source = HOOK.read_text(encoding="utf-8")
     source = source.partition("class CustomMetadataHook")[0].replace("from hatchling", "# from hatchling")
-    names: dict[str, object] = {"__file__": str(ROOT / "hatch_build.py")}
-    exec(compile(source, "hatch_build.py", "exec"), names)
+    names: dict[str, object] = {"__file__": str(HOOK)}
+    exec(compile(source, HOOK.name, "exec"), names)
     return names
 
 
@@ -57,5 +58,5 @@ def test_every_dependency_states_an_oldest_version_that_can_be_installed() -> No
 
 def test_the_source_archive_has_what_a_reader_of_it_needs() -> None:
     included = PROJECT["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
-    assert {"CONTRIBUTING.md", "CITATION.cff", "SECURITY.md", "hatch_build.py"} <= set(included)
+    assert {"CONTRIBUTING.md", "CITATION.cff", "SECURITY.md", "docs"} <= set(included)
     assert all((ROOT / name).exists() for name in included)
