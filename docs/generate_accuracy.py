@@ -107,7 +107,9 @@ OF_MODELS = f"""## Natural frequencies
 
 The first {MODES} modes that are not rigid, against the same model at accuracy {REFERENCE:g}: the largest true error and the
 largest estimate of the analysis itself, with the default accuracy. *Effectivity* is estimate over true error, smallest and
-largest over the modes whose true error is above {RESOLVED:g} and over all discretisations of the study; 1 is a perfect estimate.
+largest over the modes whose true error is above {RESOLVED:g} and over all discretisations of the study; 1 is a perfect
+estimate. Estimates of models with casings include the error of the casings' reduction, which the reference shares; with one
+element a segment a mode near another may be overestimated, as one of split_torque_journals is.
 """
 
 OF_ANALYSES = f"""## Estimates of all analyses
@@ -115,7 +117,8 @@ OF_ANALYSES = f"""## Estimates of all analyses
 An estimate is worth something when it can be held to a true error. Each study compares *the same quantity*: its error against
 a reference, and the estimate that the result states. Rows between {LOW:g} and {HIGH:g} are counted as within. Rows whose mesh
 can't follow a shape at all (estimate `inf`) have no ratio; nor have those whose error the reference does not resolve, or where
-nothing but rounding is left, as in statics, whose elements are exact: there "both below" says in how many the estimate is as small.
+nothing but rounding is left, as in statics, whose elements are exact: there "both below" says in how many the estimate is as
+small.
 
 The models `backlash_pair`, `torsion_chain`, `herringbone_pair_*` and `marine_*` have no shaft elements: but for their
 transients they have nothing to discretise, and error and estimate of every analysis are 0.

@@ -37,7 +37,7 @@ MODELS = {
         "mean stiffness c_gamma_alpha of ISO 6336-1, without ripple",
     ),
     "contact_line": Registered(
-        "rotorgear.gears.stiffness.lines:contact_line_stiffness",
+        "rotorgear.gears.stiffness.contact_lines:contact_line_stiffness",
         False,
         "that mean, spread in proportion to the length of the contact lines",
     ),

@@ -15,7 +15,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.errors import RotorgearError
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.layout.mesh_layout import MeshLayout
 

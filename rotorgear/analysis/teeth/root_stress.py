@@ -15,8 +15,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.helices import Cycle, solve_helices
 from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.outline import tooth_outline
-from rotorgear.gears.geometry.root_section import root_section
+from rotorgear.gears.geometry.outline import root_section, tooth_outline
 from rotorgear.gears.loaded.contact_points import patch_loads
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space

@@ -16,8 +16,7 @@ from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.loaded.contact_points import patch_loads
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.sector import clockwise

@@ -12,8 +12,7 @@ import math
 from dataclasses import replace
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.gears.geometry.involute import inverse_involute, involute
+from rotorgear.gears.geometry.geometry import GearGeometry, inverse_involute, involute
 
 
 def normal_thickness(g: GearGeometry) -> float:

@@ -10,8 +10,7 @@ import math
 from dataclasses import dataclass
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.gears.geometry.involute import inverse_involute, involute
+from rotorgear.gears.geometry.geometry import GearGeometry, inverse_involute, involute
 
 
 def _require_mates(g1: GearGeometry, g2: GearGeometry) -> None:

@@ -1,12 +1,16 @@
-"""Loaded tooth contact of one helix over the mesh cycle: positions, slices, compliance of all of them, and the sweep.
+(
+    """Loaded tooth contact of one helix over the mesh cycle: positions, slices, compliance of all of them, and the sweep.
 
 Transmission error and stiffness are transverse, along the line of action: k = F_bt / (delta - delta_0), delta_0 being the one
 without load; the tangent stiffness is its derivative dF_bt / d delta at the load.
 """
+    ""
+)
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,8 +22,23 @@ from rotorgear.gears.loaded.loaded_contact import (
     tangent_compliance,
 )
 from rotorgear.gears.loaded.settled_contacts import PASSES, settled
-from rotorgear.gears.loaded.tooth_contact import ContactProblem
-from rotorgear.progress import Progress, silent
+from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.progress import Progress, part_of, silent
+
+_kept_problem = lru_cache(maxsize=8)(contact_problem)
+
+
+def loaded_cycle(
+    teeth: ToothPair, load: float, positions: np.ndarray, progress: Progress = silent
+) -> tuple[ContactProblem, MeshCycle]:
+    """Loaded contact of one helix at positions u (p,) for F_bt = load (N); the compliance comes first."""
+    # The compliance takes most of the time. It is computed here, with progress, and kept by its own key; the
+    # second call only puts the problem together, and keeps it by the teeth alone (a listener is no key).
+    contact_problem(teeth, part_of(progress, 0.0, 0.8))
+    problem = _kept_problem(teeth)
+    return problem, mesh_cycle(problem, load, positions, part_of(progress, 0.8, 1.0))
+
 
 # They are followed a little farther than they touch, so that the next pass does not ask for more.
 _MORE_BEYOND = 1.05

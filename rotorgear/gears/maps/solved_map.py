@@ -1,6 +1,6 @@
 """The contact map of a tooth pair: the contact solved over positions and loads, and what the map is wrong by.
 
-Slices and compliances of a position serve several loads (`map_loads.py`, `map_contacts.py`). In space those of a spur pair serve
+Slices and compliances of a position serve several loads (`map_positions.load_groups`). In space those of a spur pair serve
 the loads between two bounds, since patches follow the load; what their change moves at such a bound fades away towards the next
 one. Slices of a helical pair serve all loads, and its patches all but a few.
 
@@ -9,27 +9,235 @@ go and where the curve of the working load needs them; those of a helical pair, 
 by cubics at more even positions, which the map keeps (`map_positions.py`).
 
 With pitch errors, period n has the pairs whose teeth are n ahead. Periods in which the same errors touch are solved once.
+
+A column holds approach, slope and moment at all positions under one load, with the patches of the largest load of its group. Each
+position goes down from its largest load, and every solution begins with what those above it lead to.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from rotorgear.gears.loaded.mesh_cycle import mesh_cycle
-from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches
+from rotorgear.gears.loaded.contact_points import Slices, contact_slices
+from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact, solve_many
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
+from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches, settled, with_least_patches
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.maps.contact_map import ContactMap
-from rotorgear.gears.maps.map_columns import Column, faded, map_columns, with_start
-from rotorgear.gears.maps.map_contacts import above, cosine, of_period_ahead, up_to
-from rotorgear.gears.maps.map_loads import families, load_groups
-from rotorgear.gears.maps.map_periods import errors_by_period
-from rotorgear.gears.maps.map_positions import MapPositions, even_positions, map_positions
+from rotorgear.gears.maps.map_positions import (
+    MapPositions,
+    errors_by_period,
+    even_positions,
+    families,
+    load_groups,
+    map_positions,
+)
 from rotorgear.gears.maps.map_store import kept_map
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, listener, part_of
+
+# Positions that tell how far corners touch. Where they touch farther than was thought, they are followed a little farther still.
+_TELLING = 12
+_FARTHER = 1.05
+
+
+def cosine(problem: ContactProblem) -> float:
+    """cos b_b: F_bt = F_n cos b_b."""
+    return float(np.cos(problem.line.base_helix_angle))
+
+
+def up_to(
+    problem: ContactProblem, cycle: MeshCycle, load: float, family: tuple[tuple[float, ...], ...]
+) -> list[tuple[tuple[float, ...], Settled]]:
+    """Groups of rising multiples of a force (N), the last of which is that of the cycle, and contacts on its slices."""
+    last = Settled(cycle.contacts, cycle.states, cycle.patch)
+    if len(family) == 1:
+        return [(family[0], last)]
+    gap = problem.gap(cycle.slices)
+    below = with_least_patches(problem, cycle.slices, gap, last)
+    found = []
+    for group in family[:-1]:
+        below = settled(problem, cycle.slices, gap, load * group[-1], known=below)
+        found.append((group, below))
+    return [*found, (family[-1], last)]
+
+
+def above(
+    problem: ContactProblem, load: float, family: tuple[tuple[float, ...], ...], place: np.ndarray, progress: Progress
+) -> tuple[Slices, list[tuple[tuple[float, ...], Settled]]]:
+    """Slices that reach as far as corners touch under the largest of the forces, and groups with their contacts.
+
+    Groups end before the first one under whose largest force the contact is no line.
+
+    Args:
+        problem: the helix.
+        load: working force (N).
+        family: groups of rising multiples of it.
+        place: (p,) positions.
+        progress: told how far it is.
+
+    Raises:
+        WideContactError: there is none, or it is no larger than the working one.
+    """
+    reach = corner_reach(problem, load * family[-1][-1] * cosine(problem), place[:: max(1, len(place) // _TELLING)])
+    while True:
+        slices = contact_slices(problem.line, place, problem.width, problem.slices, reach, stations=problem.uncoupled)
+        gap = problem.gap(slices)
+        found: list[tuple[tuple[float, ...], Settled]] = []
+        for group in family:
+            try:
+                found += _contacts(problem, slices, gap, load, group, found[-1][1] if found else None, progress)
+            except WideContactError:
+                if not found or group[-1] < 1.0 + 1e-9:
+                    raise
+                break
+        deflection = max(state.approach for state in found[-1][1].states) - float(gap.min())
+        wanted = beyond_line(problem, deflection / cosine(problem) + problem.largest_gap)
+        if wanted[0] <= reach[0] and wanted[1] <= reach[1]:
+            return slices, found
+        # Rare: the positions that told the reach missed where most is touched.
+        reach = (max(reach[0], _FARTHER * wanted[0]), max(reach[1], _FARTHER * wanted[1]))
+
+
+def _contacts(
+    problem: ContactProblem,
+    slices: Slices,
+    gap: np.ndarray,
+    load: float,
+    group: tuple[float, ...],
+    below: Settled | None,
+    progress: Progress,
+) -> list[tuple[tuple[float, ...], Settled]]:
+    """A group and its contacts, which grow from those `below` it.
+
+    Where patches of oblique lines change within it, each load by itself on those that it asks for.
+    """
+    if problem.oblique and below is None:
+        below = settled(problem, slices, gap, load * group[0], progress)
+    last = settled(problem, slices, gap, load * group[-1], progress, below)
+    if not problem.oblique or below is None or np.array_equal(last.patch, below.patch):
+        return [(group, last)]
+    found = []
+    for factor in group[:-1]:
+        below = settled(problem, slices, gap, load * factor, progress, below)
+        found.append(((factor,), below))
+    return [*found, (group[-1:], last)]
+
+
+def of_period_ahead(problem: ContactProblem, slices: Slices, commonest: Settled, load: float, ahead: int) -> Settled:
+    """Contacts of the period so many after the commonest, under a normal force (N)."""
+    if not any(flank.single_teeth for flank in problem.flanks):
+        return commonest
+    return settled(problem, slices, problem.gap(slices, ahead), load, known=commonest)
+
+
+# Change of the forces over the load in the last round: 1e-7 of the approach is left at most, and loads and positions lie farther
+# apart than that.
+_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Column:
+    """Approach along the normal (p,) in m, its slope d delta / dF (p,) in m/N, moment (p,) in N m, at one load."""
+
+    approach: np.ndarray
+    slope: np.ndarray
+    moment: np.ndarray
+
+
+def map_columns(slices: Slices, found: Settled, loads: list[float], *, few: bool) -> list[Column]:
+    """Columns at rising normal forces (N), the contacts being settled under the last one.
+
+    Args:
+        slices: of all positions.
+        found: the contacts.
+        loads: normal forces.
+        few: whether a tooth pair has one slice: then all positions and loads are solved at once.
+    """
+    if few:
+        return _few_slices(found.contacts, loads)
+    place = slices.z @ slices.weight
+    rows = [
+        _row(contact, state, loads, place[slices.at(i)])
+        for i, (contact, state) in enumerate(zip(found.contacts, found.states, strict=True))
+    ]
+    return [Column(*(np.array([row[j][i] for row in rows]) for i in range(3))) for j in range(len(loads))]
+
+
+def _few_slices(contacts: Sequence[PositionContact], loads: list[float]) -> list[Column]:
+    """Columns of a pair that has one slice for a tooth pair: all positions with as many pairs, and all loads, at once."""
+    found = np.empty((2, len(contacts), len(loads)))
+    for n in {len(contact.gap) for contact in contacts}:
+        which = [i for i, contact in enumerate(contacts) if len(contact.gap) == n]
+
+        def stacked(name: str, which: list[int] = which) -> np.ndarray:
+            return np.repeat(np.stack([getattr(contacts[i], name) for i in which]), len(loads), axis=0)
+
+        many = replace(
+            contacts[which[0]],
+            compliance=stacked("compliance"),
+            gap=stacked("gap"),
+            length=stacked("length"),
+            log_width=stacked("log_width"),
+            radius=stacked("radius"),
+        )
+        approach, tangent = solve_many(many, np.tile(loads, len(which)))
+        found[:, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads))
+    return [Column(found[0, :, j], found[1, :, j], np.zeros(len(contacts))) for j in range(len(loads))]
+
+
+def _row(
+    contact: PositionContact, state: ContactState, loads: list[float], place: np.ndarray
+) -> list[tuple[float, float, float]]:
+    """Approach, its slope and the moment at rising loads of one position: down from the largest, each from those above.
+
+    `place` (n,) is that of each slice from the middle of the face (m), `state` the solution at the largest load.
+    """
+    # A slice whose gap is wider than the approach at the largest load touches at none.
+    near = np.flatnonzero((contact.gap < state.approach) | (state.force > 0.0))
+    fewer = replace(
+        contact,
+        compliance=contact.compliance[np.ix_(near, near)],
+        gap=contact.gap[near],
+        length=contact.length[near],
+        log_width=contact.log_width[near],
+        radius=contact.radius[near],
+    )
+    force = state.force[near]
+    # How the forces change with the load, from the two loads above; below the first one they are taken in proportion.
+    rate = force / loads[-1]
+    at = loads[-1]
+    found = [(state.approach, 1.0 / state.tangent, float(state.force @ place))]
+    for load in reversed(loads[:-1]):
+        start = np.maximum(force + rate * (load - at), 0.0)
+        state = solve_contact(fewer, load, start, _TOLERANCE)
+        rate = (force - state.force) / (at - load)
+        force = state.force
+        at = load
+        found.append((state.approach, 1.0 / state.tangent, float(state.force @ place[near])))
+    return found[::-1]
+
+
+def faded(columns: list[Column], below: Column, factors: list[float]) -> list[Column]:
+    """Columns above a bound, the first of them at it, led from the value `below` it to their own at the last load."""
+    jump = columns[0].approach - below.approach
+    turn = columns[0].moment - below.moment
+    left = [(factors[-1] - factor) / (factors[-1] - factors[0]) for factor in factors[1:]]
+    return [
+        Column(column.approach - jump * share, column.slope, column.moment - turn * share)
+        for column, share in zip(columns[1:], left, strict=True)
+    ]
+
+
+def with_start(slope: np.ndarray, approach: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Slopes (p, l) with that at no load: of the parabola through the first two points with the slope at the second."""
+    first = 2.0 * (approach[:, 1] - approach[:, 0]) / loads[1] - slope[:, 0]
+    return np.column_stack([np.maximum(first, slope[:, 0]), slope])
+
 
 # Positions that are solved in a base pitch. Spur pairs have a kink wherever a tooth pair comes or goes: even positions in the
 # plane, chosen ones in space; the curves of helical ones are smooth, but for ripples where lines pass from one layer of

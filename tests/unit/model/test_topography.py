@@ -10,7 +10,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.gears.geometry.outline import tooth_outline
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.model.layout.mesh_layout import mirrored
 from tests.unit.analysis.geared import pair_file
 

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 import rotorgear as rg
 from rotorgear.analysis.static.along_faces import misalignments
 from rotorgear.analysis.static.solve import equilibrate
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.results.static import StaticResult
 from rotorgear.system.system import System
 

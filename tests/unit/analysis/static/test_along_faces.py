@@ -16,8 +16,7 @@ from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.task import prepare
 from rotorgear.errors import ModelError
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.system.system import System
 from tests.contract.small_models import clamp, lumped_gear, lumped_pair

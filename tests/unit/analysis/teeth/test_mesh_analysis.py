@@ -15,8 +15,7 @@ from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.teeth.errors import error_parts
 from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
 from rotorgear.analysis.teeth.request import mesh_request
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe

@@ -11,8 +11,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.gears.geometry.outline import tooth_outline
-from rotorgear.gears.geometry.root_section import root_section, tangent_angle
+from rotorgear.gears.geometry.outline import root_section, tangent_angle, tooth_outline
 from tests.unit.analysis.geared import pair_file
 from tests.unit.gears.tooth_pairs import spur
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 
 CHANGES: dict[str, dict[str, Any]] = {
     "bare": {},

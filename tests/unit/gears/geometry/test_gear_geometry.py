@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.geometry import GearGeometry, check_gear
-from rotorgear.gears.geometry.involute import inverse_involute, involute
+from rotorgear.gears.geometry.geometry import GearGeometry, check_gear, inverse_involute, involute
 from rotorgear.gears.geometry.pair import (
     pair_geometry,
 )

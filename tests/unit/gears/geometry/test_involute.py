@@ -8,7 +8,7 @@ import mpmath
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.involute import inverse_involute, involute
+from rotorgear.gears.geometry.geometry import inverse_involute, involute
 
 deg = math.radians
 

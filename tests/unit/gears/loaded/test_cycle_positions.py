@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.gears.loaded.contact_events import contact_events, known_events
 from rotorgear.gears.loaded.cycle_positions import sampled
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import mesh_cycle, with_more
+from rotorgear.gears.loaded.helix_cycles import contact_events, known_events
+from rotorgear.gears.loaded.mesh_cycle import loaded_cycle, mesh_cycle, with_more
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from tests.unit.gears.tooth_pairs import LOAD, spur
 

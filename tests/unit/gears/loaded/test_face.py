@@ -10,8 +10,7 @@ import pytest
 from rotorgear.gears.loaded.face import load_per_width, loaded_face
 from rotorgear.gears.loaded.helix_cycles import helix_cycle
 from rotorgear.gears.loaded.loaded_contact import solve_contact
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.mesh_layout import mirrored
 from tests.unit.gears.tooth_pairs import LOAD, WIDTH, cycle, helical, pair

@@ -12,8 +12,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.loaded.contact_points import contact_slices
 from rotorgear.gears.loaded.loaded_contact import PositionContact, hertz_half_width, solve_contact
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import corner_reach, mesh_cycle
+from rotorgear.gears.loaded.mesh_cycle import corner_reach, loaded_cycle, mesh_cycle
 from rotorgear.gears.loaded.settled_contacts import settled
 from rotorgear.gears.loaded.tooth_contact import contact_problem, line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair

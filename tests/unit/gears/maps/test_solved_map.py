@@ -11,7 +11,7 @@ import pytest
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
 from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.maps.map_store import kept_map

@@ -18,11 +18,10 @@ from rotorgear.gears.stiffness.contact_lines import (
     contact_line_length,
     mean_contact_line_length,
 )
-from rotorgear.gears.stiffness.energy import slice_stiffness
+from rotorgear.gears.stiffness.energy import slice_stiffness, tooth_compliance
 from rotorgear.gears.stiffness.given import given_stiffness
 from rotorgear.gears.stiffness.iso import iso_tooth_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import ToothBody, ToothPair
-from rotorgear.gears.stiffness.tooth_beam import tooth_compliance
 from rotorgear.gears.stiffness_models import mesh_stiffness
 
 deg = math.radians
@@ -119,7 +118,7 @@ def test_the_energy_of_a_tooth_is_that_of_its_outline_summed_in_thin_slabs() -> 
     whole = float(tooth_compliance(outline, body, np.array([roll]))[0])
     assert whole > beam  # the ring gives on top of it
     assert float(tooth_compliance(outline, stiff, np.array([roll]))[0]) / whole == pytest.approx(0.5, rel=1e-12)
-    from rotorgear.gears.stiffness.tooth_beam import _beam, _load
+    from rotorgear.gears.stiffness.energy import _beam, _load
 
     inclination, cut = _load(outline, np.array([roll]))
     assert float(_beam(outline, body, np.array([roll]), inclination, cut)[0]) / beam == pytest.approx(1.0, rel=2e-4)

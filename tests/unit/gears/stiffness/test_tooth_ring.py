@@ -9,8 +9,8 @@ import pytest
 
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.stiffness.energy import tooth_compliance
 from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
-from rotorgear.gears.stiffness.tooth_beam import tooth_compliance
 
 # Sainsot, Velex and Duverger 2004, table 1: A B C D E F for L, M, P, Q.
 TABLE = {

@@ -38,7 +38,7 @@ def test_sizes_are_those_of_the_superelement() -> None:
 def test_what_does_not_fit_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path))
     forget()
-    monkeypatch.setattr("rotorgear.gears.tooth_fe.forecast.free_memory", lambda: 0.5e9)
+    monkeypatch.setattr("rotorgear.gears.tooth_fe.compliance_model.free_memory", lambda: 0.5e9)
     with pytest.raises(rg.AnalysisError, match=r"would take 0\.8\d GB of memory, and 0\.5 GB are free: take tooth_fe"):
         rg.mesh(rg.loads(pair_file(20.86, "helical", mesh='stiffness = "tooth_fe"')))
     assert not list(tmp_path.iterdir())
