@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
-from pathlib import Path
+from dataclasses import fields, replace
 from typing import TypeVar
 
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
-from rotorgear.casings.kept_bodies import key_of, path_of, read_body, read_wheel, write_body, write_wheel
-from rotorgear.casings.reduced_body import ReducedBody
+from rotorgear.casings.reduced_body import ReducedBody, Surface
 from rotorgear.casings.reduction import reduce
 from rotorgear.casings.settings import BEYOND, CasingSettings
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.casings.wheel_reduction import reduce_wheel
+from rotorgear.disk_cache import entry_path, read_entry, write_entry
 from rotorgear.errors import AnalysisError
+from rotorgear.fingerprint import fingerprint
 from rotorgear.progress import Progress, part_of, silent
 
 # A process keeps this many bodies in memory; one takes some ten MB, mostly its surface.
 _MOST_KEPT = 8
 _KEPT: dict[str, ReducedBody | ReducedWheel] = {}
+# Where bodies are computed: what other sources kept is passed over.
+_MAKERS = ("casings",)
+_SURFACE = "surface."
 
 Body = TypeVar("Body", ReducedBody, ReducedWheel)
 
@@ -42,7 +47,7 @@ def reduced_casing(settings: CasingSettings, fmax: float | None = None, progress
     def computed(fe: FiniteElementBody, tell: Progress) -> ReducedBody:
         return reduce(fe, modes_to, tell)[0]
 
-    return _kept(settings, modes_to, (read_body, write_body), computed, progress)
+    return _kept(ReducedBody, settings, modes_to, computed, progress)
 
 
 def reduced_gear_body(settings: CasingSettings, progress: Progress = silent) -> ReducedWheel:
@@ -51,7 +56,7 @@ def reduced_gear_body(settings: CasingSettings, progress: Progress = silent) -> 
     def computed(fe: FiniteElementBody, tell: Progress) -> ReducedWheel:
         return reduce_wheel(fe, settings.modes_to, tell)
 
-    return _kept(settings, settings.modes_to, (read_wheel, write_wheel), computed, progress)
+    return _kept(ReducedWheel, settings, settings.modes_to, computed, progress)
 
 
 def keep(settings: CasingSettings, body: ReducedBody) -> None:
@@ -59,25 +64,39 @@ def keep(settings: CasingSettings, body: ReducedBody) -> None:
     _KEPT[key_of(settings, settings.modes_to)] = body
 
 
+def key_of(settings: CasingSettings, modes_to: float | None) -> str:
+    """All that a body depends on, as a text: files count by their contents."""
+    files = tuple((part, hashlib.sha256(path.read_bytes()).hexdigest()) for part, path in settings.files)
+    return f"{fingerprint(*_MAKERS)} {files} {modes_to!r} {replace(settings, files=())!r}"
+
+
 def _kept(
+    kind: type[Body],
     settings: CasingSettings,
     modes_to: float | None,
-    disk: tuple[Callable[[Path, str], Body | None], Callable[[Path, str, Body], None]],
     compute: Callable[[FiniteElementBody, Progress], Body],
     progress: Progress,
 ) -> Body:
     for _, path in settings.files:
         if not path.is_file():  # the reader says it with the nearest name
             finite_element_body(settings)
-    read, write = disk
     key = key_of(settings, modes_to)
     body = _KEPT.get(key)
     if body is None:
-        body = read(path_of(key), key)
-        if body is None:
+        path = entry_path("bodies", kind.__name__, key)
+        stored = read_entry(path, key)
+        if stored is None:
             fe = finite_element_body(settings, part_of(progress, 0.0, 0.3))
             body = compute(fe, part_of(progress, 0.3, 1.0))
-            write(path_of(key), key, body)
+            values = {
+                one.name: getattr(body, one.name) for one in fields(body) if one.name not in ("seconds", "surface")
+            }
+            assert body.surface is not None, "a body of a mesh has a surface"
+            write_entry(path, key, values | {_SURFACE + name: value for name, value in vars(body.surface).items()})
+        else:
+            surface = Surface(*(stored.pop(_SURFACE + one.name) for one in fields(Surface)))
+            # A casing that is held has no rigid motions.
+            body = kind(**({"rigid": None} if kind is ReducedBody else {}) | stored, surface=surface)
         while len(_KEPT) >= _MOST_KEPT:
             _KEPT.pop(next(iter(_KEPT)))  # the oldest: dicts keep their order
         _KEPT[key] = body

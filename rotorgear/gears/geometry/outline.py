@@ -23,6 +23,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
@@ -76,8 +77,6 @@ def _point(outline: ToothOutline, share: np.ndarray) -> tuple[np.ndarray, np.nda
 
 def root_section(outline: ToothOutline) -> RootSection:
     """Section at the 30 degree tangent of a tooth."""
-    from scipy.optimize import brentq  # outlines alone do without it
-
     ends = (2.0 * _STEP, 1.0 - 2.0 * _STEP)
     steeper = [tangent_angle(outline, share) - TANGENT for share in ends]
     # A short fillet may have no such tangent: then its nearer end stands for it.

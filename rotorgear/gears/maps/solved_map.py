@@ -16,12 +16,17 @@ position goes down from its largest load, and every solution begins with what th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import hashlib
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
+from rotorgear.disk_cache import entry_path, read_entry, write_entry
+from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
@@ -36,10 +41,13 @@ from rotorgear.gears.maps.map_positions import (
     load_groups,
     map_positions,
 )
-from rotorgear.gears.maps.map_store import kept_map
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, listener, part_of
 
+# Maps that other sources kept are passed over.
+_MAKERS = ("gears",)
+# CPU seconds from which on a map is worth a file.
+_WORTH = 1.0
 # Positions that tell how far corners touch. Where they touch farther than was thought, they are followed a little farther still.
 _TELLING = 12
 _FARTHER = 1.05
@@ -298,6 +306,33 @@ def _kept(teeth: ToothPair, load: float, positions: int | None, near: bool) -> C
         return judged(solved_map(problem, load, map_positions(teeth, working, count), groups, told), problem)
 
     return kept_map((teeth, load, positions, near), solve)
+
+
+def kept_map(key: Any, solve: Callable[[], ContactMap]) -> ContactMap:
+    """The map of a key from disk, or solved, and kept where that took as long as a file is worth."""
+    text = f"{fingerprint(*_MAKERS)} {_text(key)}"
+    path = entry_path("teeth", "map", text)
+    stored = read_entry(path, text)
+    if stored is not None:
+        return ContactMap(**stored)
+    start = time.process_time()
+    found = solve()
+    if time.process_time() - start >= _WORTH:
+        assert found.compliance is not None
+        write_entry(path, text, {one.name: getattr(found, one.name) for one in fields(found)})
+    return found
+
+
+def _text(value: Any) -> str:
+    """All that a value holds, arrays in full by their hash: a repr would leave out the middle of a long one."""
+    if is_dataclass(value):
+        inside = ", ".join(f"{field.name}={_text(getattr(value, field.name))}" for field in fields(value))
+        return f"{type(value).__name__}({inside})"
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype} {value.shape} {hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()}"
+    if isinstance(value, tuple | list):
+        return f"({', '.join(_text(one) for one in value)})"
+    return repr(value)
 
 
 def solved_map(

@@ -17,17 +17,20 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
 
+from rotorgear.disk_cache import entry_path, read_entry, write_entry
 from rotorgear.errors import AnalysisError
+from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.geometry.blank import BlankShape, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
 from rotorgear.gears.tooth_fe.blank_section import AXIAL_SIDE, BlankSection, torsional_flexibility
-from rotorgear.gears.tooth_fe.compliance_cache import cached
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.mesh import LEAST_INNER, PitchMesh, pitch_mesh
 from rotorgear.gears.tooth_fe.points import MeshSize
@@ -38,6 +41,11 @@ from rotorgear.gears.tooth_fe.wheel_sector import SEATS, WheelSector, even_wheel
 from rotorgear.memory import free_memory
 from rotorgear.progress import Progress, part_of, silent
 
+# Where compliances are computed: what other sources kept is passed over.
+MAKERS = ("gears/tooth_fe",)
+# A process keeps this many compliances in memory; one in 3D takes several MB.
+_MOST_KEPT = 16
+_KEPT: dict[str, GearCompliance] = {}
 # The largest matrix stands in memory as often, copies included; and what the program takes by itself (bytes).
 _COPIES = 3.3
 _PROGRAM = 150e6
@@ -261,6 +269,26 @@ def gear_compliance(key: ComplianceKey, progress: Progress = silent, *, fresh: b
         MissingExtraError: scikit-fem is not installed and the gear is not known yet.
     """
     return _computed(key, progress) if fresh else cached(key, lambda: _computed(key, progress))
+
+
+def cached(key: Any, compute: Callable[[], GearCompliance]) -> GearCompliance:
+    """The compliance of a frozen key from memory, from disk, or computed and kept."""
+    text = f"{fingerprint(*MAKERS)} {key!r}"
+    if text not in _KEPT:
+        path = entry_path("teeth", "gear", text)
+        stored = read_entry(path, text)
+        compliance = compute() if stored is None else GearCompliance(**stored)
+        if stored is None:
+            write_entry(path, text, vars(compliance))
+        while len(_KEPT) >= _MOST_KEPT:
+            _KEPT.pop(next(iter(_KEPT)))  # the oldest: dicts keep their order
+        _KEPT[text] = compliance
+    return _KEPT[text]
+
+
+def forget() -> None:
+    """Drop what is kept in memory; the disk stays."""
+    _KEPT.clear()
 
 
 def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.compiled_once import CompiledOnce
+from rotorgear.disk_cache import user_cache_folder
 from rotorgear.errors import MissingExtraError
 from rotorgear.fingerprint import fingerprint
 
@@ -48,9 +49,8 @@ def cache_folder() -> Path | None:
     may come from. It lies below NUMBA_CACHE_DIR, ROTORGEAR_CACHE or the user's cache folder, else in the temporary folder.
     """
     given = numba.config.CACHE_DIR or os.environ.get("ROTORGEAR_CACHE")
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or "~/.cache"
-    likely = Path(given) if given else Path(base).expanduser() / "rotorgear"
-    for parent in (likely / "compiled", Path(tempfile.gettempdir()) / "rotorgear-compiled"):
+    likely = Path(given) / "compiled" if given else user_cache_folder("compiled")
+    for parent in (likely, Path(tempfile.gettempdir()) / "rotorgear-compiled"):
         folder = parent / fingerprint(*COMPILED)
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -14,8 +14,7 @@ from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact
 from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
-from rotorgear.gears.maps.map_store import kept_map
-from rotorgear.gears.maps.solved_map import contact_map
+from rotorgear.gears.maps.solved_map import contact_map, kept_map
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import LOAD, cycle, helical, pair, spur
@@ -151,7 +150,7 @@ def test_too_many_differing_periods_are_refused() -> None:
 
 def test_a_kept_map_is_read_again_and_another_key_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path))
-    monkeypatch.setattr("rotorgear.gears.maps.map_store._WORTH", 0.0)
+    monkeypatch.setattr("rotorgear.gears.maps.solved_map._WORTH", 0.0)
     u = np.arange(4) / 4
     long = np.zeros(5000)
     made = ContactMap(u, 1, np.array([0.0, 1.0]), np.ones((4, 2)), ("a note",), np.ones((4, 2)))
