@@ -14,8 +14,8 @@ from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mechanisms import no_hinges, no_mechanism
 from rotorgear.casings.mesh_file import read_mesh
-from rotorgear.casings.motions import rigid_motions
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
+from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.casings.settings import CasingSettings, MountSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
 from rotorgear.casings.split import split

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.casings.joins import Joined
-from rotorgear.casings.motions import rigid_motions
+from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.solid_mesh import SolidMesh
 from rotorgear.errors import AnalysisError

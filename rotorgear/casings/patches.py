@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.casings.motions import rigid_motions
+from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.casings.solid_mesh import SolidMesh
 from rotorgear.errors import AnalysisError
 from rotorgear.quantity import millimetres, nearest

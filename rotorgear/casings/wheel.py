@@ -3,9 +3,9 @@
     u = R x + E p,    x: six motions of the gear's place on its shaft,   p: elastic coordinates, all with the bore at rest
 
 The coordinates are modes of the body on its bore, of modal mass 1: K = diag(ω²) acts on p alone. Each belongs to a number n of
-nodal diameters, those of n > 0 in pairs like cos nθ and sin nθ, so that a pair seen from the ground is a pair again, turned by n
-times the angle of the body: with the matrices of `casings/spin.py` the system does not depend on time. In the axes of the gear: z
-along its shaft, the origin at its place.
+nodal diameters, those of n > 0 in pairs like cos nθ and sin nθ, so that a pair seen from the ground is a pair again, turned by
+n times the angle of the body: with the matrices of `casings/wheel_reduction.py` the system does not depend on time. In the
+axes of the gear: z along its shaft, the origin at its place.
 """
 
 from __future__ import annotations

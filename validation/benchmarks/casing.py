@@ -20,9 +20,8 @@ import numpy as np
 from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduction import reduce
+from rotorgear.casings.reduction import held_modes, reduce
 from rotorgear.casings.settings import CasingSettings
-from rotorgear.casings.survey import held_modes
 from rotorgear.solvers.sparse.large import best_solver
 
 ALUMINIUM = Elastic(71e9, 0.33, 2700.0)

@@ -17,8 +17,8 @@ import numpy as np
 
 from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.fe_body import finite_element_body
+from rotorgear.casings.reduction import free_modes
 from rotorgear.casings.settings import CasingSettings
-from rotorgear.casings.survey import free_modes
 
 STEEL = Elastic(206e9, 0.3, 7850.0)
 SIZE = (0.1, 0.06, 0.2)

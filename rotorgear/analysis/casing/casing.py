@@ -11,9 +11,8 @@ from rotorgear.casings.constrained import ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.reduced_body import ReducedBody
-from rotorgear.casings.reduction import reduce
+from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce, rigid_residual
 from rotorgear.casings.settings import BEYOND
-from rotorgear.casings.survey import MeshModes, free_modes, held_modes, rigid_residual
 from rotorgear.errors import AnalysisError
 from rotorgear.memory import largest_memory
 from rotorgear.model.layout.casings import casing_settings

@@ -14,9 +14,8 @@ from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.casings.assembly import assemble
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduction import reduce
+from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce
 from rotorgear.casings.split import without_middles
-from rotorgear.casings.survey import MeshModes, free_modes, held_modes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.model.model import Model

@@ -15,9 +15,9 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.casings.casing import keep
+from rotorgear.casings.constrained import lowest_modes
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.modes import lowest_modes
 from rotorgear.casings.reduction import reduce_in_basis
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.model.model import Model

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.casings.motions import rigid_motions
+from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.elements.shaft import inner_fields
 from rotorgear.results.modal import NodeTable, body_name
 from rotorgear.system.groups import alike, element_data, shaft_dofs

@@ -11,7 +11,7 @@ from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping
 from rotorgear.casings.casing import forget
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.file_mesh import NamedSet
-from rotorgear.casings.motions import rigid_motions
+from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

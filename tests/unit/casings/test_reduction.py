@@ -14,9 +14,8 @@ import rotorgear as rg
 from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.fe_body import finite_element_body, mass_properties
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduction import reduce
+from rotorgear.casings.reduction import free_modes, held_modes, reduce, rigid_residual
 from rotorgear.casings.settings import CasingSettings, JoinSettings, MountSettings
-from rotorgear.casings.survey import free_modes, held_modes, rigid_residual
 from tests.unit.casings.blocks import block, write_inp
 
 pytest.importorskip("meshio")

@@ -7,8 +7,8 @@ import pytest
 
 from rotorgear.casings.assembly import Elastic, assemble
 from rotorgear.casings.file_mesh import FileMesh, NamedSet
-from rotorgear.casings.motions import rigid_motions
 from rotorgear.casings.patches import by_set
+from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.casings.solid_mesh import merged, solid_mesh
 from rotorgear.errors import AnalysisError
 from tests.unit.casings.blocks import block

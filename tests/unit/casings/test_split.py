@@ -10,9 +10,9 @@ import pytest
 
 from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.patches import Cylinder, by_cylinder
+from rotorgear.casings.reduction import free_modes
 from rotorgear.casings.solid_mesh import SolidMesh, jacobians, solid_mesh
 from rotorgear.casings.split import split, without_middles
-from rotorgear.casings.survey import free_modes
 from tests.unit.casings.blocks import block
 from tests.unit.casings.test_reduction import held_at_its_foot, settings
 

@@ -117,8 +117,8 @@ def test_waves_on_a_disk_that_turns_split_by_twice_their_diameters_times_the_spe
 def test_centrifugal_stresses_stiffen_a_membrane_as_lamb_and_southwell_found(tmp_path: Path) -> None:
     """A full disk without bending stiffness: ω²/W² = (n (n + 2) (3 + ν) - n² (1 + 3 ν)) / 8, with w = r^n cos nθ."""
     from rotorgear.casings.constrained import Constrained, ElasticBody
-    from rotorgear.casings.motions import rigid_motions
-    from rotorgear.casings.spin import spin_integrals
+    from rotorgear.casings.reduced_body import rigid_motions
+    from rotorgear.casings.wheel_reduction import spin_integrals
 
     fe = body(tmp_path, ring((1e-4, 0.02, 0.04, 0.07, 0.1), (-5e-4, 5e-4), 24))
     R = rigid_motions(fe.mesh.points)
