@@ -17,21 +17,17 @@ from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
-from rotorgear.model.parts.bodies import Disk, PointMass
 from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
-from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
-from rotorgear.model.parts.flank import Flank, ToothFeTable
-from rotorgear.model.parts.gear import Gear, GearBody
-from rotorgear.model.parts.load import Load, LoadHistory
-from rotorgear.model.parts.mesh import Mesh
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.operation import ModelDamping, Operation, Point
-from rotorgear.model.parts.scatter import Scatter
-from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
+from rotorgear.model.parts.gear import Flank, Gear, GearBody
+from rotorgear.model.parts.load import Load, LoadHistory, Unbalance
+from rotorgear.model.parts.mesh import CornerImpact, ErrorHarmonic, Mesh, StiffnessHarmonic, ToothFeTable
+from rotorgear.model.parts.operation import ModelDamping, Operation, Point, Scatter
+from rotorgear.model.parts.shaft import LIBRARY, Disk, Material, PointMass, Section, Shaft
 from rotorgear.model.parts.supports import (
     Bearing,
     Coupling,
     DampingMatrix,
+    NonlinearElement,
     Pedestal,
     StiffnessMatrix,
     Support,

@@ -17,8 +17,8 @@ from rotorgear.model.parts.operation import Point as Point
 from rotorgear.model.parts.shaft import Material as Material
 from rotorgear.model.parts.shaft import Shaft as Shaft
 from rotorgear.model.parts.shaft import Section as Section
-from rotorgear.model.parts.bodies import Disk as Disk
-from rotorgear.model.parts.bodies import PointMass as PointMass
+from rotorgear.model.parts.shaft import Disk as Disk
+from rotorgear.model.parts.shaft import PointMass as PointMass
 from rotorgear.model.parts.gear import Gear as Gear
 from rotorgear.model.parts.gear import GearBody as GearBody
 from rotorgear.model.parts.mesh import Mesh as Mesh
@@ -29,10 +29,10 @@ from rotorgear.model.parts.supports import Support as Support
 from rotorgear.model.parts.supports import Coupling as Coupling
 from rotorgear.model.parts.supports import StiffnessMatrix as StiffnessMatrix
 from rotorgear.model.parts.supports import DampingMatrix as DampingMatrix
-from rotorgear.model.parts.excitation import ErrorHarmonic as ErrorHarmonic
-from rotorgear.model.parts.excitation import StiffnessHarmonic as StiffnessHarmonic
-from rotorgear.model.parts.excitation import Unbalance as Unbalance
-from rotorgear.model.parts.scatter import Scatter as Scatter
+from rotorgear.model.parts.mesh import ErrorHarmonic as ErrorHarmonic
+from rotorgear.model.parts.mesh import StiffnessHarmonic as StiffnessHarmonic
+from rotorgear.model.parts.load import Unbalance as Unbalance
+from rotorgear.model.parts.operation import Scatter as Scatter
 from rotorgear.system.system import System as System
 
 # The verbs: a model in, a result out.

@@ -23,7 +23,7 @@ from rotorgear.errors import ModelError, Problem
 from rotorgear.gears.geometry.flank_tolerance import FLANK_CLASSES, cumulative_pitch_tolerance
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import Numbers, numbers_of
-from rotorgear.model.parts.scatter import Scatter
+from rotorgear.model.parts.operation import Scatter
 
 DISTRIBUTIONS = ("normal", "lognormal", "uniform")
 # Samples reach so many standard deviations.

@@ -17,8 +17,7 @@ from rotorgear.export.files import replacing
 from rotorgear.export.hdf5 import read
 from rotorgear.extras import require
 from rotorgear.model.load import load
-from rotorgear.model.model import Model
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import Model, model_hash
 from rotorgear.page.cells import RESULTS, Numbers
 from rotorgear.page.contents import computed, error_of
 from rotorgear.page.sections import sections

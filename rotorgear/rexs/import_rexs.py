@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.model.load import loads
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import model_hash
 from rotorgear.results.rexs_import import RexsImport
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.bearings import bearing_table, coupling_table, is_bearing, is_coupling

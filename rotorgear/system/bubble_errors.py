@@ -8,6 +8,18 @@ yet. Solved in each element by itself, the quadratic form moves by
 with the left shape y and its residual t: the hierarchical estimate of Bank and Smith, SIAM J. Numer. Anal. 30 (1993) 921, for
 an eigenvalue. It needs no second solution, and it says where the error comes from. Lumped mass adds its own change, of the
 other sign.
+
+Left shapes y, y^H Q(s) = 0 with Q(s) = s^2 M + s D + K: without damping Q(s) is Hermitian on the imaginary axis, so y = x; with
+symmetric matrices y = conj(x). Else x is right up to the damping ratio, and a mode that is damped more, or a stiffness that
+circulates, gets one inverse iteration with Q(s)^H. Lancaster, Lambda-Matrices and Vibrating Systems, section 4.
+
+A forced response Z(w) q = f leaves the same residual with s = i w. It changes the receptance f^T q at the force by
+
+    d = sum over bubbles  r r / (s^2 + (1 + s beta) w_b^2),
+
+the same estimate for a given frequency. It costs a few products with sparse matrices, so it can be had at every frequency; a
+second solution then tells the error where it is largest. A load that turns has f^T q = 0: there the Hermitian form f^H q is
+looked at, with r* r in the sum.
 """
 
 from __future__ import annotations
@@ -16,13 +28,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from rotorgear.elements.by_content import kept_by_content
 from rotorgear.elements.shaft import ShaftElements, distinct_elements
 from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
+from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import symmetric_pair
+from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.system.groups import alike, element_data, shaft_dofs
-from rotorgear.system.left_shapes import left_shapes
 from rotorgear.system.nodes import Element
 from rotorgear.system.plan import PieceKey
 from rotorgear.system.system import System
@@ -173,3 +187,106 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
         assert plain is not None
         lumping = rich.mass[:, :12, :12] - plain
     return Bubbles(np.array(squared), np.array(mass), np.array(stiffness), np.array(gyroscopic), lumping)
+
+
+_LIGHT = 0.03  # damping ratio up to which x does for an estimate
+
+_ASIDE = 1e-9  # Q is taken so far from s that it can be factored, relative to s
+
+
+def left_shapes(system: System, speed: float | None, s: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Left shapes (n, m) in the free dofs of modes s (m,), x (n, m) at a reference speed in rad/s; None is undamped."""
+    at = speed or 0.0
+    skew = system.circulatory(at)
+    if not skew.nnz and (speed is None or not system.damping(at).nnz):
+        return x
+    if not skew.nnz and not (at and system.gyroscopic.nnz):
+        return np.asarray(x.conj())
+    unsure = np.ones(len(s), dtype=bool) if skew.nnz else np.abs(s.real) > _LIGHT * np.abs(s)
+    D = system.velocity_terms(speed)
+    y = x.astype(complex)
+    for k in np.flatnonzero(unsure):
+        y[:, k] = _iterated(system.mass, D, sp.csc_array(system.stiffness(at) + skew), s[k] * (1.0 + _ASIDE), y[:, k])
+    return y
+
+
+def _iterated(M: sp.csc_array, D: sp.csc_array | None, K: sp.csc_array, s: complex, x: np.ndarray) -> np.ndarray:
+    Q = s**2 * M + K if D is None else s**2 * M + s * D + K
+    try:
+        y = factor_general(sp.csc_array(Q.conj().T)).solve(x)
+    except ConvergenceError:
+        return x
+    return np.asarray(y / np.linalg.norm(y))
+
+
+@dataclass(frozen=True)
+class ForcedChanges:
+    """Bubbles of all shaft elements on the n free dofs, each of modal mass 1.
+
+    Attributes:
+        mass, stiffness, gyroscopic: what b bubbles take from the free dofs, (b, n); the last per reference speed.
+        squared: w_b^2 (b,); beta: damping of each, proportional to its stiffness (b,); alpha: to its mass.
+        lumping: what consistent mass adds to a lumped one, (n, n).
+    """
+
+    mass: sp.csr_array
+    stiffness: sp.csr_array
+    gyroscopic: sp.csr_array
+    squared: np.ndarray
+    beta: np.ndarray
+    alpha: float
+    lumping: sp.csr_array | None
+
+    @classmethod
+    def of(cls, system: System) -> ForcedChanges:
+        """Those of a system."""
+        model = system.model
+        T = system.dofs.transform
+        none = sp.csr_array((0, T.shape[1]))
+        terms = {"mass": [none], "stiffness": [none], "gyroscopic": [none]}
+        squared = [np.zeros(0)]
+        beta = [np.zeros(0)]
+        lumping = None
+        for group in bubble_groups(system):
+            bubbles = group.bubbles
+            own = bubbles.squared[group.which].ravel()
+            squared.append(own)
+            beta.append(np.full(len(own), model.damping.rayleigh_beta + model.shafts[group.shaft].internal_damping))
+            turning = system.train.ratio(group.shaft) * bubbles.gyroscopic
+            for name, kinds in (("mass", bubbles.mass), ("stiffness", bubbles.stiffness), ("gyroscopic", turning)):
+                terms[name].append(_on_free_dofs(kinds[group.which], group.dofs, T))
+            if bubbles.lumping is not None:
+                dofs = group.dofs
+                nodal = dofs[:, : bubbles.lumping.shape[1]]
+                rows = _on_free_dofs(bubbles.lumping[group.which], nodal, T)
+                added = T[nodal.ravel(), :].T @ rows
+                lumping = added if lumping is None else lumping + added
+        stacked = {name: sp.csr_array(sp.vstack(parts)) for name, parts in terms.items()}
+        alpha = model.damping.rayleigh_alpha
+        return cls(**stacked, squared=np.concatenate(squared), beta=np.concatenate(beta), alpha=alpha, lumping=lumping)
+
+    def change(self, speed: float, w: np.ndarray, q: np.ndarray, *, turning: bool) -> np.ndarray:
+        """Size of d for responses q (n, m) at w (m,) in rad/s, at a reference speed in rad/s: (m,).
+
+        It is exact to first order where loads don't turn and the system is symmetric; else it says where to look.
+        """
+        s = 1j * np.asarray(w)
+        squared = s**2 + self.alpha * s
+        elastic = 1.0 + s * self.beta[:, None]
+        held = squared * (self.mass @ q) + elastic * (self.stiffness @ q)
+        turned = s * speed * (self.gyroscopic @ q) if speed else 0.0
+        gap = squared + elastic * self.squared[:, None]
+        rest = held + turned
+        other = rest.conj() if turning else held - turned
+        change = np.sum(rest * other / np.where(gap != 0.0, gap, np.inf), axis=0)
+        if self.lumping is not None:
+            change = change - squared * np.sum((q.conj() if turning else q) * (self.lumping @ q), axis=0)
+        return np.abs(change)
+
+
+def _on_free_dofs(rows: np.ndarray, dofs: np.ndarray, T: sp.csr_array) -> sp.csr_array:
+    """Rows (e, b, d) on the dofs (e, d) of their elements as rows on the free dofs, (e b, n)."""
+    count = rows.shape[0] * rows.shape[1]
+    at = np.repeat(np.arange(count), rows.shape[2])
+    columns = np.repeat(dofs, rows.shape[1], axis=0).ravel()
+    return sp.csr_array(sp.csr_array((rows.ravel(), (at, columns)), shape=(count, T.shape[0])) @ T)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.elements.gear_mesh import face_strains
-from rotorgear.model.layout.mesh_force import MeshForce
+from rotorgear.model.layout.state import MeshForce
 from rotorgear.system.groups import contact_geometry, face_of
 from rotorgear.system.system import System
 

@@ -27,11 +27,9 @@ from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.elements.spring import grounded_spring, linking_spring, seated_spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.layout.mesh_force import MeshForce
 from rotorgear.model.layout.spring import matrix_rows
-from rotorgear.model.layout.state import State
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.supports import Bearing
+from rotorgear.model.layout.state import MeshForce, State
+from rotorgear.model.parts.supports import Bearing, NonlinearElement
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import CASING, Element, Nodes
 

@@ -1,7 +1,7 @@
 """What acts locally beside the teeth's normal contact: rolling bearings, nonlinear elements, tooth friction, unbalances, and
 torques that vary.
 
-A law is imported where a model has it, for its import compiles it.
+A law is imported where a model has it, because its import compiles it.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
 from rotorgear.elements.spring import rigid_transfer
-from rotorgear.model.layout.mesh_force import MeshForce
+from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.state import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
-from rotorgear.model.parts.nonlinear_element import element_law
+from rotorgear.model.parts.supports import Bearing, element_law
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
-from rotorgear.system.local_bearings import bearing_law, check_oil
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -274,3 +274,35 @@ def varying_load(system: System, name: str) -> Load | None:
     table, _, own = name.partition(".")
     load = system.model.loads.get(own) if table == "loads" else None
     return load if load is not None and load.varies else None
+
+
+# Temperatures in deg C beyond which mineral oil is no liquid, and Vogel's equation no viscosity.
+_CELSIUS = 273.15
+
+_LIQUID = (-60.0, 200.0)
+
+
+def check_oil(address: str, bearing: Bearing) -> None:
+    """The oil of a film in heat balance flows in as a liquid.
+
+    Raises:
+        AnalysisError: it does not.
+    """
+    given = bearing.film.inlet_temperature if bearing.film is not None else None
+    if given is not None and not _LIQUID[0] <= given - _CELSIUS <= _LIQUID[1]:
+        raise AnalysisError(
+            f"{address}: the oil would flow in at {given - _CELSIUS:.4g} degC, where mineral oil is no liquid "
+            f"({_LIQUID[0]:g} to {_LIQUID[1]:g} degC); check inlet_temperature and its unit"
+        )
+
+
+def bearing_law(bearing: Bearing, ratio: float, sense: float) -> ForceLaw:
+    """The law of a bearing that has one.
+
+    Args:
+        bearing: with a geometry. ratio: turns of its shaft for each turn of the reference.
+        sense: of rotation of the reference for which it is built, 1 or -1.
+    """
+    assert bearing.geometry is not None
+    linear = [row[i] for i, row in enumerate(bearing.stiffness.as_rows())] if bearing.stiffness else [0.0] * 6
+    return bearing.geometry.law(ratio, sense, linear)

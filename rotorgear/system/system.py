@@ -11,15 +11,14 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.layout.state import State
+from rotorgear.model.layout.state import Kind, State
 from rotorgear.model.layout.train import Train
 from rotorgear.model.model import Model
-from rotorgear.system.assembly import assemble, strain_factor, without_negative
+from rotorgear.system.assembly import StrainForms, assemble, strain_factor, strain_forms, without_negative
 from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
-from rotorgear.system.strain_forms import StrainForms, strain_forms
 
 
 @dataclass(frozen=True)
@@ -259,3 +258,13 @@ class System:
 
     def _sum(self, groups: list[ElementGroup], term: Callable[[ElementGroup], np.ndarray | None]) -> sp.csc_array:
         return assemble(groups, self.dofs, term)
+
+
+def flow_system(
+    model: Model, plan: Plan | None = None, *, direction: int | None = None, kind: Kind = "dynamic"
+) -> System:
+    """The system about the torque flow of one sense of rotation, None for that of the operating speed, on the mesh of a plan.
+
+    `kind` is the stiffness of its contacts where that depends on the load: "static" where an equilibrium is looked for.
+    """
+    return System(model, plan=plan, state=model.torque_flow(direction).of_kind(kind))

@@ -20,7 +20,7 @@ from rotorgear.analysis.correlation.compare_orders import OrderCut
 from rotorgear.analysis.rig.frf_file import MeasuredFrf
 from rotorgear.analysis.teeth.tooth_field import tooth_fields
 from rotorgear.export.hdf5 import read, save
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import model_hash
 from rotorgear.results.kinds import keys_of, kinds
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of

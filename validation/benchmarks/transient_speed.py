@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import rotorgear as rg
-from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import LocalSystem, State, evaluated, local_values, state_at_rest

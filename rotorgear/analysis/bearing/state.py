@@ -18,7 +18,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Bearing
 from rotorgear.quantity import nearest
 from rotorgear.solvers.sparse.newton import ROUNDING
-from rotorgear.system.flow_system import flow_system
+from rotorgear.system.system import flow_system
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw

@@ -17,7 +17,7 @@ import numpy as np
 from rotorgear.analysis.common.casings import reduction_errors
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.solvers.eigen.synchronous import Affine, Synchronous
-from rotorgear.system.left_shapes import left_shapes
+from rotorgear.system.bubble_errors import left_shapes
 from rotorgear.system.system import System
 
 

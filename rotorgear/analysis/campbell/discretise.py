@@ -15,9 +15,8 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import Piece
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import PieceKey, Plan
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 
 def system_for_speeds(

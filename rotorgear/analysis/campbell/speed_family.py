@@ -13,10 +13,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.system.assembly import assemble
+from rotorgear.system.assembly import StrainForms, assemble, strain_forms
 from rotorgear.system.components import groups_with_inertia, independent_groups
 from rotorgear.system.groups import ElementGroup, table_groups
-from rotorgear.system.strain_forms import StrainForms, strain_forms
 from rotorgear.system.system import System
 
 

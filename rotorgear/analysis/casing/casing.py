@@ -16,8 +16,7 @@ from rotorgear.casings.settings import BEYOND
 from rotorgear.errors import AnalysisError
 from rotorgear.memory import largest_memory
 from rotorgear.model.layout.casings import casing_settings
-from rotorgear.model.model import Model
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 from rotorgear.results.casing import CasingRow, CasingSeat, CasingSurvey

@@ -24,7 +24,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.solvers.sparse.large import factor_positive
 from rotorgear.system.assembly import assemble
-from rotorgear.system.flow_system import flow_system
+from rotorgear.system.system import flow_system
 
 # A mode below this share of the highest one compared is a rigid motion.
 _RIGID = 1e-3

@@ -14,9 +14,8 @@ from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 _COUNTED = (
     "shafts",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.model.layout.tooth_numbers import unlike_gears
+from rotorgear.model.layout.assembly import unlike_gears
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
 def unlike_teeth_left_out(system: System) -> Iterator[str]:
     """Yield a sentence for each gear whose teeth differ where it is not known which of them are in its meshes at one time."""
     unknown = system.state.tooth_numbers.unknown
-    for name, meshes in unlike_gears(system.layout).items():
+    for name, meshes in unlike_gears(system.layout.meshes).items():
         if name in unknown:
             where = " and ".join(f"meshes.{mesh.name}" for mesh in meshes)
             yield (

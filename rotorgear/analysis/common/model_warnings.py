@@ -8,7 +8,7 @@ from itertools import pairwise
 from rotorgear.analysis.common.gear_bodies import gear_body_warnings
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_warnings
 from rotorgear.gears.geometry.geometry import check_gear
-from rotorgear.model.checks.pairs import mesh_findings
+from rotorgear.model.checks.meshes import mesh_findings
 from rotorgear.quantity import millimetres
 from rotorgear.system.system import System
 

@@ -10,7 +10,7 @@ from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
 from rotorgear.model.model import Model
-from rotorgear.model.parts.nonlinear_element import element_law
+from rotorgear.model.parts.supports import element_law
 from rotorgear.system.system import System
 
 

@@ -14,10 +14,9 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.model.checks.estimates import estimated
+from rotorgear.model.checks.names import estimated
 from rotorgear.model.checks.plausibility.machine import implausible
-from rotorgear.model.model import Model
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import Model, model_hash
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record
 

@@ -15,9 +15,8 @@ from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
 from rotorgear.results.campbell import ExcitationOrder
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 # Half width of the differences of matrices, as a share of the bounds: their error is its square.
 _STEP = 1e-5

@@ -14,8 +14,8 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.results.modal import ModalResult
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
+from rotorgear.system.system import flow_system
 
 REFERENCE = 1e-10
 # Ten times the accuracy of the reference: below, the ratio of estimate and error is that of the reference.

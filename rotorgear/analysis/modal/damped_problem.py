@@ -14,7 +14,7 @@ from rotorgear.solvers.eigen.eigen import UndampedModes
 from rotorgear.solvers.eigen.quadratic import corrected
 from rotorgear.solvers.sparse.entries import magnitudes
 from rotorgear.solvers.sparse.pencil import rounding_noise
-from rotorgear.system.strain_forms import StrainForms
+from rotorgear.system.assembly import StrainForms
 
 
 class Lowest(Protocol):

@@ -19,7 +19,7 @@ from rotorgear.solvers.eigen.local_damping import locally_damped_modes
 from rotorgear.solvers.eigen.quadratic import newton, scaled
 from rotorgear.solvers.eigen.ritz import strain_ritz
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped
-from rotorgear.system.strain_forms import StrainForms
+from rotorgear.system.assembly import StrainForms
 
 # Rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do.
 _CLEAN = 1e-10

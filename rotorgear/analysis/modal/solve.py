@@ -16,10 +16,10 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
+from rotorgear.system.assembly import StrainForms
 from rotorgear.system.components import dof_motions, groups_with_inertia, independent_groups
 from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.plan import Plan
-from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
 
 # Backward error above which a damped mode is refused.

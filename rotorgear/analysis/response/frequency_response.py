@@ -33,9 +33,9 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
+from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
-from rotorgear.system.forced_changes import ForcedChanges
 from rotorgear.system.system import System
 
 POINTS = 1000

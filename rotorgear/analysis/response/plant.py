@@ -14,8 +14,8 @@ from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping, 
 from rotorgear.analysis.response.orders import Order
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
+from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import ContactLines
-from rotorgear.system.forced_changes import ForcedChanges
 from rotorgear.system.system import System
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.points import coordinates
 from rotorgear.analysis.rig.csv_rows import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
-from rotorgear.model.checks.references import ON_SHAFTS
+from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.uff.datasets import AXES, Nodes, UniversalFile

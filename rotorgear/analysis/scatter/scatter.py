@@ -32,9 +32,8 @@ from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.analysis.static.static import solved
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import AnalysisError
-from rotorgear.model.model import Model
-from rotorgear.model.model_hash import model_hash
-from rotorgear.model.parts.scatter import Scatter
+from rotorgear.model.model import Model, model_hash
+from rotorgear.model.parts.operation import Scatter
 from rotorgear.model.spreads import DISTRIBUTIONS, Spreads, graded_errors, spreads_of
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.campbell import ExcitationOrder

@@ -12,10 +12,9 @@ from dataclasses import replace
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
-from rotorgear.model.layout.mesh_force import MeshForce
-from rotorgear.model.layout.state import State
+from rotorgear.model.layout.state import MeshForce, State
 from rotorgear.model.model import Model
-from rotorgear.system.flow_system import flow_system
+from rotorgear.system.system import flow_system
 
 # A helix that carries less than this share of the force of the torque flow is as good as open, as between two shafts that are
 # held: its tangent would be that of a few newtons, which the rounding of the map decides.

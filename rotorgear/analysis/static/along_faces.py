@@ -25,8 +25,7 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.system.flow_system import flow_system
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 # The misalignment rests when it changes by no more than this share of itself and of the approach. The next pass of Newton's
 # method would change it by the square of that.

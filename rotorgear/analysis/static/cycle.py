@@ -31,9 +31,9 @@ from rotorgear.analysis.static.contact_curves import Curve, FaceCurve, FaceTable
 from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.layout.mesh_force import FaceState, MeshForce
+from rotorgear.model.layout.state import FaceState, MeshForce
 from rotorgear.solvers.sparse.newton import Settled, settle
-from rotorgear.system.local_faces import face_law
+from rotorgear.system.local import face_law
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:

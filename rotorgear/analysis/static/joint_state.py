@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.model.layout.mesh_force import FaceState
-from rotorgear.system.local_faces import face_law
+from rotorgear.model.layout.state import FaceState
+from rotorgear.system.local import face_law
 
 if TYPE_CHECKING:
     from rotorgear.gears.maps.contact_map import ContactMap

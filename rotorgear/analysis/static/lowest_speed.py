@@ -8,7 +8,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces.registry import law_of
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.system.flow_system import flow_system
+from rotorgear.system.system import flow_system
 
 # Of the highest speed: where a lower end is looked for.
 _SHARES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)

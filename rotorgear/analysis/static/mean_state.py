@@ -19,8 +19,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.system.contacts import ContactLines, contact_lines
-from rotorgear.system.flow_system import flow_system
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 
 @dataclass(frozen=True)

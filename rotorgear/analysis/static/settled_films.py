@@ -11,8 +11,8 @@ from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.forces.registry import law_of
 from rotorgear.model.layout.state import FilmState, State
 from rotorgear.model.model import Model
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.system.flow_system import flow_system
+from rotorgear.model.parts.supports import NonlinearElement
+from rotorgear.system.system import flow_system
 
 
 def state_in_time(model: Model, speed: float, direction: int | None = None) -> State:

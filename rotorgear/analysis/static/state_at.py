@@ -19,12 +19,10 @@ from rotorgear.model.layout.spring import Spring, constant_spring, given_spring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.supports import Bearing
+from rotorgear.model.parts.supports import Bearing, NonlinearElement
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 if TYPE_CHECKING:
     from rotorgear.analysis.static.solve import LawState

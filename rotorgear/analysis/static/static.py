@@ -37,9 +37,8 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.plan import Plan
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 # Enough for a smooth line of deflection; the forces do not depend on it.
 DEFAULT_ELEMENTS = 4

@@ -23,8 +23,8 @@ from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium,
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.local import LocalModel, local_model
+from rotorgear.system.system import flow_system
 
 _KEPT = 1000  # states at rest
 # Systems with casings are reduced from this many dofs on; below, there is nothing to gain.

@@ -22,8 +22,7 @@ from rotorgear.analysis.sweep.request import Request, start_of, steps_of
 from rotorgear.analysis.sweep.shrink import shrunk
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import RotorgearError
-from rotorgear.model.model import Model
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import Model, model_hash
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.sweep import SweepResult

@@ -26,9 +26,10 @@ from rotorgear.gears.stiffness.dynamic_factor import DynamicFactor
 from rotorgear.gears.stiffness.iso import pair_iso_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.stiffness_models import MODELS
-from rotorgear.model.checks.pairs import ball_diameter, mesh_findings
-from rotorgear.model.layout.applied_torques import applied_torques
+from rotorgear.model.checks.gears import ball_diameter
+from rotorgear.model.checks.meshes import mesh_findings
 from rotorgear.model.layout.mesh_layout import MeshLayout
+from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
 from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow

@@ -9,8 +9,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.gears.tooth_fe.settings import ToothFe
-from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.mesh_layout import MeshLayout
+from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 from rotorgear.results.mesh import MeshLoad

@@ -16,7 +16,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.results.transient import TransientResult
-from rotorgear.system.flow_system import flow_system
+from rotorgear.system.system import flow_system
 
 STEPS = (40, 80, 160, 320, 640)
 ACCURACIES = (1e-2, 1e-3, 1e-4)

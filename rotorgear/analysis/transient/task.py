@@ -14,15 +14,13 @@ from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
 from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of
 from rotorgear.errors import AnalysisError
-from rotorgear.model.model import Model
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.time.local_system import Integrator, state_at_rest
 from rotorgear.solvers.time.run import Schedule
-from rotorgear.system.flow_system import flow_system
 from rotorgear.system.local import LocalModel, local_model
-from rotorgear.system.system import System
+from rotorgear.system.system import System, flow_system
 
 
 @dataclass(frozen=True)

@@ -9,17 +9,29 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks.casings import casings
-from rotorgear.model.checks.gear_bodies import gear_bodies
+from rotorgear.model.checks.casings import casings, gear_bodies
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
-from rotorgear.model.checks.loads import loads, loads_that_stand_still
+from rotorgear.model.checks.loads import loads, loads_that_stand_still, operating_point, train_problems
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
-from rotorgear.model.checks.names import duplicate_names, points, unknown_materials, unknown_names
-from rotorgear.model.checks.nonlinear_elements import nonlinear_elements
-from rotorgear.model.checks.places import coupled_points, stations
-from rotorgear.model.checks.references import PartName, part_of, sound, without
-from rotorgear.model.checks.sizes import materials, matrices, motions, sections
-from rotorgear.model.checks.train import operating_point, train_problems
+from rotorgear.model.checks.names import (
+    PartName,
+    duplicate_names,
+    part_of,
+    points,
+    sound,
+    unknown_materials,
+    unknown_names,
+    without,
+)
+from rotorgear.model.checks.sizes import (
+    coupled_points,
+    materials,
+    matrices,
+    motions,
+    nonlinear_elements,
+    sections,
+    stations,
+)
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
 

@@ -1,4 +1,4 @@
-"""Checks of gears and disks by themselves: what each kind needs, and bodies that can be."""
+"""Checks of gears and disks by themselves: what each kind needs, teeth that a tool leaves, reliefs, and bodies that can be."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ import math
 from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
-from rotorgear.gears.geometry.geometry import impossible_teeth
-from rotorgear.model.checks.teeth import tooth_problems
-from rotorgear.model.layout.bodies import inertia_is_given
+from rotorgear.gears.geometry.flank_tolerance import FLANK_CLASSES
+from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
+from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
+from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
+from rotorgear.model.layout.gear_layout import inertia_is_given
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.bodies import Disk
-from rotorgear.model.parts.gear import Gear, GearBody
+from rotorgear.model.parts.gear import Flank, Gear, GearBody
+from rotorgear.model.parts.shaft import Disk
 from rotorgear.model.parts.tables import Tables
+from rotorgear.model.parts.topography import Topography
 from rotorgear.quantity import millimetres
 
 # Relative: inertias that are written with six digits, each rounded by up to 5e-6.
@@ -176,3 +179,152 @@ def _given_inertia(model: Tables, address: str, part: Gear | Disk) -> Iterator[P
                 yield _unwanted(f"{address}.{key}", millimetres(size), "a disk has sizes or given inertias, not both")
     elif part.body != GearBody():
         yield _unwanted(f"{address}.body", "a table", "a gear has a body or given inertias, not both")
+
+
+# The ideal ball is rounded up to a multiple of this (m), or of a fortieth of a smaller module.
+_BALL_STEP = 0.25e-3
+
+
+def ball_diameter(gear: Gear, geometry: GearGeometry) -> float:
+    """Diameter (m) of the balls a gear is measured over: given, or the ideal one rounded up."""
+    if gear.ball_diameter is not None:
+        return gear.ball_diameter
+    step = min(_BALL_STEP, geometry.normal_module / 4.0)
+    return step * math.ceil(ideal_ball_diameter(geometry) / step - 1e-9)
+
+
+def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
+    """Yield what is impossible in a tooth whose circles are in order."""
+    try:
+        outline = tooth_outline(geometry)
+    except RotorgearError as error:
+        yield Problem(address, "", str(error))
+        return
+    allowance = gear.allowance
+    for key, value, most, what in (
+        ("upper_thickness_allowance", allowance.upper, 0.0, "0 or a negative length"),
+        ("lower_thickness_allowance", allowance.lower, allowance.upper, "a length not above the upper allowance"),
+    ):
+        if value > most:
+            hint = "allowances make a tooth thinner, for the backlash"
+            yield Problem(f"{address}.{key}", millimetres(value), what, hint)
+    # An amount and the diameter where it starts come together, and the start lies on the involute, below the tip.
+    start = gear.tip_relief_diameter
+    if gear.tip_relief and start is None:
+        yield Problem(f"{address}.tip_relief_diameter", "", "missing", "required: where the tip relief starts")
+    if start is not None and not gear.tip_relief:
+        yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
+    low = 2.0 * outline.form_radius
+    tip_form = outline.tip_form_roll_length(gear.flank.tip_rounding, gear.flank.tip_chamfer)
+    high = 2.0 * math.hypot(geometry.base_radius, tip_form)
+    if start is not None and not low <= start < high:
+        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
+        yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
+    yield from flank_problems(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
+    if gear.accuracy_grade is not None and gear.accuracy_grade > FLANK_CLASSES:
+        yield Problem(
+            f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {FLANK_CLASSES} of ISO 1328-1"
+        )
+    yield from _ball(address, gear, geometry)
+
+
+def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
+    """The ball must touch the flanks of the thinnest tooth below its tip."""
+    thinnest = with_allowance(geometry, gear.allowance.lower)
+    key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
+    try:
+        touched = ball_contact_diameter(thinnest, ball_diameter(gear, geometry))
+    except RotorgearError as error:
+        yield Problem(f"{address}.{key}", "", str(error))
+        return
+    if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
+        wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
+        yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
+
+
+# Deeper modifications, as a share of the normal module, are a slip of the unit.
+_DEEPEST = 0.2
+
+
+def flank_problems(address: str, flank: Flank, outline: ToothOutline, width: float) -> Iterator[Problem]:
+    """Yield what is missing or impossible in the modifications of one gear with a face `width` (m)."""
+    # A root relief starts on the involute: between the form circle, where the root fillet ends, and the tip circle.
+    start = flank.root_relief_diameter
+    keys = ("root_relief", "root_relief_diameter")
+    yield from _pair(address, flank.root_relief, start, keys, "where the root relief starts")
+    low = 2.0 * outline.form_radius
+    high = 2.0 * outline.tip_radius
+    if start is not None and not low < start <= high:
+        limits = f"a diameter on the involute, above {millimetres(low)} to {millimetres(high)}"
+        yield Problem(f"{address}.root_relief_diameter", millimetres(start), limits)
+    # Both ends of the face are relieved: beyond half of it they would overlap.
+    length = flank.end_relief_length
+    keys = ("end_relief", "end_relief_length")
+    yield from _pair(address, flank.end_relief, length, keys, "the length of the end relief along the face")
+    if length > 0.5 * width:
+        limits = f"up to half of the face, {millimetres(0.5 * width)}"
+        yield Problem(f"{address}.end_relief_length", millimetres(length), limits)
+    deepest = _DEEPEST * outline.geometry.normal_module
+    for key in ("root_relief", "crowning", "profile_crowning", "profile_slope", "end_relief", "helix_slope", "bias"):
+        if abs(getattr(flank, key)) > deepest:
+            limits = f"up to {_DEEPEST:g} normal modules, {millimetres(deepest)}"
+            yield Problem(f"{address}.{key}", millimetres(getattr(flank, key)), limits)
+    teeth = outline.geometry.teeth
+    for number in flank.pitch_errors:
+        if not number.isdigit() or int(number) >= teeth:
+            yield Problem(f"{address}.pitch_errors", f"'{number}'", f"the number of a tooth, from '0' to '{teeth - 1}'")
+    yield from _tip_problems(address, flank, outline)
+    if flank.topography is not None:
+        yield from _topography_problems(f"{address}.topography", flank.topography, outline, deepest)
+
+
+def _tip_problems(address: str, flank: Flank, outline: ToothOutline) -> Iterator[Problem]:
+    """A tip is rounded or chamfered, and keeps an involute and a tip."""
+    if flank.tip_rounding and flank.tip_chamfer:
+        yield Problem(
+            f"{address}.tip_chamfer", "", "the tip is rounded or chamfered: give one of tip_rounding and tip_chamfer"
+        )
+    if flank.tip_chamfer >= outline.tip_radius - outline.form_radius:
+        limits = f"less than the height of the involute, {millimetres(outline.tip_radius - outline.form_radius)}"
+        yield Problem(f"{address}.tip_chamfer", millimetres(flank.tip_chamfer), limits)
+    thickness = outline.tip_radius * 2.0 * float(outline.involute(outline.tip_roll_length)[1])
+    most = 0.5 * thickness / outline.rounding_share
+    if flank.tip_rounding > most:
+        limits = f"up to {millimetres(most)}, where both rounded edges meet in the middle of the tip"
+        yield Problem(f"{address}.tip_rounding", millimetres(flank.tip_rounding), limits)
+
+
+def _topography_problems(
+    address: str, topography: Topography, outline: ToothOutline, deepest: float
+) -> Iterator[Problem]:
+    """Measured points lie on the flank, of teeth that exist, and are no slip of the unit."""
+    teeth = outline.geometry.teeth
+    grids = topography.grids
+    for grid in grids:
+        if grid.tooth is not None and grid.tooth >= teeth:
+            yield Problem(f"{address}.tooth", str(grid.tooth), f"the number of a tooth, from 0 to {teeth - 1}")
+        worst = max(abs(value) for row in grid.deviation for value in row)
+        if worst > deepest:
+            limits = f"deviations up to {_DEEPEST:g} normal modules, {millimetres(deepest)} (is its unit right?)"
+            yield Problem(f"{address}.deviation", millimetres(worst), limits)
+        if topography.by == "diameter":
+            low = 2.0 * outline.geometry.base_radius
+            high = 2.0 * outline.tip_radius
+        else:
+            low = 0.0
+            high = outline.tip_roll_length
+        # Measurements run a little past the tip; a grid of another gear, or in another unit, lies far beside.
+        if grid.places[0] < low * (1.0 - 1e-9) or grid.places[-1] > 1.1 * high:
+            what = "diameters" if topography.by == "diameter" else "roll lengths"
+            limits = f"{what} of the flank, from {millimetres(low)} to {millimetres(high)}"
+            yield Problem(
+                f"{address}.{topography.by}", f"{millimetres(grid.places[0])} to {millimetres(grid.places[-1])}", limits
+            )
+
+
+def _pair(address: str, amount: float, place: object, keys: tuple[str, str], what: str) -> Iterator[Problem]:
+    """An amount and its place come together."""
+    if amount and not place:
+        yield Problem(f"{address}.{keys[1]}", "", "missing", f"required: {what}")
+    if place and not amount:
+        yield Problem(f"{address}.{keys[0]}", "", "missing", "required: its amount")

@@ -1,4 +1,4 @@
-"""Checks of meshes: whether two gears can mesh at all, and on their axes."""
+"""Checks of meshes: whether two gears can mesh at all, and on their axes; and what is odd where their teeth meet."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.pair import working_centre_distance
-from rotorgear.model.checks.gear_bodies import counted_twice
+from rotorgear.model.checks.casings import counted_twice
 from rotorgear.model.checks.gears import degrees, missing, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
@@ -63,7 +63,7 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
 
 def _wind_up(address: str, mesh: MeshLayout, others: list[MeshLayout]) -> Iterator[Problem]:
     """A gear winds up in the rotor model or in its meshes, not in both."""
-    if mesh.part.stiffness != "tooth_fe" or not mesh.has_teeth:
+    if not mesh.has_loaded_teeth:
         return
     fe = mesh.teeth.fe
     for gear in mesh.gears:
@@ -234,3 +234,39 @@ def massless_gears(layout: Layout) -> Iterator[Problem]:
             text = f"{ratio:g} with gear '{empty[0]}' of no polar inertia"
             hint = "c = 2 zeta sqrt(k m_e) needs the inertia of both gears"
             yield Problem(f"meshes.{mesh.name}.damping_ratio", text, "a damping coefficient, damping, instead", hint)
+
+
+# Less clearance between tip and root than this share of the module is worth a word (ISO 53 has 0.25).
+_LEAST_CLEARANCE = 0.1
+
+
+def mesh_findings(mesh: MeshLayout) -> Iterator[str]:
+    """Sentences on a mesh whose teeth meet where they shouldn't, or hardly."""
+    from rotorgear.gears.geometry.outline import tooth_outline
+
+    pair = mesh.pair
+    first = mesh.pinion.geometry
+    second = mesh.gear.geometry
+    if pair is None or first is None or second is None:
+        return
+    if pair.interference:
+        yield "a tip reaches below its mate's base tangent point (interference); contact ratios are nominal"
+    active = pair.active_root_diameters(first, second)
+    for own, mate, g, h, used in (
+        (mesh.pinion.name, mesh.gear.name, first, second, active[0]),
+        (mesh.gear.name, mesh.pinion.name, second, first, active[1]),
+    ):
+        form = 2.0 * tooth_outline(g).form_radius
+        if not pair.interference and used < form * (1.0 - 1e-6):
+            yield (
+                f"the tip of '{mate}' works down to diameter {1e3 * used:.6g} mm of '{own}', whose involute begins at "
+                f"{1e3 * form:.6g} mm: contact begins in the fillet; reduce the tip diameter of '{mate}'"
+            )
+        clearance = pair.centre_distance - 0.5 * (h.effective_tip_diameter + g.root_diameter)
+        if clearance < _LEAST_CLEARANCE * g.normal_module:
+            yield f"between the tip of '{mate}' and the root of '{own}' are only {1e3 * clearance:.3g} mm"
+    if pair.total_contact_ratio < 1.0:
+        yield f"total contact ratio {pair.total_contact_ratio:.3g} is below 1, the teeth lose contact"
+    if mesh.backlash.least < -1e-9:
+        jam = f"{-1e6 * mesh.backlash.least:.3g} um along the flank normal"
+        yield f"the axes are too close: the teeth would jam by {jam}; give allowances, or move the axes apart"

@@ -1,22 +1,26 @@
-"""Checks of numbers by themselves: materials, sections, and the 6 x 6 matrices of bearings, supports and couplings."""
+"""Checks of single parts: materials, sections, 6 x 6 matrices, force laws, and that each part stands on its shaft."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
 
-from rotorgear.errors import Problem
+from rotorgear.errors import AnalysisError, Problem
+from rotorgear.model.checks.names import ON_SHAFTS, unknown
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
     Bearing,
     DampingMatrix,
+    NonlinearElement,
     Pedestal,
     StiffnessMatrix,
     TableRow,
+    element_law,
+    law_parameters,
 )
 from rotorgear.model.parts.tables import Tables
-from rotorgear.quantity import RPM_PER_RAD_S, millimetres
+from rotorgear.quantity import RPM_PER_RAD_S, millimetres, nearest
 
 
 def motions(model: Tables) -> Iterator[Problem]:
@@ -148,3 +152,102 @@ def six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: Damping
             if matrix.matrix is not None and matrix.matrix[i][i] < 0.0:
                 place = f"{matrix.matrix[i][i]:g} in row {i + 1}, column {i + 1}"
                 yield Problem(f"{address}.{key}.matrix", place, "0 or more on the diagonal")
+
+
+def nonlinear_elements(model: Tables) -> Iterator[Problem]:
+    """Every element names a law, gives its parameters, and acts on as many displacements as the law has."""
+    for name, element in model.nonlinear_elements.items():
+        yield from _element(f"nonlinear_elements.{name}", element)
+
+
+def _element(address: str, element: NonlinearElement) -> Iterator[Problem]:
+    # Laws are compiled: they are loaded for models that name one only.
+    from rotorgear.forces.registry import law_of, names
+
+    if element.law not in names():
+        yield unknown(f"{address}.law", element.law, list(names()), "a force law")
+        return
+    law = law_of(element.law)
+    declared = law.declared()
+    known = list(declared)
+    wrong = [name for name in element.parameters if name not in declared]
+    for name in wrong:
+        guess = nearest(name, known)
+        hint = f"did you mean '{guess}'?" if guess else "valid here: " + ", ".join(known)
+        yield Problem(f"{address}.parameters.{name}", "", f"unknown parameter of {element.law}", hint)
+    _, refused = law_parameters(law, element.parameters)
+    for name, expected in refused.items():
+        yield Problem(f"{address}.parameters.{name}", shown(element.parameters[name]), expected, declared[name].meaning)
+    missing = [
+        name
+        for name in law.required()
+        if name not in element.parameters and name != law.shaft_ratio and nearest(name, wrong) == ""
+    ]
+    for name in missing:
+        yield Problem(f"{address}.parameters.{name}", "", "missing", f"required: {declared[name].meaning}")
+    if wrong or refused or missing:
+        return
+    try:
+        made = element_law(element, 1.0)
+    except AnalysisError as error:
+        yield Problem(f"{address}.parameters", str(error), "parameters that go together")
+        return
+    if made.components != len(element.directions):
+        count = f"{made.components} direction{'s'[: made.components != 1]}"
+        yield Problem(f"{address}.directions", shown(list(element.directions)), f"{count}, as {element.law} has")
+    if element.to_at is not None and element.to_shaft is None:
+        yield Problem(f"{address}.to_at", "without to_shaft", "the name of the second shaft beside it")
+
+
+def stations(model: Tables) -> Iterator[Problem]:
+    """Every part stands on its shaft."""
+    for table in ON_SHAFTS:
+        for name, part in getattr(model, table).items():
+            offset = part.helix_offset if table == "gears" and part.node_count == 2 else 0.0
+            yield from _station(model, f"{table}.{name}.at", part.shaft, part.at, offset)
+    for name, coupling in model.couplings.items():
+        yield from _station(model, f"couplings.{name}.from_at", coupling.from_shaft, coupling.from_at)
+        yield from _station(model, f"couplings.{name}.to_at", coupling.to_shaft, coupling.to_at)
+    for name, element in model.nonlinear_elements.items():
+        if element.to_shaft is not None:
+            at = element.at if element.to_at is None else element.to_at
+            yield from _station(model, f"nonlinear_elements.{name}.to_at", element.to_shaft, at)
+    for table in ("loads", "unbalances", "points"):
+        for name, part in getattr(model, table).items():
+            if part.shaft is not None and part.at is not None:
+                yield from _station(model, f"{table}.{name}.at", part.shaft, part.at)
+
+
+def _station(model: Tables, address: str, shaft: str, at: float | str, offset: float = 0.0) -> Iterator[Problem]:
+    part = model.shafts[shaft]
+    z = part.station(at)
+    slack = 1e-9 * max(part.length, abs(part.start), 1e-6)
+    if part.start - slack <= z - offset and z + offset <= part.end + slack:
+        return
+    run = f"shaft '{shaft}', which runs from {millimetres(part.start)} to {millimetres(part.end)}"
+    if not part.sections:
+        run = f"shaft '{shaft}', which has no sections and is one point at {millimetres(part.start)}"
+    if offset:
+        value = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
+        yield Problem(address, value, f"both helices on {run}", "nodes = 1 puts the whole gear at one place")
+    else:
+        yield Problem(address, millimetres(z), f"a place on {run}")
+
+
+def coupled_points(model: Tables) -> Iterator[Problem]:
+    """A coupling joins two points, and their shafts are coaxial."""
+    for name, coupling in model.couplings.items():
+        address = f"couplings.{name}"
+        first = model.shafts[coupling.from_shaft]
+        second = model.shafts[coupling.to_shaft]
+        one_shaft = coupling.from_shaft == coupling.to_shaft
+        if one_shaft and first.station(coupling.from_at) == second.station(coupling.to_at):
+            yield Problem(address, "one and the same point twice", "two points")
+        # Positions may be left out, and torsion alone knows no axes: nothing to compare then.
+        if not model.has("bending") or first.position is None or second.position is None:
+            continue
+        distance = max(abs(a - b) for a, b in zip(first.position, second.position, strict=True))
+        if distance > 1e-9 + 1e-6 * max(first.length, second.length):
+            apart = f"shafts whose axes are {millimetres(distance)} apart"
+            hint = "a coupling joins shafts on one axis, a mesh joins parallel ones"
+            yield Problem(address, apart, "coaxial shafts", hint)

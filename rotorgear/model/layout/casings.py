@@ -1,34 +1,91 @@
-"""Casings as the model file gives them, in the plain values that their bodies are made from."""
+"""Elastic bodies from meshes and matrices: casings with the seats that bearings stand in, and the bodies of gears.
+
+The model file is turned into the plain values that `rotorgear/casings` reduces a body from; bore and rim are the two seats of
+the body of a gear.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rotorgear.casings.assembly import Elastic
-from rotorgear.casings.patches import Cylinder
-from rotorgear.casings.settings import CasingSettings, JoinSettings, MountSettings, Rows
-from rotorgear.model.parts.casing import UNIT_LENGTHS, Casing, Seat
-from rotorgear.model.parts.shaft import LIBRARY
+import numpy as np
+
+from rotorgear.casings.settings import CasingSettings, JoinSettings, MountSettings
+from rotorgear.errors import AnalysisError
+from rotorgear.model.parts.casing import ONLY_MESH, UNIT_LENGTHS, Seat
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.shaft import LIBRARY, Material, Place
 from rotorgear.model.parts.tables import Tables
+from rotorgear.progress import listener
+from rotorgear.quantity import millimetres, nearest
 
-_NO_DAMPING: Rows = ((0.0,) * 6,) * 6
+if TYPE_CHECKING:
+    from rotorgear.casings.patches import Cylinder
+    from rotorgear.casings.reduced_body import ReducedBody
+    from rotorgear.casings.wheel import ReducedWheel
+
+# A shaft whose axis misses the reference point of a seat by more than this (m) stands in another one.
+_OFF_AXIS = 5e-3
+
+
+@dataclass(frozen=True)
+class BearingSeat:
+    """The seat of a bearing or nonlinear element.
+
+    Attributes:
+        casing: name of its casing; number: of the seat, counted from 0.
+        arm: (3,) from the reference point of the seat to the bearing, in m; the seat carries it rigidly.
+    """
+
+    casing: str
+    number: int
+    arm: np.ndarray
+
+
+def reduced(model: Tables, name: str) -> ReducedBody:
+    """The reduced body of a casing; whoever is `listening` hears of its progress.
+
+    Raises:
+        AnalysisError: its file can't be read, or does not fit.
+        MissingExtraError: meshio or scikit-fem is not installed.
+    """
+    casing = model.casings[name]
+    if casing.matrices is not None:
+        from rotorgear.casings.matrices_file import read_matrices
+
+        return read_matrices(Path(casing.matrices), casing.interface, casing.damping_ratio, name)
+    from rotorgear.casings.casing import reduced_casing
+
+    return reduced_casing(casing_settings(model, name), progress=listener())
 
 
 def casing_settings(model: Tables, name: str) -> CasingSettings:
     """The settings of a casing whose fields are in order."""
+    from rotorgear.casings.assembly import Elastic
+
     casing = model.casings[name]
     assert casing.unit is not None, "checked: a mesh has a unit"
+    # Checked: where there is no material, all three values are given.
+    material = Elastic(casing.youngs_modulus or 0.0, casing.poisson_ratio or 0.0, casing.density or 0.0)
+    if casing.material is not None:
+        known = model.materials.get(casing.material) or LIBRARY[casing.material]
+        material = Elastic(known.youngs_modulus, known.nu, known.density)
+    none = ((0.0,) * 6,) * 6
     return CasingSettings(
         name=name,
         files=tuple((part, Path(file)) for part, file in casing.mesh.items()),
         unit=UNIT_LENGTHS[casing.unit],
-        material=_material(model, casing),
+        material=material,
         held=casing.held,
         mounts=tuple(
-            MountSettings(place, mount.as_rows(), mount.damping.as_rows() if mount.damping else _NO_DAMPING)
+            MountSettings(place, mount.as_rows(), mount.damping.as_rows() if mount.damping else none)
             for place, mount in casing.mounts.items()
         ),
-        seats=tuple((bearing, place_of(seat)) for bearing, seat in casing.seats.items()),
+        seats=tuple((bearing, _place(seat)) for bearing, seat in casing.seats.items()),
         connection=casing.connection,
         joins=tuple(JoinSettings(*one.faces, one.stiffness) for one in casing.joins),
         modes_to=casing.modes_to,
@@ -39,18 +96,91 @@ def casing_settings(model: Tables, name: str) -> CasingSettings:
     )
 
 
-def _material(model: Tables, casing: Casing) -> Elastic:
-    if casing.material is not None:
-        known = model.materials.get(casing.material) or LIBRARY[casing.material]
-        return Elastic(known.youngs_modulus, known.nu, known.density)
-    # Checked: where there is no material, all three are given.
-    return Elastic(casing.youngs_modulus or 0.0, casing.poisson_ratio or 0.0, casing.density or 0.0)
+def wheel_settings(name: str, gear: Gear, material: Material) -> CasingSettings:
+    """The settings of the body of a gear with a mesh whose fields are in order."""
+    from rotorgear.casings.assembly import Elastic
+
+    body = gear.body
+    assert body.mesh is not None, "asked for gears with a mesh only"
+    assert body.unit is not None, "checked: a mesh has a unit"
+    assert body.seat is not None, "checked: a mesh has a bore"
+    assert body.rim is not None, "checked: a mesh has a rim"
+    return CasingSettings(
+        name=f"{name}.body",
+        files=((ONLY_MESH, Path(body.mesh)),),
+        unit=UNIT_LENGTHS[body.unit],
+        material=Elastic(material.youngs_modulus, material.nu, material.density),
+        seats=(("seat", _place(body.seat)), ("rim", _place(body.rim))),
+        connection=body.connection,
+        modes_to=body.modes_to,
+        damping_ratio=body.damping_ratio,
+        mass=gear.mass,
+        mass_tolerance=body.mass_tolerance,
+        table="gears",
+    )
 
 
-def place_of(seat: Seat) -> str | Cylinder:
+def _place(seat: Seat) -> str | Cylinder:
     """Name of a set, or a bore."""
+    from rotorgear.casings.patches import Cylinder
+
     if seat.set is not None:
         return seat.set
     # Checked: where there is no set, the whole place is given.
     center = seat.center or (0.0, 0.0)
     return Cylinder("xyz".index(seat.axis or "z"), center, seat.begin or 0.0, seat.to or 0.0, seat.radius or 0.0)
+
+
+def reduced_wheel(name: str, gear: Gear, material: Material) -> ReducedWheel:
+    """The reduced body of a gear; whoever is `listening` hears of its progress.
+
+    Raises:
+        AnalysisError: what is wrong with its mesh, or moments of inertia that the gear states otherwise.
+        MissingExtraError: meshio or scikit-fem is not installed.
+    """
+    from rotorgear.casings.casing import reduced_gear_body
+
+    wheel = reduced_gear_body(wheel_settings(name, gear, material), progress=listener())
+    for key in ("polar_inertia", "diametral_inertia"):
+        value = getattr(wheel, key)
+        stated = getattr(gear, key)
+        if stated is not None and abs(value - stated) > gear.body.mass_tolerance * stated:
+            raise AnalysisError(
+                f"gears.{name}.{key}: the mesh has {value:.6g} kg m^2, and {stated:.6g} kg m^2 are stated. A gear with a mesh "
+                "has the mass of the mesh, counted once: leave the value out, correct the mesh, or give body.mass_tolerance."
+            )
+    return wheel
+
+
+def find_seat(model: Tables, address: str, place: Place, body_of: Callable[[str], ReducedBody]) -> BearingSeat | None:
+    """The seat of a part such as "bearings.left" at its place; None where it stands on the ground.
+
+    Raises:
+        AnalysisError: the casing has no such seat, or the shaft's axis does not run through it.
+    """
+    table, _, wanted = address.partition(".")
+    casing = getattr(model, table)[wanted].casing
+    if casing is None:
+        return None
+    body = body_of(casing)
+    said = model.casings[casing].seats.get(wanted)
+    if model.casings[casing].matrices is not None and said is not None and said.set is not None:
+        wanted = said.set  # a file of matrices has names of its own
+    if wanted not in body.seats:
+        guess = nearest(wanted, list(body.seats))
+        hint = f"did you mean '{guess}'?" if guess else f"there is: {', '.join(body.seats) or 'none'}"
+        raise AnalysisError(
+            f"{address}.casing: casing '{casing}' has no seat '{wanted}': {hint} "
+            f"(casings.{casing}.seats says which seat a bearing stands in)"
+        )
+    number = body.seats.index(wanted)
+    x, y = model.shafts[place.shaft].position or (0.0, 0.0)
+    arm = np.array([x, y, place.z]) - body.seat_points[number]
+    off = math.hypot(arm[0], arm[1])
+    if off > _OFF_AXIS:
+        raise AnalysisError(
+            f"{address}.casing: the axis of shaft '{place.shaft}' misses seat '{wanted}' of casing '{casing}' by "
+            f"{millimetres(off)}: give the shaft the position {millimetres(float(body.seat_points[number][0]))}, "
+            f"{millimetres(float(body.seat_points[number][1]))}, or name another seat"
+        )
+    return BearingSeat(casing, number, arm)

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.model.layout.places import Place
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.load import Load, LoadHistory
+from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
 
 

@@ -1,4 +1,4 @@
-"""A gear on its shaft: what follows from the gear, the shaft and the material, before any load.
+"""A gear on its shaft: what follows from the gear, the shaft and the material, before any load; and the mass of disks.
 
 Each fact is derived when it is first asked for and then kept, so that checks may ask for those that the sound parts of a
 broken file allow.
@@ -7,15 +7,14 @@ broken file allow.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, solid_blank
+from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, hollow_cylinder, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.model.layout.bodies import NodeBody, given_body, inertia_is_given
-from rotorgear.model.layout.places import Place
-from rotorgear.model.parts.flank import Flank
+from rotorgear.model.parts.gear import Flank, Gear
+from rotorgear.model.parts.shaft import Disk, Place
 from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ class GearLayout:
         """
         if self.part.body.mesh is None:
             return None
-        from rotorgear.model.layout.wheels import reduced_wheel
+        from rotorgear.model.layout.casings import reduced_wheel
 
         return reduced_wheel(self.name, self.part, self.mesh_material)
 
@@ -255,3 +254,39 @@ class GearLayout:
             hub_radius=bore if given.hub_diameter is None else 0.5 * given.hub_diameter,
             hub_width=given.hub_width or self.part.width or 0.0,
         )
+
+
+@dataclass(frozen=True)
+class NodeBody:
+    """A rigid body at a node: which part, which shaft, where (m), and its RigidBody."""
+
+    part: str
+    shaft: str
+    z: float
+    body: RigidBody
+
+
+def inertia_is_given(part: Gear | Disk) -> bool:
+    """Whether the part gives its mass or a moment of inertia itself."""
+    return not (part.mass is None and part.polar_inertia is None and part.diametral_inertia is None)
+
+
+def given_body(part: Gear | Disk) -> RigidBody:
+    """Mass and inertias as the part gives them; what it leaves out is 0."""
+    return RigidBody(part.mass or 0.0, part.polar_inertia or 0.0, part.diametral_inertia or 0.0)
+
+
+def disk_body(model: Tables, disk: Disk) -> RigidBody:
+    """Mass and inertias of a disk, given or of a plain cylinder.
+
+    Raises:
+        ValueError: the sizes make no disk; the text is what was expected.
+    """
+    if inertia_is_given(disk):
+        return given_body(disk)
+    bore = disk.bore
+    if bore is None:
+        shaft = model.shafts[disk.shaft]
+        bore = shaft.diameter_at(shaft.station(disk.at))
+    density = model.material_of(disk.shaft, name=disk.material).density
+    return hollow_cylinder(disk.outer_diameter or 0.0, bore, disk.width or 0.0, density)

@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING, Any
 from rotorgear.errors import Problem
 from rotorgear.gears.geometry.blank import RigidBody
 from rotorgear.model.layout.assembly import Assembly, put_together
-from rotorgear.model.layout.bodies import NodeBody, disk_body
+from rotorgear.model.layout.casings import BearingSeat, find_seat, reduced
 from rotorgear.model.layout.external_loads import ExternalLoad, external_loads
-from rotorgear.model.layout.gear_layout import GearLayout
+from rotorgear.model.layout.gear_layout import GearLayout, NodeBody, disk_body
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.layout.places import Place
-from rotorgear.model.layout.seats import Seat, find_seat, reduced
 from rotorgear.model.layout.train import Train, walk
 from rotorgear.model.parts.load import Load
+from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
@@ -66,11 +65,8 @@ class Layout:
     def elastic_bodies(self) -> dict[str, ReducedWheel]:
         """The bodies of all gears that have a mesh."""
         found = {gear.name: gear.wheel for gear in self.gears if gear.wheel is not None}
-        if found:
-            from rotorgear.model.layout.feet import teeth_end_on_rim
-
-            for mesh in self.meshes:
-                teeth_end_on_rim(mesh, found)
+        for mesh in self.meshes if found else ():
+            mesh.check_rims()
         return found
 
     def casing(self, name: str) -> ReducedBody:
@@ -84,7 +80,7 @@ class Layout:
             self._casings[name] = reduced(self.model, name)
         return self._casings[name]
 
-    def seat(self, address: str) -> Seat | None:
+    def seat(self, address: str) -> BearingSeat | None:
         """The seat that a bearing or nonlinear element stands in; None where it stands on the ground.
 
         Raises:

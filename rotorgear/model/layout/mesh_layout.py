@@ -10,7 +10,8 @@ transverse plane for one helix. Here the two are brought to one `MeshStiffness` 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -21,6 +22,7 @@ from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry, working_p
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.quantity import millimetres
 
 if TYPE_CHECKING:
     from rotorgear.gears.maps.contact_map import ContactMap
@@ -30,6 +32,9 @@ if TYPE_CHECKING:
 
 # Positions in a mesh period at which a stiffness model is asked.
 POSITIONS = 64
+# How far the circle that the teeth are held on may be off the rim of the mesh, in normal modules. A ring of this height under
+# the mean force of the teeth gives some thousandths of what the teeth give.
+_BETWEEN = 0.5
 
 
 @dataclass(frozen=True)
@@ -251,7 +256,7 @@ class MeshLayout:
         return replace(self.teeth, first_flank=self.pinion.flank_of("right"), second_flank=self.gear.flank_of("right"))
 
     def helix_teeth(self, helix: int, sense: int = 1, misalignment: float | None = None) -> ToothPair:
-        """The teeth of one helix as contact runs over them.
+        """The teeth of one helix as contact runs over them: seen from the other end of the face where it runs behind at larger z.
 
         `sense` is that of the torque on the pinion about +z; `misalignment` (m) that of a state with tilted shafts, None for that
         of the file. Raises what `teeth` raises.
@@ -281,19 +286,22 @@ class MeshLayout:
             return uniform_line(stiffness, self.width, normal_force, misalignment)
         from rotorgear.gears.loaded.face import loaded_face
 
-        teeth = replace(self.working_teeth(sense), misalignment=misalignment)
-        load = float(f"{normal_force:.12g}")
+        with self._named_in_errors():
+            found = loaded_face(self.helix_teeth(helix, sense, misalignment), _twelve_digits(normal_force))
+        return found if self.helix_senses(sense)[helix] > 0 else found.mirrored
+
+    @contextmanager
+    def _named_in_errors(self) -> Iterator[None]:
+        """Errors of the teeth say which mesh they are of."""
         try:
-            if self.helix_senses(sense)[helix] > 0:
-                return loaded_face(teeth, load)
-            return loaded_face(mirrored(teeth), load).mirrored
+            yield
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
     @property
     def elastic_gears(self) -> tuple[GearLayout, ...]:
         """Its gears whose wind-up between bore and teeth is left to the rotor model: wheels, unless they say otherwise."""
-        if self.part.stiffness != "tooth_fe" or not self.has_teeth:
+        if not self.has_loaded_teeth:
             return ()
         fe = self.teeth.fe
         bodies = [(gear, fe.body_of(gear.blank)) for gear in self.gears]
@@ -301,6 +309,40 @@ class MeshLayout:
         return tuple(
             gear for gear, body in bodies if body == "wheel" and fe.excludes_torsion(body) and not gear.part.integral
         )
+
+    def check_rims(self) -> None:
+        """Loaded teeth on an elastic body are held where its rim is: below, its mesh gives, above the elements of the teeth.
+
+        Raises:
+            AnalysisError: they end elsewhere; it says the rim thickness that fits.
+        """
+        for gear in self.gears if self.has_loaded_teeth else ():
+            wheel = gear.wheel
+            geometry = gear.geometry
+            if wheel is None or geometry is None:
+                continue
+            root = 0.5 * geometry.root_diameter
+            module = geometry.normal_module
+            held = root - self.part.tooth_fe.rim_thickness * module
+            if abs(held - wheel.rim_radius) <= _BETWEEN * module:
+                continue
+            fitting = (root - wheel.rim_radius) / module
+            remedy = (
+                f"say meshes.{self.name}.tooth_fe.rim_thickness = {fitting:.3g}"
+                if fitting >= 1.0
+                else f"name a set of nodes at the radius {millimetres(held)} as gears.{gear.name}.body.rim"
+            )
+            what = "would count twice" if held < wheel.rim_radius else "would be in neither"
+            raise AnalysisError(
+                f"meshes.{self.name}.tooth_fe: the loaded teeth of {gear.name} are held at the radius {millimetres(held)}, and "
+                f"the rim of its mesh is at {millimetres(wheel.rim_radius)}: what gives between the two {what}. Make both one: "
+                f"{remedy}."
+            )
+
+    @property
+    def has_loaded_teeth(self) -> bool:
+        """Whether its stiffness is that of its teeth by finite elements, under their load."""
+        return self.part.stiffness == "tooth_fe" and self.has_teeth
 
     @property
     def is_modelled(self) -> bool:
@@ -362,20 +404,17 @@ class MeshLayout:
 
         given = name or self.part.stiffness
         angle = self.pinion.base_helix_angle
-        # Rounding of the torque flow must not make another load: equal meshes are solved once, and their maps begin with this.
-        load = None if not normal_force else float(f"{float(f'{normal_force:.12g}') * math.cos(angle):.12g}")
+        load = None if not normal_force else _twelve_digits(_twelve_digits(normal_force) * math.cos(angle))
         if not isinstance(given, str):
             values = given if isinstance(given, tuple) else (given,)
             # A file gives both helices together, in phase: half of it is one helix.
             one = given_stiffness([value / self.helices for value in values], angle, 1, load, positions)
             return (one,) * self.helices
-        try:
+        with self._named_in_errors():
             return tuple(
                 mesh_stiffness(given, self.helix_teeth(helix, sense, f), load, positions)
                 for helix, f in enumerate(misalignments or (None,) * self.helices)
             )
-        except AnalysisError as error:
-            raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
     def face_map(
         self, helix: int, normal_force: float, asked: tuple[float, ...], sense: int = 1, near: bool = False
@@ -388,15 +427,13 @@ class MeshLayout:
             return None
         from rotorgear.gears.maps.face_map import face_map
 
-        teeth = self.working_teeth(sense)
-        given = self.part.misalignment
-        load = float(f"{normal_force:.12g}")
-        try:
+        teeth = self.helix_teeth(helix, sense)
+        load = _twelve_digits(normal_force)
+        with self._named_in_errors():
             if self.helix_senses(sense)[helix] > 0:
-                return face_map(teeth, load, asked, given, near)
-            return face_map(mirrored(teeth), load, tuple(-f for f in reversed(asked)), -given, near).mirrored
-        except AnalysisError as error:
-            raise AnalysisError(f"meshes.{self.name}: {error}") from None
+                return face_map(teeth, load, asked, teeth.misalignment, near)
+            behind = tuple(-f for f in reversed(asked))
+            return face_map(teeth, load, behind, teeth.misalignment, near).mirrored
 
     def contact_map(
         self, helix: int, normal_force: float, sense: int = 1, near: bool = False, misalignment: float | None = None
@@ -410,11 +447,8 @@ class MeshLayout:
             return None
         from rotorgear.gears.maps.solved_map import contact_map
 
-        try:
-            # Rounding of the torque flow must not make another load: equal meshes are solved once.
-            return contact_map(self.helix_teeth(helix, sense, misalignment), float(f"{normal_force:.12g}"), near=near)
-        except AnalysisError as error:
-            raise AnalysisError(f"meshes.{self.name}: {error}") from None
+        with self._named_in_errors():
+            return contact_map(self.helix_teeth(helix, sense, misalignment), _twelve_digits(normal_force), near=near)
 
     def lead_on_path(self, sense: int) -> float:
         """By which share of a mesh period the second helix is ahead along the path of contact of the pinion, 0 to 1.
@@ -432,6 +466,11 @@ class MeshLayout:
     ) -> MeshStiffness:
         """Stiffness of the whole mesh over one mesh period; arguments and errors as of `helix_stiffness`."""
         return self.both_helices(self.helix_stiffness(normal_force, positions, name, sense), sense)
+
+
+def _twelve_digits(value: float) -> float:
+    """A force without the rounding of the torque flow, which must not make another load: equal meshes are solved once."""
+    return float(f"{value:.12g}")
 
 
 def mirrored(teeth: ToothPair) -> ToothPair:

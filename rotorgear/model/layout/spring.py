@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.supports import Bearing, Coupling, DampingMatrix, StiffnessMatrix, Support
+from rotorgear.model.parts.supports import Bearing, Coupling, DampingMatrix, NonlinearElement, StiffnessMatrix, Support
 from rotorgear.quantity import RPM_PER_RAD_S
 
 

@@ -4,6 +4,11 @@ Forces come from static equilibrium of the train in torsion. A tree is plain sta
 follows from the torsional stiffness of shafts, couplings and meshes. Torsional springs to ground carry no mean torque here: loads
 balance by themselves. Where the file names a stiffness model, the mesh has its stiffness at that mean force; in a loop the two
 are iterated until they agree.
+
+The torques that drive and load the train come from the operating point and the loads: they balance in power, where one output
+may be left open and takes the rest. In torsion shafts twist by 1/(GJ); meshes, couplings and the webs of elastic gears give
+with their own stiffness. The train's free rotation is held at one node of each connected group, which takes no torque where
+the loads balance.
 """
 
 from __future__ import annotations
@@ -12,13 +17,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rotorgear.errors import ConvergenceError
-from rotorgear.model.layout.applied_torques import AppliedTorque, applied_torques
+from rotorgear.errors import AnalysisError, ConvergenceError, Problem
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.layout.mesh_force import MeshForce
 from rotorgear.model.layout.mesh_layout import Contact
-from rotorgear.model.layout.state import State, askew
-from rotorgear.model.layout.torsion_network import contact_forces
+from rotorgear.model.layout.state import AppliedTorque, MeshForce, State, askew
+from rotorgear.model.parts.load import Load
+from rotorgear.model.parts.shaft import Place
+from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
     from rotorgear.model.layout.state import Curves, Faces
@@ -116,3 +121,246 @@ def _states(
         carried = 0.0 if unloaded else abs(force)
         states.append(MeshForce(contact, carried, sense, sense == direction * pinion_sense, assumed=unloaded))
     return tuple(states)
+
+
+def applied_torques(layout: Layout, direction: int | None = None) -> tuple[list[AppliedTorque], list[Problem]]:
+    """Return the torques that drive and load the train, balanced in power, and the problems where they can't be.
+
+    Args:
+        layout: of the model.
+        direction: +1 or -1, sense in which the reference shaft turns; None: that of the operating speed. Torques are those of
+            the positive sense, and turn with it; moments from outside stay where they are, and have the sign that this asks for.
+    """
+    loads, problems = _loads(layout)
+    operation = layout.model.operation
+    found = _moments(layout, direction)
+    open_ends: list[tuple[str, Load]] = []
+    for name, load in loads.items():
+        torque = load.torque
+        if load.power is not None and operation is not None and operation.speed:
+            torque = load.power / abs(operation.speed * layout.train.ratio(load.on_shaft))
+        if torque is None:  # an open end, which takes the rest
+            open_ends.append((name, load))
+        else:
+            sign = layout.train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
+            found.append(AppliedTorque(name, *layout.load_place(load), sign * torque))
+    if problems or not (loads or found):
+        return found, problems
+    return _balanced(layout, found, open_ends)
+
+
+def _moments(layout: Layout, direction: int | None) -> list[AppliedTorque]:
+    """Constant moments about z of loads from outside on shafts that turn: they take part in the balance."""
+    sense = direction or layout.direction
+    return [
+        AppliedTorque(load.address, *place, sense * float(load.constant[5]) / len(load.places))
+        for load in layout.external_loads
+        for place in load.places
+        if load.constant[5] and load.in_train
+    ]
+
+
+def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
+    """Merge [operation] and [loads]; loads on shafts that are not driven are problems."""
+    model = layout.model
+    loads = {f"loads.{name}": load for name, load in model.loads.items() if load.is_torque}
+    operation = model.operation
+    if operation and (operation.power is not None or operation.torque is not None):
+        loads["operation"] = Load(
+            shaft=operation.input_shaft, kind="input", torque=operation.torque, power=operation.power
+        )
+        if operation.output_shaft:
+            loads["operation.output_shaft"] = Load(shaft=operation.output_shaft, kind="output")
+    problems = [
+        Problem(
+            name,
+            f"a load on shaft '{load.shaft}', which stands still",
+            "a shaft that the train drives",
+            "no mesh or coupling leads to it from the input shaft",
+        )
+        for name, load in loads.items()
+        if layout.train.ratios[load.on_shaft] == 0
+    ]
+    return ({} if problems else loads), problems
+
+
+def _balanced(
+    layout: Layout, found: list[AppliedTorque], open_ends: list[tuple[str, Load]]
+) -> tuple[list[AppliedTorque], list[Problem]]:
+    """Close the balance of power of each connected part of the train with its one open end, or refuse."""
+    train = layout.train
+    problems: list[Problem] = []
+    for group in sorted(
+        {train.group[item.shaft] for item in found} | {train.group[load.on_shaft] for _, load in open_ends}
+    ):
+        given = [item for item in found if train.group[item.shaft] == group]
+        ends = [(name, load) for name, load in open_ends if train.group[load.on_shaft] == group]
+        excess = sum(item.torque * train.ratio(item.shaft) for item in given)
+        scale = max((abs(item.torque * train.ratio(item.shaft)) for item in given), default=0.0)
+        if len(ends) > 1:
+            names = ", ".join(name for name, _ in ends)
+            problems.append(
+                Problem("loads", f"{names} without torque or power", "at most one of them: it takes the rest")
+            )
+        elif ends:
+            name, load = ends[0]
+            torque = -excess / train.ratio(load.on_shaft)
+            wanted = train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
+            if torque * wanted < 0.0:
+                text = f"to balance the other loads this {load.kind} would need {abs(torque):.6g} N m against its sense"
+                other = "output" if load.kind == "input" else "input"
+                problems.append(Problem(name, "", text, f"change the other torques, or make it an {other}"))
+            found.append(AppliedTorque(name, *layout.load_place(load), torque))
+        elif abs(excess) > 1e-6 * scale:
+            problems.append(
+                Problem(
+                    "loads",
+                    f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'",
+                    "torques that balance",
+                    "leave the torque of one output out and it takes the rest",
+                )
+            )
+    return found, problems
+
+
+# Places on a shaft nearer than this to each other (relative, and of a millimetre) are one.
+_SAME_PLACE = 1e-9
+
+
+class _Network:
+    """Nodes in torsion by number and the springs between them. Places that a rigid stretch of shaft joins are one node."""
+
+    def __init__(self, model: Tables, places: Sequence[Place]) -> None:
+        from rotorgear.elements.shaft import torsional_flexibility
+
+        self.size = 0
+        self.springs: list[tuple[int, int, float]] = []
+        self._nodes: dict[str, list[tuple[float, int]]] = {}
+        for shaft in model.shafts:
+            nodes = self._nodes[shaft] = []
+            for z in sorted({z for name, z in places if name == shaft}):
+                give = torsional_flexibility(*_stretch(model, shaft, nodes[-1][0], z)) if nodes else 0.0
+                if nodes and (give == 0.0 or z - nodes[-1][0] <= _SAME_PLACE * max(1e-3, abs(z))):
+                    nodes.append((z, self.size - 1))
+                    continue
+                if nodes:
+                    self.springs.append((self.size - 1, self.size, 1.0 / give))
+                nodes.append((z, self.size))
+                self.size += 1
+
+    def node(self, shaft: str, z: float) -> int:
+        """Number of the node at a place that the network was built with."""
+        return next(number for place, number in self._nodes[shaft] if place == z)
+
+    def branch(self, node: int, stiffness: float) -> int:
+        """Number of a new node that hangs on another one by a spring (N m/rad)."""
+        self.springs.append((node, self.size, stiffness))
+        self.size += 1
+        return self.size - 1
+
+    def first_node(self, shaft: str) -> int | None:
+        """Number of the first node of a shaft; None where nothing acts on it."""
+        return self._nodes[shaft][0][1] if self._nodes[shaft] else None
+
+
+def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequence[Contact]) -> list[float]:
+    """Signed normal force of each contact in N: positive where the pinion is turned positively into the gear.
+
+    Args:
+        layout: of a checked model.
+        applied: torques that balance in each group.
+        lines: the contacts.
+
+    Raises:
+        AnalysisError: stiffnesses that differ too much to be solved together.
+    """
+    import numpy as np
+
+    couplings = [
+        (layout.places(f"couplings.{name}"), coupling.stiffness.as_rows()[5][5])
+        for name, coupling in layout.model.couplings.items()
+        if coupling.turns_both
+    ]
+    ends = [(Place(line.pinion_shaft, line.pinion_z), Place(line.gear_shaft, line.gear_z)) for line in lines]
+    places = [place for pair in (*ends, *(pair for pair, _ in couplings)) for place in pair]
+    network = _Network(layout.model, [*places, *(Place(item.shaft, item.z) for item in applied)])
+    network.springs += [(network.node(*first), network.node(*second), k) for (first, second), k in couplings]
+    elastic = {
+        (name, place): network.branch(network.node(*place), 1.0 / torsion.flexibility)
+        for name, torsion in layout.elastic_gears.items()
+        for place in layout.gear(name).places
+    }
+    for name, wheel in layout.elastic_bodies.items():
+        place = layout.place(f"gears.{name}")
+        elastic[name, place] = network.branch(network.node(*place), 1.0 / float(wheel.rim_flexibility[5, 5]))
+
+    def teeth_of(gear: str, place: Place) -> int:
+        return elastic[gear, place] if (gear, place) in elastic else network.node(*place)
+
+    teeth = [
+        (teeth_of(line.pinion, pinion), teeth_of(line.gear, gear))
+        for line, (pinion, gear) in zip(lines, ends, strict=True)
+    ]
+
+    # Each contact is squeezed along its flank normal by r_b cos(beta_b) times the twist of its two nodes: delta = S q.
+    squeeze = np.zeros((len(lines), network.size))
+    for row, line, (pinion, gear) in zip(squeeze, lines, teeth, strict=True):
+        row[pinion] += line.pinion_base_radius * np.cos(line.base_helix_angle)
+        row[gear] += line.gear_base_radius * np.cos(line.base_helix_angle)
+    stiffness = np.array([line.stiffness for line in lines])
+    # K = sum of the springs + S^T diag(k) S
+    K = np.zeros((network.size, network.size))
+    for first, second, k in network.springs:
+        K[first, first] += k
+        K[second, second] += k
+        K[first, second] -= k
+        K[second, first] -= k
+    K = K + (squeeze.T * stiffness) @ squeeze
+    torques = np.zeros(network.size)
+    for item in applied:
+        torques[network.node(item.shaft, item.z)] += item.torque
+    # Shafts that turn together have one rotation that strains nothing: K q = torques is solved with one node of each held.
+    held: dict[int, int] = {}
+    for shaft, group in layout.train.group.items():
+        node = network.first_node(shaft)
+        if node is not None:
+            held.setdefault(group, node)
+    free = np.setdiff1d(np.arange(network.size), list(held.values()))
+    twist = np.zeros(network.size)
+    try:
+        twist[free] = np.linalg.solve(K[np.ix_(free, free)], torques[free])
+    except np.linalg.LinAlgError:
+        raise AnalysisError(
+            "The torque flow can't be solved: the stiffnesses of meshes, couplings and shafts in torsion differ by more "
+            "than numbers can hold. Check the smallest and the largest of them."
+        ) from None
+    return [float(force) for force in stiffness * (squeeze @ twist)]
+
+
+def _stretch(
+    model: Tables, shaft: str, left: float, right: float
+) -> tuple[list[float], list[tuple[float, float, float, float]], list[float]]:
+    """Lengths, end diameters and shear moduli of the flexible segments of a shaft between two places."""
+    lengths = []
+    diameters = []
+    moduli = []
+    z = model.shafts[shaft].start
+    for section in model.shafts[shaft].sections:
+        low = max(left, z)
+        high = min(right, z + section.length)
+        if high > low and not section.rigid:
+            outer, bore, outer_end, bore_end = section.stiffness_diameters()
+            first = (low - z) / section.length
+            last = (high - z) / section.length
+            lengths.append(high - low)
+            diameters.append(
+                (
+                    outer + (outer_end - outer) * first,
+                    bore + (bore_end - bore) * first,
+                    outer + (outer_end - outer) * last,
+                    bore + (bore_end - bore) * last,
+                )
+            )
+            moduli.append(model.material_of(shaft, section).g)
+        z += section.length
+    return lengths, diameters, moduli

@@ -1,4 +1,7 @@
-"""Gears: spur, helical or herringbone, by their teeth, or by base radius and transverse angle for lumped models."""
+"""Gears: spur, helical or herringbone, by their teeth, or by base radius and transverse angle for lumped models.
+
+Their flanks may deviate from the involute helicoid, by modifications and by errors.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,7 @@ from rotorgear.model.parts.fields import (
     Inertia,
     Length,
     Mass,
+    Name,
     NonNegativeLength,
     Part,
     PositiveLength,
@@ -26,7 +30,38 @@ from rotorgear.model.parts.fields import (
     Station,
     Whole,
 )
-from rotorgear.model.parts.flank import Flank
+from rotorgear.model.parts.topography import TopographyFile
+
+
+class Flank(Part):
+    """Modifications and errors of the flanks, along the flank normal. Tip relief stands in the gear itself."""
+
+    root_relief: NonNegativeLength = Field(0.0, description="linear relief at the form circle")
+    root_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the root relief starts")
+    crowning: NonNegativeLength = Field(0.0, description="lead crowning: parabolic relief at both ends of the face")
+    profile_crowning: NonNegativeLength = Field(
+        0.0, description="profile crowning (barrelling): parabolic relief at form circle and tip"
+    )
+    profile_slope: Length = Field(0.0, description="depth at the tip less that at the form circle")
+    end_relief: NonNegativeLength = Field(0.0, description="linear relief at both ends of the face")
+    end_relief_length: NonNegativeLength = Field(0.0, description="length of the end relief along the face")
+    helix_slope: Length = Field(0.0, description="depth at the end of larger z less that at the end of smaller z")
+    bias: Length = Field(
+        0.0, description="twist of the flank: profile slope at the end of larger z less that at the end of smaller z"
+    )
+    tip_rounding: NonNegativeLength = Field(
+        0.0, description="radius of the rounded tip edge; the involute ends where it begins"
+    )
+    tip_chamfer: NonNegativeLength = Field(
+        0.0, description="radial height of the chamfered tip edge; the involute ends below it"
+    )
+    topography: TopographyFile | None = Field(
+        None, description="CSV file of measured deviations, beside the model file, added to the rest"
+    )
+    pitch_errors: dict[Name, Length] = Field(
+        default_factory=dict,
+        description="tooth number -> how far its flank stands back along the line of action; tooth 0 meshes first",
+    )
 
 
 class GearBody(Part):

@@ -1,4 +1,4 @@
-"""Loads from outside: torques that drive the train or take its power, and forces and moments at any place.
+"""Loads: torques that drive the train or take its power, forces and moments at any place, and unbalances.
 
 A force with its moment is constant, goes as cos(order * angle of a shaft + phase) or cos(2 pi f t + phase), or follows a CSV
 file over time or over the angle of a shaft.
@@ -24,11 +24,22 @@ from rotorgear.model.parts.fields import (
     Station,
     Time,
     Torque,
+    UnbalanceSize,
     Unit,
     refuse,
 )
 from rotorgear.model.parts.topography import csv_rows, from_csv
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
+
+
+class Unbalance(Part):
+    """An unbalance that turns with its shaft, at the speed of that shaft."""
+
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the unbalance, or 'start' or 'end'")
+    magnitude: UnbalanceSize = Field(description="mass times eccentricity")
+    phase: Angle = Field(0.0, description="direction of the unbalance at the time 0, from +x about +z")
+
 
 COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 _TURN = 2.0 * np.pi

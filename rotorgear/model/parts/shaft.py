@@ -1,15 +1,17 @@
-"""Shafts: an axis at (x, y), and sections along z."""
+"""Shafts: an axis at (x, y), and sections along z; and the disks and point masses on them."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pydantic import Field
 
 from rotorgear.model.parts.fields import (
     Density,
     Flag,
+    Inertia,
     Length,
+    Mass,
     Modulus,
     NonNegativeLength,
     Part,
@@ -18,6 +20,7 @@ from rotorgear.model.parts.fields import (
     PositiveRatio,
     Ratio,
     SignedRatio,
+    Station,
     Time,
     Whole,
 )
@@ -145,3 +148,32 @@ class Shaft(Part):
                 found = max(found, outer + (outer_end - outer) * share)
             left = right
         return found
+
+
+class Place(NamedTuple):
+    """Name of a shaft and z on it in m."""
+
+    shaft: str
+    z: float
+
+
+class Disk(Part):
+    """A rigid disk: mass and inertias given, or a plain cylinder by its size."""
+
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the middle, or 'start' or 'end'")
+    mass: Mass | None = Field(None, description="mass")
+    polar_inertia: Inertia | None = Field(None, description="moment of inertia about z")
+    diametral_inertia: Inertia | None = Field(None, description="moment of inertia about x and y through the middle")
+    outer_diameter: PositiveLength | None = Field(None, description="outer diameter of a plain cylinder")
+    bore: NonNegativeLength | None = Field(None, description="its bore; default: the shaft's diameter there")
+    width: PositiveLength | None = Field(None, description="its width")
+    material: str | None = Field(None, description="its material; default: the shaft's")
+
+
+class PointMass(Part):
+    """A mass without moments of inertia."""
+
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the place, or 'start' or 'end'")
+    mass: Mass = Field(description="mass")

@@ -6,18 +6,14 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.parts.bodies import Disk, PointMass
 from rotorgear.model.parts.casing import Casing
-from rotorgear.model.parts.excitation import Unbalance
 from rotorgear.model.parts.fields import Name, Part
 from rotorgear.model.parts.gear import Gear
-from rotorgear.model.parts.load import Load
+from rotorgear.model.parts.load import Load, Unbalance
 from rotorgear.model.parts.mesh import Mesh
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.operation import ModelDamping, Operation, Point
-from rotorgear.model.parts.scatter import Scatter
-from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
-from rotorgear.model.parts.supports import Bearing, Coupling, Support
+from rotorgear.model.parts.operation import ModelDamping, Operation, Point, Scatter
+from rotorgear.model.parts.shaft import LIBRARY, Disk, Material, PointMass, Section, Shaft
+from rotorgear.model.parts.supports import Bearing, Coupling, NonlinearElement, Support
 
 
 def counted(number: int, table: str) -> str:

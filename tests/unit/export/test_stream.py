@@ -20,7 +20,7 @@ import rotorgear as rg
 from rotorgear.errors import RotorgearError
 from rotorgear.export.files import WriteError
 from rotorgear.export.stream import read_chunk
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import model_hash
 from tests.paths import ROOT
 from tests.unit.analysis.spur_pair import spur_pair
 

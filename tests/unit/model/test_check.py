@@ -9,11 +9,10 @@ import pytest
 
 from rotorgear.errors import ModelError
 from rotorgear.model.model import Model
-from rotorgear.model.parts.bodies import Disk
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.operation import Operation
-from rotorgear.model.parts.shaft import Section, Shaft
+from rotorgear.model.parts.shaft import Disk, Section, Shaft
 from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
 
 Data = dict[str, Any]

@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import ModelError
-from rotorgear.model.parts.nonlinear_element import element_law
+from rotorgear.model.parts.supports import element_law
 
 
 def model(**element: Any) -> rg.Model:

@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from rotorgear.errors import ModelError
 from rotorgear.model.layout.train import Train, links, walk
 from rotorgear.model.model import Model
-from rotorgear.model.parts.bodies import Disk
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.operation import Operation
-from rotorgear.model.parts.shaft import Shaft
+from rotorgear.model.parts.shaft import Disk, Shaft
 from rotorgear.model.parts.supports import Coupling, StiffnessMatrix
 
 Data = dict[str, Any]

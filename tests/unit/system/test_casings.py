@@ -15,7 +15,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.errors import AnalysisError
-from rotorgear.model.model_hash import model_hash
+from rotorgear.model.model import model_hash
 from rotorgear.system.system import System
 from tests.bar_casing import STEEL, cube, write_bar
 from tests.paths import ROOT

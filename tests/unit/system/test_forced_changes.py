@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 import rotorgear as rg
 from rotorgear.solvers.frequency.harmonic import Dynamics
-from rotorgear.system.forced_changes import ForcedChanges
+from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 from tests.contract.small_models import STEEL

@@ -8,7 +8,7 @@ import time
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.model.parts.excitation import Unbalance
+from rotorgear.model.parts.load import Unbalance
 from rotorgear.solvers.time.local_system import state_at_rest
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.solvers.time.newmark import Newmark

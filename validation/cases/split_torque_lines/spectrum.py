@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.model.parts.excitation import ErrorHarmonic
+from rotorgear.model.parts.mesh import ErrorHarmonic
 from rotorgear.results.spectrum import RigSpectrum, SpectralLines
 
 _MODELS = Path(__file__).resolve().parents[3] / "models"

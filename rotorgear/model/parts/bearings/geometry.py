@@ -1,17 +1,20 @@
 """What every kind of bearing answers that is given by its geometry.
 
 A kind is a class of this base and a field of `Bearing` (model/parts/supports.py), whose name is its key in the file. All else
-asks the bearing for its geometry, and that for what it needs, so that nothing else has to know which kinds there are.
+asks the bearing for its geometry, and that for what it needs, so that nothing else has to know which kinds there are. What the
+kinds with an oil film share stands here as well: the oil, its checks, and that a film stands alone in its bearing.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pydantic import Field
 
 from rotorgear.errors import Problem
-from rotorgear.model.parts.fields import Part
+from rotorgear.model.parts.fields import Density, Part, Ratio, SpecificHeat, Temperature, Viscosity
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
@@ -71,3 +74,133 @@ class BearingGeometry(Part):
     def estimate(self) -> str:
         """What of it is an estimate, as a sentence; or ""."""
         return ""
+
+
+# Usual: radial clearance over radius of a film; viscosity in Pa s; temperature of an inlet in K; density of oils in kg/m^3.
+_FILM = (1e-4, 0.02)
+
+_VISCOSITY = (5e-5, 3.0)
+
+_CELSIUS = 273.15
+
+_INLET = (233.15, 423.15)
+
+_OIL = (500.0, 2000.0)
+
+
+class Oil(BearingGeometry):
+    """The oil of a film: its viscosity, or its grade and the temperature at which it flows in."""
+
+    others: ClassVar[str]  # a clause on what holds the shaft where the film does not
+    fastest: ClassVar[float] = 400.0
+    runs: ClassVar[str] = "which in bearing '{}' runs"
+
+    viscosity: Viscosity | None = Field(
+        None, description="dynamic viscosity of the oil in the film, whatever its temperature; or give the oil"
+    )
+    oil: (
+        Literal[
+            "VG 10",
+            "VG 15",
+            "VG 22",
+            "VG 32",
+            "VG 46",
+            "VG 68",
+            "VG 100",
+            "VG 150",
+            "VG 220",
+            "VG 320",
+            "VG 460",
+            "VG 680",
+            "VG 1000",
+        ]
+        | None
+    ) = Field(
+        None,
+        description="grade of ISO 3448 of a mineral oil, in place of the viscosity: the film has that of its temperature in heat "
+        "balance",
+    )
+    inlet_temperature: Temperature | None = Field(None, description="temperature at which the oil flows in")
+    heat_share: Ratio = Field(
+        1.0,
+        description="share of the power loss of the film that the oil carries away; 1: all of it, 0: the film stays at the "
+        "inlet temperature",
+    )
+    specific_heat: SpecificHeat = Field(1900.0, description="specific heat of the oil")
+    density: Density = Field(
+        870.0, description="density of the oil, for the limit of laminar flow and the heat balance"
+    )
+
+    @property
+    def heats(self) -> bool:
+        """Whether the viscosity follows from the heat balance of the film."""
+        return self.oil is not None and self.heat_share > 0.0
+
+    @property
+    def follows(self) -> bool:
+        """Whether the oil flows in where the gap is widest."""
+        return False
+
+    @property
+    def settles(self) -> bool:
+        """Whether something of the film follows from the equilibrium that it is in."""
+        return self.heats or self.follows
+
+    @property
+    def grade(self) -> float:
+        """Kinematic viscosity at 40 deg C in m^2/s; 0 where the viscosity is given."""
+        return 1e-6 * float(self.oil.removeprefix("VG ")) if self.oil else 0.0
+
+    def oil_parameters(self) -> dict[str, Any]:
+        """Parameters of a law of its film, which begins at the temperature of the inlet."""
+        from rotorgear.forces.oil import oil_viscosity
+
+        given = {"density": self.density, "specific_heat": self.specific_heat, "heat_share": self.heat_share}
+        if self.viscosity is not None:
+            return {**given, "viscosity": self.viscosity}
+        assert self.inlet_temperature is not None
+        return {
+            **given,
+            "viscosity": oil_viscosity(self.grade, self.density, self.inlet_temperature),
+            "grade": self.grade,
+            "inlet_temperature": self.inlet_temperature,
+        }
+
+    def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
+        """A film alone in its bearing; a viscosity, or a grade with the temperature at which the oil flows in."""
+        if beside:
+            other = next(iter(beside))
+            got = f"{self.noun} beside {'a table' if other == 'table' else other}"
+            yield Problem(here, got, f"{self.noun} alone; {self.others}")
+        if self.viscosity is not None and self.oil is not None:
+            yield Problem(f"{here}.viscosity", "viscosity and oil", "one of the two")
+        elif self.viscosity == 0.0:
+            yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
+        elif self.viscosity is None and self.oil is None:
+            wanted = "a viscosity such as '0.02 Pa s', or an oil such as 'VG 46'"
+            yield Problem(here, "neither viscosity nor oil", wanted)
+        if self.oil is not None and self.inlet_temperature is None:
+            wanted = "a temperature such as '45 degC'"
+            yield Problem(f"{here}.inlet_temperature", "no temperature beside the oil", wanted)
+        if self.oil is None and (self.inlet_temperature is not None or self.heat_share != 1.0):
+            key = "inlet_temperature" if self.inlet_temperature is not None else "heat_share"
+            wanted = "an oil such as 'VG 46' in place of the viscosity"
+            yield Problem(f"{here}.{key}", "heat of a film of given viscosity", wanted)
+        if self.heat_share > 1.0:
+            yield Problem(f"{here}.heat_share", f"{self.heat_share:g}", "a share from 0 to 1")
+
+    def judged(self) -> Iterator[Judged]:
+        """Gap, viscosity, temperature and density."""
+        clearance: float = self.clearance  # type: ignore[attr-defined]  # each kind has one, in words of its own
+        share = clearance / (0.5 * self.surrounds)
+        words = (f"{clearance:.4g} m, {share:.2g} of the radius", f"{_FILM[0]:g} to {_FILM[1]:g}")
+        yield "clearance", share, _FILM, words, ("is its unit right?", "um meant?")
+        if self.viscosity is not None:
+            words = (f"{self.viscosity:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
+            yield "viscosity", self.viscosity, _VISCOSITY, words, ("is its unit right?", "mPa s (cP) meant?")
+        if self.inlet_temperature is not None:
+            words = (f"{self.inlet_temperature - _CELSIUS:.4g} degC", "-40 to 150 degC")
+            slips = ("degC meant, not K?", "is its unit right?")
+            yield "inlet_temperature", self.inlet_temperature, _INLET, words, slips
+        words = (f"{self.density:.4g} kg/m^3", f"{_OIL[0]:g} to {_OIL[1]:g} kg/m^3")
+        yield "density", self.density, _OIL, words, ("g/cm^3 meant?", "is its unit right?")

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import Field
 
 from rotorgear.errors import Problem
-from rotorgear.model.parts.bearings.geometry import Judged
-from rotorgear.model.parts.bearings.oil import Oil
+from rotorgear.model.parts.bearings.geometry import Judged, Oil
 from rotorgear.model.parts.fields import Angle, PositiveLength, Ratio, Whole
 from rotorgear.quantity import millimetres
 

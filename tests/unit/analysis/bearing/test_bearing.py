@@ -10,7 +10,7 @@ from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.system.local_bearings import bearing_law
+from rotorgear.system.local_parts import bearing_law
 from tests.disk_in_bearing import disk_in_bearing
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor

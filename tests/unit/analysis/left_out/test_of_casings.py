@@ -12,7 +12,7 @@ import rotorgear as rg
 from rotorgear.casings.casing import forget
 from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.wheel_reduction import reduce_wheel
-from rotorgear.model.layout.wheels import wheel_settings
+from rotorgear.model.layout.casings import wheel_settings
 from tests.unit.analysis.left_out.sentences import numbers, sentence
 from tests.unit.casings.blocks import block, write_inp
 from tests.unit.casings.test_wheel import WHEEL

@@ -19,7 +19,7 @@ from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import ModelError
 from rotorgear.gears.geometry.flank_tolerance import cumulative_pitch_tolerance
 from rotorgear.model.numbers import numbers_of
-from rotorgear.model.parts.scatter import Scatter
+from rotorgear.model.parts.operation import Scatter
 from rotorgear.model.spreads import spreads_of
 from rotorgear.system.plan import Plan
 from tests.contract.small_models import STEEL

@@ -7,8 +7,8 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.sweep.axes import axis_of
 from rotorgear.model.parts.mesh import Mesh
-from rotorgear.model.parts.nonlinear_element import NonlinearElement, element_law
 from rotorgear.model.parts.old_names import KEYS, VALUES
+from rotorgear.model.parts.supports import NonlinearElement, element_law
 from rotorgear.old_names import OldNameWarning, renamed_arguments
 from tests.paths import ROOT
 
