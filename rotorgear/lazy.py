@@ -15,6 +15,18 @@ from importlib import import_module
 from typing import Any
 
 
+def homes_of(file: str) -> dict[str, tuple[str, str]]:
+    """Public name -> its module and the name that it has there, from the stub beside a package's `__file__`."""
+    homes = {}
+    # Read as lines rather than parsed: `ast` alone takes longer than the rest of the import.
+    with open(os.path.join(os.path.dirname(file), "__init__.pyi"), encoding="utf-8") as stub:
+        for line in stub:
+            match line.split():
+                case ["from", module, "import", name, "as", public]:
+                    homes[public] = (module, name)
+    return homes
+
+
 def attach(
     package: str, file: str, former: Mapping[str, str] | None = None
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -25,13 +37,7 @@ def attach(
         file: its `__file__`.
         former: former name -> public name: still found in this version, with a warning that says the new one.
     """
-    homes: dict[str, tuple[str, str]] = {}  # public name: module, and the name that it has there
-    # Read as lines rather than parsed: `ast` alone takes longer than the rest of the import.
-    with open(os.path.join(os.path.dirname(file), "__init__.pyi"), encoding="utf-8") as stub:
-        for line in stub:
-            match line.split():
-                case ["from", module, "import", name, "as", public]:
-                    homes[public] = (module, name)
+    homes = homes_of(file)
 
     def load(name: str) -> Any:
         if former and name in former:

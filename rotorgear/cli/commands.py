@@ -1,93 +1,384 @@
-"""The commands: known by name and by what the help says of them, each imported only when it is called.
-
-A command's function stands in the file of its name. The sentences below are the first of these functions' docstrings, which
-`tests/unit/cli/test_commands.py` holds equal: help lists all commands without an import of any.
-"""
+"""All commands: each a verb, what becomes of its result, and what is the command's own. `rotorgear --help` reads nothing else."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
-from importlib import import_module
-from keyword import iskeyword
+from functools import cache
+from pathlib import Path
 from typing import Any
 
-import typer
 from typer.core import TyperGroup
 
-from rotorgear.cli.old_options import with_current_options
-
-HELP = {
-    "new": "Write a model file with comments, as a copy of one that comes with rotorgear, to change freely.",
-    "models": "List the models that come with rotorgear, to look at and to start from.",
-    "import": "Read a gearbox from a REXS file (XML, JSON or zip) into a model file, with a comment for every assumption.",
-    "modal": "Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed.",
-    "campbell": "Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability.",
-    "critical": "Critical speeds, damped or undamped, of every shaft and mesh order; with --map over support stiffness.",
-    "compare": "Compare modes with rig frequencies, shapes, responses or order cuts, and with what chance gives.",
-    "sensors": "Place the sensors of a modal test: which places tell the modes apart best, before the test is made.",
-    "update": "Update numbers of a model by a rig: most probable values, what the lines teach, and held-out proof.",
-    "static": "Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops.",
-    "response": "Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed.",
-    "frf": "Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out.",
-    "standards": "Amplification, separation margins, vibration, stability, torsion and balance against rules of standards.",
-    "transient": "Time response from the static equilibrium: contact forces, transmission error, bearings, spectra.",
-    "sweep": "Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters.",
-    "orbits": "Periodic motions over a parameter: stable and unstable branches, Floquet multipliers, folds and period doublings.",
-    "scatter": "Scatter of uncertain numbers: bands of frequencies, margins and load shares, and which number makes them.",
-    "optimise": "Keep excitations away from modes that they excite: numbers of a model within bounds, gradients exact.",
-    "check": "Show what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings.",
-    "gear": "Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth.",
-    "mesh": "Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle.",
-    "bearing": "Sheet of one bearing at the gearbox's own loads: inside, stiffness and damping over speed, whirl threshold.",
-    "casing": "Read the meshes of casings: mass, free and held modes, seats, errors of mesh and reduction, cost.",
-    "report": "Write one page about a model: drawing, statics, modes, Campbell, rules of standards, teeth, rig, errors, costs.",
-    "accuracy": "Convergence study: error against run time and dofs over a series of discretisations, with the measured order.",
-    "export": "Write the linear system for other programs: state space (.mat, .npz), sparse matrices, geometry and modes (UFF).",
-    "view": "Open a window that shows the gearbox and animates its modes.",
-    "schema": "Print the JSON Schema of the model file, for completion and checks in editors.",
-    "validate": "Run the validation cases: expected, got, error, dofs, seconds. Exit code 1 where one is out of tolerance.",
-}
+from rotorgear.cli.command import Command
+from rotorgear.cli.old_options import current
+from rotorgear.cli.options import Option, axes_of
+from rotorgear.cli.verb import REQUIRED
 
 
-def function_of(name: str) -> Any:
-    """The function of a command; one whose name Python keeps for itself has an underscore behind it, as has its file."""
-    own = f"{name}_" if iskeyword(name) else name
-    return getattr(import_module(f"rotorgear.cli.{own}"), own)
+def _frequencies(path: Path) -> list[float]:
+    import rotorgear as rg
+
+    return [line.frequency_hz for line in rg.read_rig_lines(path)]
 
 
-class Commands(Mapping[str, Any]):
-    """Name -> command, made of its function when it is asked for."""
+def _bounds(texts: list[str]) -> dict[str, list[str]]:
+    from rotorgear.cli.options import pairs_of
+
+    pairs = pairs_of("--bounds", texts, "NAME=LOW:HIGH such as 'tip_relief=0 um:60 um'")
+    return {name: text.split(":") for name, text in pairs.items()}
+
+
+_RIG = Option("Measured frequencies of a rig (CSV).", "path")
+_SPECTRUM = Option("List the lines in the spectrum of this history.", "text")
+_OVER = Option(
+    "Map over 'torque=500 N m:2000 N m:4' and 'misalignment=-20 um:20 um:5' (first, last, how many; or a list with colons); "
+    "given twice, or both with a comma between.",
+    "texts",
+    REQUIRED,
+    read=axes_of,
+)
+
+COMMANDS = (
+    Command(
+        "new",
+        "Model",
+        "Write a model file to change, as a copy of a shipped one",
+        options={"path": Option(shown="FILE")},
+        shows=(),
+        body="bodies.new",
+    ),
+    Command("models", "Model", "List the models that come with rotorgear", shows=(), body="bodies.models"),
+    Command(
+        "check",
+        "Model",
+        "What a model file describes: speeds, torques, masses, warnings",
+    ),
+    Command(
+        "view",
+        "Model",
+        "A window with the gearbox and its moving modes",
+        ("view", "modal"),
+        (),
+        body="bodies.view",
+        hidden=("model", "fmax", "only", "pruning", "error_estimate"),
+        options={"mode": Option("Mode to begin with, counted from 1.", default=1, least=1)},
+        needs={"pyvista": "A window"},
+    ),
+    Command(
+        "report",
+        "Model",
+        "One page about a model, with pictures (HTML)",
+        options={"output": Option("The page to write (HTML).", "path", Path("report.html"), ("-o", "--output"))},
+        needs={"jinja2": "A report", "matplotlib": "A report"},
+        body="bodies.report",
+    ),
+    Command(
+        "modal",
+        "Linear",
+        "Natural frequencies and mode shapes, at rest or at a speed",
+        shows=("json", "save", "plot", "vtk", "uff"),
+        options={
+            "rig": _RIG,
+            "tolerance": Option("Largest relative difference of a match with the rig.", "float", 0.05),
+            "energies": Option("Also list the energy shares of each mode by part.", "flag"),
+            "shapes": Option(
+                "Modes for --vtk, --plot and --uff, such as 1,6,9-12 (default: the six lowest, --uff all).", "text"
+            ),
+        },
+        table=("energies",),
+        body="bodies.modal",
+    ),
+    Command(
+        "campbell",
+        "Linear",
+        "Modes over speed: crossings, margins, whirl, stability",
+        shows=("json", "save", "plot", "vtk"),
+        options={
+            "sidebands": Option(least=0),
+            "crossings": Option("Also list all crossings with the lines.", "flag"),
+            "colour": Option("Colour of branches in --plot: motion, mesh or damping.", "text", "motion"),
+            "branch": Option("The branch that --vtk writes.", "int", 1, least=1),
+        },
+        table=("crossings",),
+        picture=("colour",),
+    ),
+    Command(
+        "critical",
+        "Linear",
+        "Critical speeds; with --map over support stiffness",
+        shows=("json", "save", "plot"),
+        options={
+            "damped": Option(flags=("--damped/--undamped",)),
+            "map": Option("Also the undamped map over the stiffness of the bearings, which --plot draws.", "flag"),
+            "map_shaft": Option("Shaft that excites in the map (default: the input).", "text"),
+        },
+        body="bodies.critical",
+    ),
+    Command(
+        "static",
+        "Linear",
+        "Deflections, forces, load sharing at the mean load",
+        shows=("json", "save", "plot", "vtk"),
+        options={"sensitivity": Option("Also list the sensitivities of the load shares of the branches.", "flag")},
+        table=("sensitivity",),
+    ),
+    Command(
+        "response",
+        "Linear",
+        "Run-up: forced vibration by order and speed",
+        shows=("json", "save", "plot", "vtk", "uff"),
+        options={
+            "waterfall": Option("Draw spectra over speed to this PNG, SVG or PDF.", "path"),
+            "at": Option("Mesh, bearing or point of --waterfall (default: mesh of the largest force).", "text"),
+        },
+    ),
+    Command(
+        "frf",
+        "Linear",
+        "Frequency responses between places",
+        shows=("json", "save", "plot", "uff"),
+        options={"quantity": Option("receptance, mobility or accelerance.", "text", "receptance")},
+        table=("quantity",),
+        picture=("quantity",),
+        body="bodies.frf",
+    ),
+    Command("standards", "Linear", "Rules of rotor standards with values and verdicts", shows=("json", "save")),
+    Command(
+        "scatter",
+        "Linear",
+        "Bands of frequencies and margins where numbers scatter",
+        shows=("json", "plot"),
+    ),
+    Command(
+        "optimise",
+        "Linear",
+        "Change numbers so that excitations stay off the modes",
+        shows=("json", "save", "plot", "output"),
+        options={
+            "bounds": Option(shown="ADDRESS=LOW:HIGH"),
+            "output": Option("Write the model file with the numbers found here.", "path", flags=("-o", "--output")),
+        },
+    ),
+    Command(
+        "accuracy",
+        "Linear",
+        "Error against run time over finer and finer meshes",
+        shows=("json", "save", "plot"),
+        options={
+            "modes": Option(least=1),
+            "finest": Option(least=1),
+            "reference": Option(
+                "Natural frequencies to compare with (CSV; default: the model's own finest).", "path", read=_frequencies
+            ),
+        },
+        body="bodies.accuracy",
+    ),
+    Command(
+        "transient",
+        "Nonlinear",
+        "Motion over time from the static state: backlash, spectra",
+        shows=("json", "plot", "vtk"),
+        options={
+            "frames": Option("Instants that --vtk writes.", "int", 120, least=2),
+            "spectrum": _SPECTRUM,
+            "rig": Option("Put the lines of this rig (CSV) beside those of --spectrum.", "path"),
+        },
+        needs={"numba": "A transient"},
+        body="bodies.transient",
+    ),
+    Command(
+        "sweep",
+        "Nonlinear",
+        "Bifurcations, Lyapunov exponents, response types",
+        shows=("json", "plot"),
+        options={
+            "over": Option(shown="ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,..."),
+            "portraits": Option(
+                "Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. With --plot "
+                "nine points where not given.",
+                "texts",
+            ),
+        },
+        needs={"numba": "A sweep"},
+        body="bodies.sweep",
+    ),
+    Command(
+        "orbits",
+        "Nonlinear",
+        "Branches of periodic motions and their stability",
+        shows=("json", "save", "plot"),
+        options={"over": Option(shown="ADDRESS=FROM:TO")},
+        needs={"numba": "A branch of periodic motions"},
+    ),
+    Command(
+        "gear",
+        "Teeth and parts",
+        "Gear sheet: geometry, measures, contact ratios",
+        shows=("json", "plot"),
+        picture=("mesh",),
+    ),
+    Command(
+        "mesh",
+        "Teeth and parts",
+        "Stiffness, transmission error, pressure over a mesh cycle",
+        shows=("json", "plot", "vtk"),
+        options={
+            "harmonics": Option("Mesh orders that are listed.", "int", 5, least=0),
+            "at": Option("Position in mesh periods that --vtk writes.", "float", 0.0),
+        },
+        table=("harmonics",),
+    ),
+    Command(
+        "mesh-map",
+        "Teeth and parts",
+        "The same over torque and misalignment",
+        shows=("json", "plot", "csv"),
+        options={"over": _OVER},
+    ),
+    Command(
+        "optimise-flanks",
+        "Teeth and parts",
+        "Flank modifications with the least transmission error",
+        options={
+            "over": _OVER,
+            "bounds": Option(read=_bounds, shown="NAME=LOW:HIGH"),
+            "tolerance": Option(shown="NAME=SIZE"),
+            "weights": Option(least=0),
+        },
+    ),
+    Command("root-stress", "Teeth and parts", "Stress in the tooth roots over a mesh cycle", shows=("json", "plot")),
+    Command(
+        "bearing",
+        "Teeth and parts",
+        "Sheet of one bearing at the gearbox's loads",
+        shows=("json", "save", "plot"),
+        positional=("name",),
+    ),
+    Command(
+        "casing",
+        "Teeth and parts",
+        "Meshes of casings: modes, seats, errors, cost",
+        shows=("json", "vtk"),
+        options={"modes": Option(least=1)},
+    ),
+    Command(
+        "compare",
+        "Rig",
+        "Modes or responses beside those of a rig",
+        ("compare", "compare_shapes", "compare_frf", "compare_orders"),
+        ("json", "plot"),
+        hidden=("known_to_hz", "samples", "seed"),
+        options={"lines": Option("The file of --rig, without the word.", "path", shown="[RIG]"), "rig": _RIG},
+        positional=("lines",),
+        body="bodies.compare",
+    ),
+    Command(
+        "sensors",
+        "Rig",
+        "Where to put the sensors of a modal test",
+        shows=("json", "save", "output"),
+        options={"output": Option("Write the table of sensors here (CSV).", "path", flags=("-o", "--output"))},
+    ),
+    Command(
+        "update",
+        "Rig",
+        "Numbers of a model that a rig makes most probable",
+        shows=("json", "save", "output"),
+        options={"output": Option("Write the updated model file here.", "path", flags=("-o", "--output"))},
+    ),
+    Command(
+        "import",
+        "Files",
+        "A gearbox from a REXS file as a model file",
+        ("import_rexs",),
+        options={
+            "path": Option("REXS file, 1.0 to 1.6: XML, JSON or zip.", "path", REQUIRED, shown="FILE"),
+            "output": Option("Model file to write, such as model.toml.", "path", REQUIRED, ("-o", "--output")),
+            "force": Option("Overwrite the model file if it is there.", "flag"),
+        },
+        body="bodies.import_rexs",
+    ),
+    Command(
+        "export",
+        "Files",
+        "The linear system for other programs (.mat, .npz, UFF)",
+        ("state_space", "write_matrices"),
+        ("json", "uff"),
+        hidden=("path",),
+        options={
+            "inputs": Option(default=None),
+            "outputs": Option(default=None),
+            "fmax": Option(default=None),
+            "state_space": Option("Write A B C D and M D K to this .mat or .npz.", "path"),
+            "matrices": Option("Write sparse M C G K to this .npz.", "path"),
+            "uff": Option("Write geometry and modes to this universal file.", "path"),
+            "modes": Option("Modes of the universal file (default: 12, or to --fmax).", "int"),
+        },
+        body="bodies.export",
+    ),
+    Command(
+        "schema",
+        "Files",
+        "The JSON Schema of the model file, for editors",
+        options={"json": Option("Write it to this file instead of the terminal.", "path")},
+        body="bodies.schema",
+    ),
+    Command(
+        "validate",
+        "Files",
+        "Run the validation cases; exit code 1 where one fails",
+        (),
+        options={"cases": Option("Cases to run, such as two_disk_rotor (default: all).", "texts")},
+        positional=("cases",),
+        body="bodies.validate",
+    ),
+)
+
+
+@cache
+def command(name: str) -> Any:
+    """A command as typer runs it, made when it is asked for."""
+    return next(one for one in COMMANDS if one.name == name).to_typer()
+
+
+class _ByName(Mapping[str, Any]):
+    """Name -> command."""
 
     def __getitem__(self, name: str) -> Any:
-        if name not in HELP:
+        if name not in list(self):
             raise KeyError(name)
-        function = function_of(name)
-        single = typer.Typer(add_completion=False, rich_markup_mode=None)
-        single.command(name)(function)
-        return typer.main.get_command(single)
+        return command(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(HELP)
+        return (one.name for one in COMMANDS)
 
     def __len__(self) -> int:
-        return len(HELP)
+        return len(COMMANDS)
 
 
 class CommandGroup(TyperGroup):
-    """The group of all commands; they are told former options by their present names."""
+    """The group of all commands; former names and options are told to them by the present ones."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        self.commands = Commands()  # type: ignore[assignment]
+        self.commands = _ByName()  # type: ignore[assignment]
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl(list(HELP.items()))
+        width = max(len(one.name) for one in COMMANDS)
+        for group in dict.fromkeys(one.group for one in COMMANDS):
+            with formatter.section(group):
+                # Names as wide as the widest of all groups, so that the columns of the groups are in line.
+                formatter.write_dl([(f"{one.name:{width}}", one.summary) for one in COMMANDS if one.group == group])
+
+    def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
+        # Typer's own would make every command to list its name.
+        from click.shell_completion import CompletionItem
+
+        return [CompletionItem(one.name, help=one.summary) for one in COMMANDS if one.name.startswith(incomplete)]
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
-        name, command, rest = super().resolve_command(ctx, args)
-        return name, command, with_current_options(name or "", rest)
+        return super().resolve_command(ctx, current(args))
 
     def invoke(self, ctx: Any) -> Any:
         # Here and not in main(): typer makes an exit without a word of an interrupt.

@@ -1,4 +1,4 @@
-"""Former names of the command line's options: still read for one version, with a warning that says the new one."""
+"""Former names of commands and options: still read for one version, with a warning that says the new one."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ import typer
 
 # Command -> former option -> option.
 OPTIONS: dict[str, dict[str, str]] = {
-    "modal": {"--picture": "--plot"},
+    "new": {"--from": "--source"},
+    "modal": {"--picture": "--plot", "--compare": "--rig"},
     "gear": {"--picture": "--plot"},
     "response": {"--damping": "--modal-damping"},
     "frf": {"--damping": "--modal-damping", "--from": "--inputs", "--to": "--outputs"},
     "mesh": {"--loads": "--load-factors"},
+    "optimise-flanks": {"--optimise": "--variables"},
     "sweep": {
         "--starts": "--initial-conditions",
         "--settle": "--discard",
@@ -19,19 +21,30 @@ OPTIONS: dict[str, dict[str, str]] = {
     },
     "transient": {"--settle": "--discard"},
 }
+# Options of mesh that are commands of their own now; the first of them that is given says which.
+_OF_MESH = {"--root-stress": "root-stress", "--optimise": "optimise-flanks", "--over": "mesh-map"}
 
 
-def with_current_options(command: str, args: list[str]) -> list[str]:
-    """Return the arguments of a command with former options replaced, and warn of each on stderr."""
+def current(args: list[str]) -> list[str]:
+    """Return a command and its arguments by their present names, and warn of each former one on stderr."""
+    if not args:
+        return args
+    command, *rest = args
+    if command == "mesh":
+        for option, name in _OF_MESH.items():
+            if any(arg.partition("=")[0] == option for arg in rest):
+                _warn(f"mesh {option}", f"the command {name}")
+                command = name
+                rest = [arg for arg in rest if arg != "--root-stress"]
+                break
     renamed = OPTIONS.get(command, {})
-    current = []
-    for arg in args:
+    for place, arg in enumerate(rest):
         option, sign, value = arg.partition("=")
         if option in renamed:
-            typer.echo(
-                f"Warning: {option} is now {renamed[option]}; the old name is read for the last time in this version",
-                err=True,
-            )
-            option = renamed[option]
-        current.append(option + sign + value)
-    return current
+            _warn(option, renamed[option])
+            rest[place] = renamed[option] + sign + value
+    return [command, *rest]
+
+
+def _warn(old: str, new: str) -> None:
+    typer.echo(f"Warning: {old} is now {new}; the old name is read for the last time in this version", err=True)

@@ -1,0 +1,116 @@
+"""A command with what was given to it: what is refused before anything is read, the model, and the verb with its arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import typer
+
+import rotorgear as rg
+from rotorgear.cli.command import Command
+from rotorgear.cli.console import progress_bar
+from rotorgear.cli.options import value_of
+from rotorgear.cli.verb import REQUIRED, arguments_of
+from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.extras import require
+
+
+class Call:
+    """A command with what was given to it: `call["speed"]` is the text or number of --speed, None where it was not given."""
+
+    def __init__(self, command: Command, given: Mapping[str, Any]) -> None:
+        self.command = command
+        self.given = given
+        for package, purpose in command.needs.items():
+            require(package, purpose)
+        if self["plot"] is not None:
+            if self["plot"].suffix:
+                self._require_picture(self["plot"])
+            require(*(("pyvista", "A picture of a mode") if command.name == "modal" else ("matplotlib", "A plot")))
+        if self["waterfall"] is not None:
+            self._require_picture(self["waterfall"])
+            require("matplotlib", "A plot")
+        if self["vtk"] is not None:
+            require("pyvista", "VTK output")
+        if self["output"] is not None and command.name in ("update", "optimise"):
+            require("tomlkit", "Writing a changed model file")
+        if self["resume"] and self["save"] is None:
+            raise AnalysisError("--resume needs the --save of the run that was interrupted")
+        workers, cluster = self["workers"], self["cluster"]
+        if workers is not None and workers < 1:
+            raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
+        if workers is not None and cluster is not None:
+            raise AnalysisError(
+                "--workers are threads on this machine, --cluster are workers elsewhere: give one of them"
+            )
+
+    @staticmethod
+    def _require_picture(path: Path) -> None:
+        from rotorgear.plots.figure import require_picture_name
+
+        require_picture_name(path)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.given.get(name)
+
+    def asked(self, name: str) -> Any:
+        """The value of an option as the verb takes it; None where it was not given."""
+        option, given = self.command.choices[name], self[name]
+        default = None if option.default is REQUIRED else option.default
+        if given is None or given in (default, []) or (given is False and default is None):
+            return None
+        return value_of(name, option, given)
+
+    def arguments(self, verb: str) -> dict[str, Any]:
+        """The arguments of a verb that were given; what was not is left to the verb."""
+        names = [name for name in arguments_of(verb) if name in self.command.choices]
+        asked = {name: self.asked(name) for name in names[1:]}
+        return {name: value for name, value in asked.items() if value is not None}
+
+    @property
+    def source_path(self) -> Path:
+        """The file that is named first."""
+        path: Path = self.given[self.command.source]
+        return path
+
+    @property
+    def saved(self) -> bool:
+        """Whether that file is a saved result; any other is a model file."""
+        return self.source_path.suffix.lower() in (".h5", ".hdf5")
+
+    @cached_property
+    def source(self) -> Any:
+        """The model or the saved result of the file that is named first."""
+        return rg.read(self.source_path) if self.saved else rg.load(self.source_path)
+
+    def result(self, verb: str = "", **more: Any) -> Any:
+        """Run a verb, by default that of the command, with a bar of progress; `more` goes before what was given."""
+        verb = verb or self.command.verbs[0]
+        known = arguments_of(verb)
+        with ExitStack() as stack:
+            progress = stack.enter_context(progress_bar(self.command.name))
+            arguments = self.arguments(verb) | more
+            source = self.source
+            if self["cluster"] is not None:
+                arguments["executor"] = stack.enter_context(rg.cluster(self["cluster"]))
+            if "stream" in known and self["save"]:
+                stack.enter_context(_kept_blocks(self["save"]))
+                arguments["stream"] = rg.stream(self["save"], resume=self["resume"])
+            if "progress" in known:
+                arguments["progress"] = progress
+            return getattr(rg, verb)(source, **arguments)
+
+
+@contextmanager
+def _kept_blocks(save: Path) -> Iterator[None]:
+    """Say, where a run that saves blocks is interrupted, that those which were done are kept."""
+    try:
+        yield
+    except (KeyboardInterrupt, RotorgearError):
+        if any(Path(f"{save}.parts").glob("chunk_*")):
+            typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
+        raise

@@ -1,0 +1,109 @@
+"""What a verb says of its arguments: names, types, defaults and the docstring's words, from which its command is made.
+
+They are read from the verb's source and not from the function: to import a verb takes half a second and the packages that it
+computes with, and neither help nor the completion of a shell is to wait for those.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import rotorgear
+from rotorgear.lazy import homes_of
+
+# The default of an argument that has none.
+REQUIRED = object()
+_ENTRY = re.compile(r"    (?P<names>\w+(?:, \w+)*): (?P<text>.*)")
+_ELSEWHERE = re.compile(r"\bas (?:in|for) `(\w+)`")
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An argument of a verb: its annotation as it is written, its default (None where that is no plain value), its help."""
+
+    annotation: str
+    default: Any
+    help: str
+
+
+def source_of(verb: str) -> str:
+    """The text of the module that a verb stands in."""
+    module = homes_of(rotorgear.__file__)[verb][0]
+    path = Path(rotorgear.__file__).parent.joinpath(*module.split(".")[1:])
+    return (path / "__init__.py" if path.is_dir() else path.with_suffix(".py")).read_text(encoding="utf-8")
+
+
+@cache
+def arguments_of(verb: str) -> dict[str, Argument]:
+    """The arguments of a verb by name, in their order."""
+    module = ast.parse(source_of(verb))
+    function = _function(module, verb)
+    texts = _texts(ast.get_docstring(function) or "")
+    listed = function.args.posonlyargs + function.args.args
+    defaults = [None] * (len(listed) - len(function.args.defaults)) + function.args.defaults
+    return {
+        argument.arg: Argument(
+            ast.unparse(argument.annotation) if argument.annotation else "",
+            _plain(module, default),
+            _resolved(argument.arg, texts.get(argument.arg, "")),
+        )
+        for argument, default in [
+            *zip(listed, defaults, strict=True),
+            *zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True),
+        ]
+    }
+
+
+def summary_of(verb: str) -> str:
+    """What a verb's docstring says before it comes to the arguments."""
+    text = ast.get_docstring(_function(ast.parse(source_of(verb)), verb)) or ""
+    return re.split(r"\n(?:Args|Returns|Raises):\n", text)[0].strip()
+
+
+def _function(module: ast.Module, verb: str) -> ast.FunctionDef:
+    name = homes_of(rotorgear.__file__)[verb][1]
+    # The last one of a name is the function, those before it are its overloads.
+    return [item for item in module.body if isinstance(item, ast.FunctionDef) and item.name == name][-1]
+
+
+def _plain(module: ast.Module, default: ast.expr | None) -> Any:
+    """The value of a default that is a literal, or a name that the module gives one."""
+    if default is None:
+        return REQUIRED
+    if isinstance(default, ast.Name):
+        for item in module.body:
+            if isinstance(item, ast.Assign) and ast.unparse(item.targets[0]) == default.id:
+                default = item.value
+                break
+    try:
+        return ast.literal_eval(default)
+    except ValueError:
+        return None
+
+
+def _texts(docstring: str) -> dict[str, str]:
+    """The words of the section `Args:` by argument; one entry may speak of several."""
+    section = docstring.partition("\nArgs:\n")[2].partition("\n\n")[0]
+    texts: dict[str, str] = {}
+    names: list[str] = []
+    for line in section.splitlines():
+        if entry := _ENTRY.fullmatch(line):
+            names = entry["names"].split(", ")
+            texts |= dict.fromkeys(names, entry["text"])
+        else:
+            texts |= {name: f"{texts[name]} {line.strip()}" for name in names}
+    return texts
+
+
+def _resolved(name: str, text: str) -> str:
+    """The words with those of another verb in place of "as in `verb`"."""
+
+    def words(found: re.Match[str]) -> str:
+        return arguments_of(found[1])[name].help.removesuffix(".")
+
+    return _ELSEWHERE.sub(words, text)
