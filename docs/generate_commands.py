@@ -1,30 +1,41 @@
-"""Writes docs/commands.md from the commands themselves: every argument and option, with what its help says of it."""
+"""Writes the commands: a table of all of them for docs/commands.md, and for the site every option with its words.
+
+Both come from what the commands are made of (`rotorgear/cli/commands.py`), and that from the verbs.
+"""
 
 from __future__ import annotations
 
 import typer
 
-from rotorgear.cli.commands import HELP
+from rotorgear.cli.commands import COMMANDS
 from rotorgear.cli.main import app
 
 HEAD = """# Commands
 
-Every command with its arguments and options, in the words of `rotorgear COMMAND --help`. This page is written by
-`docs/generate_commands.py`; the other pages show the commands at work. `rotorgear --version` prints the version, `-h` help.
-A command ends with exit code 0, or with 2 and one report where what was asked can't be done ([errors](errors.md)).
+Every command is the Python verb of its name: arguments, defaults and words are those of the verb. `rotorgear --help` lists
+the commands, `rotorgear COMMAND --help` the options of one; `rotorgear --install-completion` lets the shell complete both.
+An option means the same everywhere: `--from`, `--to` and `--speed` are speeds of the input shaft, `--rig` is a file of
+measured frequencies, `--json` and `--save` write the result, `--vtk` a folder for ParaView, and `--plot` draws one picture to a
+file that ends in .png, .svg or .pdf, or every picture into a folder. A command ends with exit code 0, or with 2 and one
+report where what was asked can't be done ([errors](errors.md)).
 """
 
 
 def pages() -> dict[str, str]:
-    """Return the page by its path."""
-    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    """Return the table of commands by the page's path."""
+    rows = [f"| `{command.name}` | {command.group} | {_escaped(command.summary)} |" for command in COMMANDS]
+    return {"docs/commands.md": "\n".join([HEAD, "| | group | what it does |", "|---|---|---|", *rows]) + "\n"}
+
+
+def site_pages() -> dict[str, str]:
+    """Return the page of the site by its path: every command with its options."""
+    made = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     parts = [HEAD]
-    for name, sentence in HELP.items():
-        parts.append(f"## {name}\n\n{_escaped(sentence)}\n")
-        rows = [_row(parameter) for parameter in commands[name].params if parameter.name != "help"]
-        if not rows:
-            continue
-        parts.append("\n".join(["| | default | meaning |", "|---|---|---|", *rows]) + "\n")
+    for command in COMMANDS:
+        parts.append(f"## {command.name}\n\n{_escaped(command.summary)}.\n")
+        rows = [_row(parameter) for parameter in made[command.name].params if parameter.name != "help"]
+        if rows:
+            parts.append("\n".join(["| | default | meaning |", "|---|---|---|", *rows]) + "\n")
     return {"docs/commands.md": "\n".join(parts).rstrip() + "\n"}
 
 

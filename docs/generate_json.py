@@ -18,7 +18,7 @@ write, in both directions.
 SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     (
         "modal",
-        "`rotorgear modal MODEL --json modal.json`. With `--compare`, the keys of the [comparison](#compare) stand below\n"
+        "`rotorgear modal MODEL --json modal.json`. With `--rig`, the keys of the [comparison](#compare) stand below\n"
         "`comparison`.",
         (("modal", ""),),
     ),
@@ -53,17 +53,17 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "mesh map",
-        "`rotorgear mesh MODEL --over torque=... --json map.json`. Lists of lists are by torque and misalignment.",
+        "`rotorgear mesh-map MODEL --over torque=... --json map.json`. Lists of lists are by torque and misalignment.",
         (("mesh_map", ""),),
     ),
     (
         "mesh optimum",
-        "`rotorgear mesh MODEL --optimise ... --json best.json`. Lists of lists are by torque and misalignment.",
+        "`rotorgear optimise-flanks MODEL --variables ... --json best.json`. Lists of lists are by torque and misalignment.",
         (("mesh_optimum", ""),),
     ),
     (
         "root stress",
-        "`rotorgear mesh MODEL --root-stress --json roots.json`.",
+        "`rotorgear root-stress MODEL --json roots.json`.",
         (("root_stress", ""),),
     ),
     (

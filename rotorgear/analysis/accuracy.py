@@ -86,23 +86,23 @@ def accuracy(
 
     Args:
         model: a checked model.
-        analysis: "modal", "campbell", "critical", "static", "response", "frf", "mesh" (teeth in contact), "bearing" (film or
-            rolling elements), "transient", "sweep", "orbits" (one periodic motion) or "casing" (its mesh and its reduction).
-        speed: of the input shaft, as in that analysis; not for a mesh.
-        stop: campbell, critical: the highest speed of the range.
-        modes: modal, campbell, casing: how many modes are compared; 24 where not given, of a casing 8.
-        fmax: response, frf: highest frequency in Hz.
-        at: frf: where force and response are; the first disk, gear or bearing where not given.
-        reference: modal: natural frequencies in Hz to compare with, in place of the model's own finest.
-        mesh: mesh: its name; None where there is only one.
-        torque: mesh: on the pinion, in N m or as a text, in place of the model's.
-        bearing: bearing: its name; None where there is only one with a law.
-        time: transient: duration; 8 periods of the slowest mesh where not given.
-        modal_damping: response, frf, transient: damping ratio of every elastic mode.
-        casing: casing: its name; None where there is only one.
-        coupled: casing: whether the modes are those of the gearbox with it, not its own.
-        finest: casing: most unknowns of the mesh to compare with; 300 000 where not given.
-        excite: orbits: name of the mesh whose stage excites alone.
+        analysis: what is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), bearing (film or
+            rolling elements), transient, sweep, orbits (one periodic motion) or casing (its mesh and its reduction).
+        speed: speed of the input shaft in rad/s or with its unit, as in that analysis; not for a mesh.
+        stop: for campbell and critical: the highest speed of the range.
+        modes: for modal, campbell and casing: number of modes that are compared (default: 24, of a casing 8).
+        fmax: for response and frf: highest frequency in Hz.
+        at: for frf: where force and response are (default: the first disk, gear or bearing).
+        reference: for modal: natural frequencies in Hz to compare with (default: the model's own finest).
+        mesh: for mesh: its name; it may be left out where there is only one.
+        torque: for mesh: torque on the pinion in N m or with its unit (default: that of the model).
+        bearing: for bearing: its name; it may be left out where only one has a law.
+        time: for transient: time that is evaluated (default: 8 periods of the slowest mesh).
+        modal_damping: for response, frf and transient: damping ratio of every elastic mode.
+        casing: for casing: its name; it may be left out where there is only one.
+        coupled: for casing: modes of the gearbox with it, not its own.
+        finest: for casing: largest number of unknowns of the mesh to compare with (default: 300 000).
+        excite: for orbits: name of the mesh whose stage excites alone.
         progress: callable that is told fraction and step.
 
     Returns:

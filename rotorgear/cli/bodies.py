@@ -51,7 +51,7 @@ def transient(call: Call) -> None:
     if call["rig"] and not call["spectrum"]:
         raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
     result = call.result(frames=call["frames"] if call["vtk"] else 0)
-    beside = {}
+    beside: dict[str, Any] = {}
     if call["spectrum"]:
         beside["spectrum"] = rg.spectral_lines(result, call["spectrum"])
         if call["rig"]:
@@ -136,7 +136,8 @@ def export(call: Call) -> None:
 def report(call: Call) -> None:
     """One page about a model."""
     with progress_bar("report") as progress:
-        done = rg.report(call.source_path, call["output"], **call.arguments("report"), progress=progress)
+        asked = {"output": call["output"]} | call.arguments("report")
+        done = rg.report(call.source_path, **asked, progress=progress)
     write_json(call, done.to_dict())
     typer.echo(f"wrote {done.path}, {done.path.stat().st_size / 1e6:.2f} MB")
     for name, reason in done.missing.items():
@@ -201,5 +202,6 @@ def validate(call: Call) -> None:
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
     importlib.invalidate_caches()
-    runner: Any = importlib.import_module("validation.runner")  # it stands outside the package
-    raise typer.Exit(runner.main(call["cases"] or [], call["json"]))
+    from validation.runner import main  # it stands outside the package
+
+    raise typer.Exit(main(call["cases"] or [], call["json"]))

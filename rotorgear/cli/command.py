@@ -6,7 +6,6 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import import_module
 from typing import Any
 
 import typer
@@ -104,14 +103,11 @@ class Command:
             shown |= _BLOCKS
         return choices | {name: option_of(name, None, self.options.get(name, option)) for name, option in shown.items()}
 
-    def to_typer(self) -> Any:
-        """The command as typer runs it."""
+    def function(self, body: Callable[[Command, dict[str, Any]], None]) -> Callable[..., None]:
+        """The command as a function with the signature that typer reads; `body` is told the command and what was given."""
 
         def run(**given: Any) -> None:
-            module, _, name = self.body.rpartition(".")
-            call = import_module("rotorgear.cli.run").Call(self, given)
-            body: Callable[[Any], None] = getattr(import_module(f"rotorgear.cli.{module}"), name)
-            body(call)
+            body(self, given)
 
         positional = (self.source, *self.positional)
         parameters = [
@@ -123,8 +119,12 @@ class Command:
         # In place of the verb's first sentence that of the list of commands; what follows it in the docstring, as it is.
         more = "\n\n".join(summary_of(verb).partition("\n\n")[2] for verb in self.verbs[:1])
         run.__doc__ = f"{self.summary}.\n\n{more}".replace("`", "")
+        return run
+
+    def to_typer(self, body: Callable[[Command, dict[str, Any]], None]) -> Any:
+        """The command as typer runs it; `body` as in `function`."""
         single = typer.Typer(add_completion=False, rich_markup_mode=None)
-        single.command(self.name, cls=CommandInGroups)(run)
+        single.command(self.name, cls=CommandInGroups)(self.function(body))
         return typer.main.get_command(single)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,7 @@ def _bounds(texts: list[str]) -> dict[str, list[str]]:
     return {name: text.split(":") for name, text in pairs.items()}
 
 
-_RIG = Option("Measured frequencies of a rig (CSV).", "path")
+_RIG = Option("Measured frequencies of a rig (CSV).", "path", None)
 _SPECTRUM = Option("List the lines in the spectrum of this history.", "text")
 _OVER = Option(
     "Map over 'torque=500 N m:2000 N m:4' and 'misalignment=-20 um:20 um:5' (first, last, how many; or a list with colons); "
@@ -52,7 +53,7 @@ COMMANDS = (
     Command(
         "check",
         "Model",
-        "What a model file describes: speeds, torques, masses, warnings",
+        "What a model file describes, and what is wrong in it",
     ),
     Command(
         "view",
@@ -74,12 +75,28 @@ COMMANDS = (
         body="bodies.report",
     ),
     Command(
+        "accuracy",
+        "Model",
+        "Error against run time over finer and finer meshes",
+        shows=("json", "save", "plot"),
+        options={
+            "modes": Option(least=1),
+            "finest": Option(least=1),
+            "reference": Option(
+                "Natural frequencies to compare with (CSV; default: the model's own finest).", "path", read=_frequencies
+            ),
+        },
+        body="bodies.accuracy",
+    ),
+    Command(
         "modal",
         "Linear",
         "Natural frequencies and mode shapes, at rest or at a speed",
         shows=("json", "save", "plot", "vtk", "uff"),
+        hidden=("error_estimate",),
         options={
             "rig": _RIG,
+            "plot": Option("Render the modes of --shapes: the first to a .png, or all of them into a folder.", "path"),
             "tolerance": Option("Largest relative difference of a match with the rig.", "float", 0.05),
             "energies": Option("Also list the energy shares of each mode by part.", "flag"),
             "shapes": Option(
@@ -94,6 +111,7 @@ COMMANDS = (
         "Linear",
         "Modes over speed: crossings, margins, whirl, stability",
         shows=("json", "save", "plot", "vtk"),
+        hidden=("error_estimate",),
         options={
             "sidebands": Option(least=0),
             "crossings": Option("Also list all crossings with the lines.", "flag"),
@@ -161,20 +179,6 @@ COMMANDS = (
         },
     ),
     Command(
-        "accuracy",
-        "Linear",
-        "Error against run time over finer and finer meshes",
-        shows=("json", "save", "plot"),
-        options={
-            "modes": Option(least=1),
-            "finest": Option(least=1),
-            "reference": Option(
-                "Natural frequencies to compare with (CSV; default: the model's own finest).", "path", read=_frequencies
-            ),
-        },
-        body="bodies.accuracy",
-    ),
-    Command(
         "transient",
         "Nonlinear",
         "Motion over time from the static state: backlash, spectra",
@@ -198,6 +202,7 @@ COMMANDS = (
                 "Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. With --plot "
                 "nine points where not given.",
                 "texts",
+                None,
             ),
         },
         needs={"numba": "A sweep"},
@@ -232,7 +237,7 @@ COMMANDS = (
     Command(
         "mesh-map",
         "Teeth and parts",
-        "The same over torque and misalignment",
+        "A mesh cycle over torque and misalignment",
         shows=("json", "plot", "csv"),
         options={"over": _OVER},
     ),
@@ -269,7 +274,13 @@ COMMANDS = (
         ("compare", "compare_shapes", "compare_frf", "compare_orders"),
         ("json", "plot"),
         hidden=("known_to_hz", "samples", "seed"),
-        options={"lines": Option("The file of --rig, without the word.", "path", shown="[RIG]"), "rig": _RIG},
+        options={
+            "lines": Option("The same as --rig.", "path", shown="RIG"),
+            "rig": _RIG,
+            "shapes": Option(default=None),
+            "frf": Option(default=None),
+            "orders": Option(default=None),
+        },
         positional=("lines",),
         body="bodies.compare",
     ),
@@ -329,7 +340,7 @@ COMMANDS = (
         "Files",
         "Run the validation cases; exit code 1 where one fails",
         (),
-        options={"cases": Option("Cases to run, such as two_disk_rotor (default: all).", "texts")},
+        options={"cases": Option("Cases to run, such as two_disk_rotor (default: all).", "texts", shown="CASE")},
         positional=("cases",),
         body="bodies.validate",
     ),
@@ -339,7 +350,14 @@ COMMANDS = (
 @cache
 def command(name: str) -> Any:
     """A command as typer runs it, made when it is asked for."""
-    return next(one for one in COMMANDS if one.name == name).to_typer()
+    return next(one for one in COMMANDS if one.name == name).to_typer(_run)
+
+
+def _run(command: Command, given: dict[str, Any]) -> None:
+    """Run a command; what it runs is imported now, and not for help."""
+    module, _, name = command.body.rpartition(".")
+    call = import_module("rotorgear.cli.run").Call(command, given)
+    getattr(import_module(f"rotorgear.cli.{module}"), name)(call)
 
 
 class _ByName(Mapping[str, Any]):

@@ -22,7 +22,6 @@ app = typer.Typer(
     cls=CommandGroup,
     help="Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file.",
     no_args_is_help=True,
-    add_completion=False,
     rich_markup_mode=None,  # plain help: to import rich's takes longer than all else
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},  # every command inherits it

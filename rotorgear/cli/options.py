@@ -93,7 +93,8 @@ def option_of(name: str, argument: Argument | None, own: Option | None) -> Optio
         default = ",".join(f"{value:g}" if isinstance(value, float) else str(value) for value in default) or None
     elif kind == "quantity" and isinstance(default, int | float):
         default = f"{default:g}"
-    text = (own.help or argument.help).replace("`", "")
+    # What only Python takes ends the words of an argument.
+    text = re.sub(r"[;.] in Python\b.*", ".", own.help or argument.help, flags=re.IGNORECASE).replace("`", "")
     return replace(own, kind=kind, default=default, help=text[:1].upper() + text[1:])
 
 
@@ -112,7 +113,9 @@ def parameter(name: str, option: Option, panel: str, positional: bool = False) -
         "min": option.least,
     }
     if positional:
-        info: Any = typer.Argument(**settings, metavar=option.shown or ("MODEL" if option.help.startswith("Model") else None))
+        info: Any = typer.Argument(
+            **settings, metavar=option.shown or ("MODEL" if option.help.startswith("Model") else None)
+        )
     else:
         flags = option.flags or (spelling(name),)
         if option.kind == "flag":

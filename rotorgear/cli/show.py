@@ -58,8 +58,8 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
     if call["vtk"]:
         _write_vtk(call, result, call["vtk"])
     if call["uff"]:
-        modes = {} if call["shapes"] is None else {"modes": _shapes(call, result)}
-        typer.echo(f"wrote {rg.write_uff(result, call['uff'], **modes)}")
+        modes = None if call["shapes"] is None else _shapes(call, result)
+        typer.echo(f"wrote {rg.write_uff(result, call['uff'], modes=modes)}")
     if call["csv"]:
         from rotorgear.export.csv_file import write_csv
 
@@ -94,7 +94,9 @@ def _draw(call: Call, result: Any, path: Path) -> None:
         modes = _shapes(call, result)
         with progress_bar("plot") as progress:
             if not path.suffix:
-                _tell(write_modes(result, path, modes=modes, progress=progress), path, _of_modes(result, modes))
+                _tell(
+                    "picture", write_modes(result, path, modes=modes, progress=progress), path, _of_modes(result, modes)
+                )
                 return
             if path.suffix.lower() != ".png":
                 raise AnalysisError(f"--plot: modes are rendered as PNG; got '{path.name}'")
@@ -107,15 +109,19 @@ def _draw(call: Call, result: Any, path: Path) -> None:
     if path.suffix:
         typer.echo(f"wrote {rg.plot.save(draw(), path)}")
         return
-    if result.kind in ("transient", "sweep"):
-        from importlib import import_module
+    if result.kind == "transient":
+        from rotorgear.plots import transient
 
-        paths = import_module(f"rotorgear.plots.{result.kind}").write_pictures(result, path)
+        paths = transient.write_pictures(result, path)
+    elif result.kind == "sweep":
+        from rotorgear.plots import sweep
+
+        paths = sweep.write_pictures(result, path)
     else:
         from rotorgear.plots.figure import save_all
 
         paths = save_all({f"{result.kind}.png": draw}, path)
-    _tell(paths, path)
+    _tell("picture", paths, path)
 
 
 def _write_vtk(call: Call, result: Any, folder: Path) -> None:
@@ -141,7 +147,7 @@ def _write_vtk(call: Call, result: Any, folder: Path) -> None:
                 paths = _write_teeth(call, result, folder, progress)
             case _:
                 paths = rg.write_deflections(result, folder, progress=progress)
-    _tell(paths, folder, hint)
+    _tell("file", paths, folder, hint)
 
 
 def _write_teeth(call: Call, result: Any, folder: Path, progress: Progress) -> list[Path]:
@@ -189,8 +195,8 @@ def _of_modes(result: Any, modes: list[int]) -> str:
     return "" if len(modes) == len(result) else f" for {len(modes)} of {len(result)} modes; --shapes chooses them"
 
 
-def _tell(paths: list[Path], folder: Path, hint: str = "") -> None:
-    typer.echo(f"wrote {len(paths)} file{'s'[: len(paths) != 1]} to {folder}{hint}")
+def _tell(what: str, paths: list[Path], folder: Path, hint: str = "") -> None:
+    typer.echo(f"wrote {len(paths)} {what}{'s'[: len(paths) != 1]} to {folder}{hint}")
 
 
 def _rows_of_a_map(points: Any) -> list[dict[str, float]]:

@@ -31,9 +31,8 @@ class Argument:
     help: str
 
 
-def source_of(verb: str) -> str:
-    """The text of the module that a verb stands in."""
-    module = homes_of(rotorgear.__file__)[verb][0]
+def source_of(module: str) -> str:
+    """The text of a module of rotorgear."""
     path = Path(rotorgear.__file__).parent.joinpath(*module.split(".")[1:])
     return (path / "__init__.py" if path.is_dir() else path.with_suffix(".py")).read_text(encoding="utf-8")
 
@@ -41,15 +40,14 @@ def source_of(verb: str) -> str:
 @cache
 def arguments_of(verb: str) -> dict[str, Argument]:
     """The arguments of a verb by name, in their order."""
-    module = ast.parse(source_of(verb))
-    function = _function(module, verb)
+    module, function = _declaration(verb)
     texts = _texts(ast.get_docstring(function) or "")
     listed = function.args.posonlyargs + function.args.args
     defaults = [None] * (len(listed) - len(function.args.defaults)) + function.args.defaults
     return {
         argument.arg: Argument(
             ast.unparse(argument.annotation) if argument.annotation else "",
-            _plain(module, default),
+            REQUIRED if default is None else _plain(module, default),
             _resolved(argument.arg, texts.get(argument.arg, "")),
         )
         for argument, default in [
@@ -61,25 +59,32 @@ def arguments_of(verb: str) -> dict[str, Argument]:
 
 def summary_of(verb: str) -> str:
     """What a verb's docstring says before it comes to the arguments."""
-    text = ast.get_docstring(_function(ast.parse(source_of(verb)), verb)) or ""
+    text = ast.get_docstring(_declaration(verb)[1]) or ""
     return re.split(r"\n(?:Args|Returns|Raises):\n", text)[0].strip()
 
 
-def _function(module: ast.Module, verb: str) -> ast.FunctionDef:
-    name = homes_of(rotorgear.__file__)[verb][1]
+@cache
+def parsed(module: str) -> ast.Module:
+    """The syntax tree of a module of rotorgear."""
+    return ast.parse(source_of(module))
+
+
+def _declaration(verb: str) -> tuple[str, ast.FunctionDef]:
+    """The module that a verb stands in, and its function there."""
+    module, name = homes_of(rotorgear.__file__)[verb]
     # The last one of a name is the function, those before it are its overloads.
-    return [item for item in module.body if isinstance(item, ast.FunctionDef) and item.name == name][-1]
+    functions = [item for item in parsed(module).body if isinstance(item, ast.FunctionDef) and item.name == name]
+    return module, functions[-1]
 
 
-def _plain(module: ast.Module, default: ast.expr | None) -> Any:
-    """The value of a default that is a literal, or a name that the module gives one."""
-    if default is None:
-        return REQUIRED
+def _plain(module: str, default: ast.expr) -> Any:
+    """The value of a default that is a literal, or a name with one in the module or where that imports it from; else None."""
     if isinstance(default, ast.Name):
-        for item in module.body:
+        for item in parsed(module).body:
             if isinstance(item, ast.Assign) and ast.unparse(item.targets[0]) == default.id:
-                default = item.value
-                break
+                return _plain(module, item.value)
+            if isinstance(item, ast.ImportFrom) and item.module and default.id in [one.name for one in item.names]:
+                return _plain(item.module, default)
     try:
         return ast.literal_eval(default)
     except ValueError:

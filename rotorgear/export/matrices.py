@@ -38,8 +38,8 @@ def write_matrices(
         model: any model; contacts are closed, on the flanks that its loads choose.
         path: of the file, with the ending .npz.
         fmax: frequency in Hz that the mesh is refined for; needed without `elements`.
-        speed: of the input shaft in rad/s or with its unit; None: standstill.
-        elements: basic elements in each shaft segment, in place of `fmax`.
+        speed: as in `frf`.
+        elements: number of basic elements in each shaft segment, in place of `fmax`.
 
     Raises:
         AnalysisError: another ending, neither `fmax` nor `elements`. WriteError: the file can't be written.

@@ -20,8 +20,8 @@ def new(path: str | Path, source: str | None = None, force: bool = False) -> lis
 
     Args:
         path: file to write, such as "gearbox.toml".
-        source: name of the model, as `models` lists them; by default that of the file, or else helical_pair.
-        force: whether files that are there may be overwritten.
+        source: name of the model to copy, as `models` lists them (default: that of the file's name, or helical_pair).
+        force: overwrite files that exist.
 
     Returns:
         The paths of the written files, the model first.

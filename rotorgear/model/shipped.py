@@ -19,7 +19,7 @@ class ShippedModel:
     """A model that comes with the package.
 
     Attributes:
-        name: by which `rotorgear new --from` takes it.
+        name: by which `rotorgear new --source` takes it.
         title: what it is.
         path: its file.
         companions: files that it names (meshes, measured flanks), and the lines of its rig; they lie beside it.

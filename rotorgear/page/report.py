@@ -65,10 +65,10 @@ def report(
     Args:
         model: a model, or the path of its file, which the page then names.
         output: the page to write, .html.
-        rig: measured lines, or their file (CSV).
-        study: files of convergence studies (`rotorgear accuracy --save`), whose curves are shown; none is run for a page.
+        rig: measured frequencies (CSV); in Python also lines.
+        study: stored convergence studies (`rotorgear accuracy --save`), whose curves are shown; none is run for a page.
         grade: balance quality grade G of ISO 21940-11 in mm/s.
-        turntable: whether the page also holds the modes as solids that turn and move where a browser runs its script.
+        turntable: also put the modes into the page as solids that turn and move where a browser runs its script.
         progress: callable that is told fraction and step.
 
     Returns:

@@ -30,7 +30,7 @@ def view(shown: ModalResult | Model, mode: int | None = None) -> None:
 
     Args:
         shown: a result, or a model to be seen at rest.
-        mode: mode to begin with, counted from 0; the first for None.
+        mode: mode to begin with, counted from 0 (default: the first).
 
     Raises:
         AnalysisError: a mode that the result does not have.

@@ -33,8 +33,8 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
     What the file leaves open is assumed and said; what can't be assumed is reported, all of it at once.
 
     Args:
-        path: of the file.
-        load_case: number of a load case of the file; None: the first, where it has some.
+        path: REXS file, versions 1.0 to 1.6: XML, JSON or zip.
+        load_case: number of a load case of the file (default: the first, where it has some).
 
     Returns:
         The text of the model file with its comments, and the assumptions by address.

@@ -1,78 +1,109 @@
-"""One name for one thing: a command is called as the Python verb behind it, and so are its options."""
+"""A verb is declared once: its command has the names, types, defaults and words of its signature and docstring, and no others."""
 
 from __future__ import annotations
 
 import inspect
+import re
 
 import pytest
 import typer
 from typer.testing import CliRunner
 
 import rotorgear as rg
+from rotorgear.cli import verb as reader
+from rotorgear.cli.command import Command
+from rotorgear.cli.commands import COMMANDS as DECLARED
 from rotorgear.cli.main import app
+from rotorgear.cli.options import kind_of
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
-# `validate` runs the cases of a checkout of the repository, which are no part of the package.
-WITHOUT_VERB = {"validate"}
-# What becomes of a result: tables, files, pictures and their settings.
-SHOWN = {"json", "save", "resume", "vtk", "plot", "csv", "output", "uff"}
-OF_A_PICTURE_OR_TABLE = {
-    "modal": {"shapes", "energies", "compare", "tolerance"},
-    "campbell": {"crossings", "colour", "branch"},
-    "critical": {"stiffness_map", "shaft"},
-    "static": {"sensitivity"},
-    "response": {"waterfall", "at"},
-    "frf": {"quantity"},
-    "transient": {"spectrum", "rig"},
-    "mesh": {"harmonics", "at"},
-    "import": {"force"},
-    # Files of three verbs.
-    "export": {"state_space", "matrices", "uff"},
-    # A window opens on a result; of a model the modes are found first.
-    "view": {"modes", "speed", "accuracy", "elements"},
-}
-# A command that serves several verbs: options that choose among them, and the verbs whose arguments the others are.
-CHOOSES = {"mesh": {"optimise", "root_stress"}}
-VERBS = {
-    "mesh": ("mesh", "mesh_map", "optimise_flanks", "root_stress"),
-    "import": ("import_rexs",),
-    "export": ("state_space", "write_matrices", "modal"),
-    "compare": ("compare", "compare_shapes", "compare_frf", "compare_orders"),
-}
-# Names that Python has no use for: `cluster` is an address in a command and an open pool (`executor`) in Python.
-OTHERWISE = {("sweep", "cluster"), ("scatter", "cluster")}
-# `--from` and `--to` are start and stop: `from` is a word of the language.
-OPTION_OF = {"start": "from", "stop": "to", "stiffness_map": "map", "shaft": "map-shaft", "source": "from"}
+VERBS = sorted({name for command in DECLARED if command.name != "validate" for name in command.verbs})
+# Arguments that are no options: objects of Python, and what stands as --save, --resume, --cluster and a bar on the terminal.
+OF_PYTHON = re.compile(r"Progress|Stream|Pool|Callable|Wanted|tuple|Model|System")
 
 
-def verb_of(command: str) -> inspect.Signature:
-    return inspect.signature(getattr(rg, command))
+@pytest.mark.parametrize("name", VERBS)
+def test_what_is_read_of_a_verb_is_what_python_says_of_it(name: str) -> None:
+    signature = inspect.signature(getattr(rg, name)).parameters
+    read = reader.arguments_of(name)
+    assert list(read) == list(signature)
+    for argument, said in read.items():
+        assert said.annotation.replace('"', "'") == str(signature[argument].annotation).replace('"', "'")
+        default = signature[argument].default
+        if default is inspect.Parameter.empty:
+            assert said.default is reader.REQUIRED
+        else:
+            assert said.default == (None if callable(default) else default)
 
 
-@pytest.mark.parametrize("command", sorted(set(COMMANDS) - WITHOUT_VERB))
-def test_every_command_is_a_verb_with_the_same_arguments(command: str) -> None:
-    known = {name for verb in VERBS.get(command, (command,)) for name in verb_of(verb).parameters}
-    own = OF_A_PICTURE_OR_TABLE.get(command, set()) | CHOOSES.get(command, set())
-    for parameter in COMMANDS[command].params:
-        if parameter.param_type_name == "argument" or parameter.name in SHOWN | own | {"help"}:
-            continue
-        if (command, parameter.name) not in OTHERWISE:
-            assert parameter.name in known, f"rg.{command} has no argument '{parameter.name}'"
+@pytest.mark.parametrize("name", VERBS)
+def test_every_argument_of_a_verb_is_explained(name: str) -> None:
+    for argument, said in reader.arguments_of(name).items():
+        assert said.help.endswith("."), f"{name}: {argument} has no sentence in the section Args"
+        assert not re.search(r"as (in|for) `", said.help)
+
+
+@pytest.mark.parametrize("command", DECLARED, ids=lambda command: command.name)
+def test_every_argument_of_a_verb_is_an_option_or_hidden_by_name(command: Command) -> None:
+    for argument, said in (command.arguments if command.name != "validate" else {}).items():
+        known = argument in command.choices or argument in command.hidden
+        assert known or (OF_PYTHON.search(said.annotation) and not kind_of(said.annotation)), argument
+
+
+def test_another_docstring_and_another_default_are_another_help(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = reader.source_of("rotorgear.analysis.campbell.campbell")
+    changed = text.replace("points: number of speeds", "points: how many speeds").replace(
+        "points: int = DEFAULT_SPEEDS", "points: int = 77"
+    )
+    assert changed.count("how many speeds") == changed.count("= 77") == 1
+    real = reader.source_of
+    monkeypatch.setattr(
+        reader,
+        "source_of",
+        lambda module: changed if module == "rotorgear.analysis.campbell.campbell" else real(module),
+    )
+    reader.arguments_of.cache_clear()
+    reader.parsed.cache_clear()
+    (campbell,) = (command for command in DECLARED if command.name == "campbell")
+    try:
+        # A copy, for a command keeps what it has read.
+        fresh = type(campbell)(**{name: getattr(campbell, name) for name in campbell.__dataclass_fields__})
+        help_text = " ".join(CliRunner().invoke(_alone(fresh), ["--help"]).output.split())
+    finally:
+        reader.arguments_of.cache_clear()
+        reader.parsed.cache_clear()
+    assert "How many speeds between them, evenly spaced. [default: 77]" in help_text
+
+
+def _alone(command: Command) -> typer.Typer:
+    """A command as a program of its own."""
+    program = typer.Typer(add_completion=False, rich_markup_mode=None)
+    program.command()(command.function(lambda command, given: None))
+    return program
 
 
 @pytest.mark.parametrize("command", sorted(COMMANDS))
-def test_an_option_is_spelt_as_its_argument(command: str) -> None:
-    for parameter in COMMANDS[command].params:
-        if parameter.param_type_name == "option" and parameter.name != "help":
-            name = OPTION_OF.get(parameter.name, parameter.name.replace("_", "-"))
-            assert f"--{name}" in parameter.opts
-
-
-@pytest.mark.parametrize("command", sorted(COMMANDS))
-def test_every_command_answers_a_short_call_for_help(command: str) -> None:
-    done = CliRunner().invoke(app, [command, "-h"])
+def test_every_command_answers_a_short_call_for_help_in_eighty_columns(command: str) -> None:
+    done = CliRunner(env={"COLUMNS": "80"}).invoke(app, [command, "-h"])
     assert done.exit_code == 0
     assert "Usage" in done.output
+    assert max(map(len, done.output.splitlines())) <= 80
+
+
+@pytest.mark.parametrize(
+    ("option", "meaning"),
+    [
+        ("--from", "Lowest speed"),
+        ("--to", "highest speed"),
+        ("--speed", "Speed of the input shaft"),
+        ("--rig", "rig|Measured frequencies"),
+    ],
+)
+def test_an_option_means_the_same_in_all_commands(option: str, meaning: str) -> None:
+    for name, command in COMMANDS.items():
+        for parameter in command.params:
+            if option in parameter.opts:
+                assert re.search(meaning, parameter.help, re.IGNORECASE), name
 
 
 @pytest.mark.parametrize("spelling", [["--picture", "tooth.jpg"], ["--picture=tooth.jpg"]])

@@ -7,9 +7,10 @@ import re
 import pytest
 import typer
 from machinery.snippets import ROOT
+from update import load_generator
 
 from rotorgear.cli.main import app
-from rotorgear.cli.old_options import with_current_options
+from rotorgear.cli.old_options import current
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 OPTIONS = {
@@ -22,7 +23,7 @@ OPTIONS = {
     | {"-h", "--help"}
     for name, command in COMMANDS.items()
 }
-EVERYWHERE = set.union(*OPTIONS.values()) | {"--version"}
+EVERYWHERE = set.union(*OPTIONS.values()) | {"--version", "--install-completion", "--show-completion"}
 PAGES = {page.name: page.read_text(encoding="utf-8") for page in [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]}
 # Options of other tools, by the words of the code that they stand in.
 OTHER_TOOLS = ("docs/", "python", "pytest", "dask", "check.py", "pip ", "octave", "mkdocs")
@@ -36,7 +37,7 @@ OF_BENCHMARKS = {
 OF_FORMER_NAMES = {"glossary.md"}
 _CODE = re.compile(r"^```.*?^```|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 _OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
-_CALL = re.compile(r"rotorgear (?P<command>[a-z]+)(?P<rest>[^\n`]*)")
+_CALL = re.compile(r"rotorgear (?P<command>[a-z-]+)(?P<rest>[^\n`]*)")
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -46,7 +47,7 @@ def test_every_option_of_a_command_line_on_a_page_is_one_of_that_command(page: s
         f"rotorgear {call['command']} {option}"
         for call in calls
         for option in _OPTION.findall(call["rest"].partition("#")[0])
-        if with_current_options(call["command"], [option])[0] not in OPTIONS[call["command"]]
+        if current([call["command"], option])[-1] not in OPTIONS[call["command"]]
     ]
     assert wrong == []
 
@@ -63,7 +64,11 @@ def test_an_option_that_a_page_names_exists(page: str) -> None:
     assert wrong - OF_BENCHMARKS.get(page, set()) == set()
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_every_option_of_a_command_stands_on_the_page_of_commands(command: str) -> None:
-    section = PAGES["commands.md"].partition(f"\n## {command}\n")[2].partition("\n## ")[0]
-    assert {option for option in OPTIONS[command] if f"`{option}`" not in section} <= {"-h", "--help"}
+def test_every_command_stands_on_the_page_of_commands_and_every_option_on_that_of_the_site() -> None:
+    generator = load_generator(ROOT / "docs" / "generate_commands.py")
+    assert generator.pages()["docs/commands.md"] == PAGES["commands.md"]
+    assert all(f"| `{command}` |" in PAGES["commands.md"] for command in COMMANDS)
+    whole = generator.site_pages()["docs/commands.md"]
+    for command, options in OPTIONS.items():
+        section = whole.partition(f"\n## {command}\n")[2].partition("\n## ")[0]
+        assert {option for option in options if f"`{option}`" not in section} <= {"-h", "--help"}

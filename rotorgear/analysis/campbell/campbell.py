@@ -64,16 +64,20 @@ def campbell(
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        start, stop: lowest and highest speed of the input shaft; numbers are rad/s, texts carry their unit. Without `start` from
-            0, with oil films from the lowest speed at which they carry; without `stop` up to 1.25 times the operating speed.
+        start: lowest speed of the input shaft in rad/s or with its unit (default: 0, with oil films the lowest speed at which
+            they carry).
+        stop: highest speed of the input shaft (default: 1.25 times the operating speed).
         points: number of speeds between them, evenly spaced.
-        speeds: these, all of one sense, in place of an evenly spaced range.
-        modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds. Where neither
-            `modes` nor `fmax` is given: 24, or all up to 1.05 times the first order of every mesh at the operating speed, where
-            that is further and some 120 at most.
-        fmax: the same for all modes up to this many Hz.
-        elements, accuracy, only: as in `modal`; an accuracy is met at both ends of the range.
-        shaft_orders, mesh_orders, sidebands: excitation lines, as in `excitation_orders`.
+        speeds: these speeds, all of one sense, in place of an evenly spaced range.
+        modes: a branch is returned when it is among this many lowest oscillating modes at one of the speeds (default: 24, or
+            all up to 1.05 times the first order of every mesh at the operating speed where that is further, some 120 at most).
+        fmax: all modes up to this many Hz at one of the speeds, in place of a number.
+        elements: as in `modal`.
+        accuracy: as in `modal`; it is met at both ends of the range.
+        only: as in `modal`.
+        shaft_orders: orders of every shaft that are drawn as lines of excitation.
+        mesh_orders: orders of every mesh that are drawn as lines of excitation.
+        sidebands: number of sidebands on each side of a mesh order, at the distance of the speed of both shafts of the mesh.
         error_estimate: False leaves the estimate of the discretisation error out, for timing.
         progress: callable that is told fraction and step.
 

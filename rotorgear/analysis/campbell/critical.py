@@ -65,12 +65,15 @@ def critical(
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        start: lowest speed, rad/s or a text with its unit; None: 0, and with oil films the lowest speed at which they carry.
-        stop: rad/s, or a text with its unit; negative turns the other way. None: 1.25 times the operating speed.
-        shaft_orders, mesh_orders: multiples of the speed of every shaft, and of the frequency of every mesh.
-        damped: with all damping and circulatory terms, where the damped frequency has to meet the line; or without.
-        fmax: only those with a frequency up to this many Hz.
-        elements, accuracy: as in `modal`; an accuracy is that of the critical speeds.
+        start: as in `campbell`.
+        stop: as in `campbell`; a negative speed turns the other way.
+        shaft_orders: multiples of the speed of every shaft that excite.
+        mesh_orders: multiples of the frequency of every mesh that excite (default: none).
+        damped: with all damping and circulatory terms, so that it is the damped frequency that meets the line; or without them.
+        fmax: only critical speeds with a frequency up to this many Hz.
+        elements: as in `modal`.
+        accuracy: refine the mesh until every critical speed is estimated to be within this relative error (default: 1e-3,
+            unless `elements` is given).
         progress: callable that is told fraction and step.
 
     Raises:

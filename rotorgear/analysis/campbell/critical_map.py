@@ -57,9 +57,14 @@ def critical_map(
 
     Args:
         model: a model with at least one bearing.
-        stiffness: in N/m, positive; None: 33 values from two decades below the softest bearing to two above the stiffest.
-        shaft: whose order excites, the input shaft for None; order: its multiple.
-        stop, elements, accuracy, progress: as in `critical`.
+        stiffness: stiffnesses in N/m, positive (default: 33 values from two decades below the softest bearing to two above the
+            stiffest).
+        shaft: shaft whose order excites (default: the input shaft).
+        order: multiple of the speed of that shaft.
+        stop: as in `critical`.
+        elements: as in `critical`.
+        accuracy: as in `critical`.
+        progress: callable that is told fraction and step.
 
     Raises:
         AnalysisError: no bearings, no such shaft, a stiffness that is not positive.

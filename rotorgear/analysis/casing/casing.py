@@ -36,10 +36,11 @@ def casing(
 
     Args:
         model: with casings from meshes.
-        name: of one casing; None: all.
-        modes: elastic modes that are found, free and held.
-        fmax: highest frequency that the reduced body is to serve, in Hz or with a unit; used where the file has no `modes_to`.
-        progress: of the work.
+        name: name of one casing (default: all).
+        modes: number of elastic modes that are found, free and held.
+        fmax: highest frequency that the reduced body is to serve, in Hz or with its unit, such as "2 kHz", where the file has
+            no `modes_to`.
+        progress: callable that is told fraction and step.
 
     Returns:
         Mass, modes, seats, errors and cost of each casing.

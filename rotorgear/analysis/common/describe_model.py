@@ -39,7 +39,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
 
     Args:
         model: a checked model.
-        elements: basic elements in each shaft segment, for the number of dofs; 1 where it is not given.
+        elements: number of basic elements in each shaft segment, for the number of degrees of freedom (default: 1).
     """
     system = flow_system(model, Plan(elements or 1))
     speed = model.operation.speed if model.operation else None

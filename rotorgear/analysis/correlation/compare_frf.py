@@ -36,9 +36,12 @@ def compare_frf(
 
     Args:
         model: the model, with its damping.
-        frf: a universal file with functions (dataset 58 or 58b), or what it holds.
-        points: its table of sensors (CSV); None: each node at the nearest place of the model.
-        speed, modal_damping, accuracy, elements: as in `frf`.
+        frf: measured frequency responses: a universal file (dataset 58 or 58b); in Python also what it holds.
+        points: as in `compare_shapes`.
+        speed: as in `compare`.
+        modal_damping: as in `frf`.
+        accuracy: as in `frf`.
+        elements: as in `frf`.
         progress: callable that is told fraction and step.
 
     Returns:

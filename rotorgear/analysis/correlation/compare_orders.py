@@ -90,9 +90,11 @@ def compare_orders(
 
     Args:
         model: with the excitations of the run-up, and the measured points as its points.
-        orders: a file of cuts (CSV, or a universal file), or what it holds.
-        points: table of sensors (CSV) of a universal file.
-        modal_damping, accuracy, elements: as in `response`.
+        orders: order cuts of a run-up: a file (CSV, or a universal file with dataset 58); in Python also what it holds.
+        points: table of the sensors of a universal file (CSV: point,node,direction).
+        modal_damping: as in `response`.
+        accuracy: as in `response`.
+        elements: as in `response`.
         progress: callable that is told fraction and step.
 
     Raises:

@@ -57,11 +57,14 @@ def compare_shapes(
 
     Args:
         source: modes of a model, or a model, whose modes are then found up to 1.3 times the highest line.
-        shapes: a universal file with shapes (dataset 55), or what it holds.
-        points: its table of sensors (CSV); None: each node is at the nearest place of the model.
-        tolerance: largest |f_mode / f_rig - 1| of a good match.
-        speed, accuracy, elements: of a model, as in `modal`.
-        samples, seed: of the random lists.
+        shapes: measured mode shapes: a universal file (dataset 55); in Python also what it holds.
+        points: table of the sensors (CSV: point,node,direction; default: each node is at the nearest place of the model).
+        tolerance: as in `compare`.
+        speed: as in `compare`.
+        accuracy: as in `compare`.
+        elements: as in `compare`.
+        samples: as in `compare`.
+        seed: as in `compare`.
         progress: callable that is told fraction and step.
 
     Returns:

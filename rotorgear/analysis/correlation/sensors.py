@@ -56,11 +56,12 @@ def sensors(
     Args:
         model: the model. Candidates are its parts on shafts and the surface points of its casings.
         count: number of sensors.
-        modes: number of elastic modes; `count` where neither this nor `fmax` is given.
-        fmax: all elastic modes up to this frequency in Hz.
-        candidates: addresses of places with commas between, such as "bearings.*, casings.*".
-        directions: letters among x, y and z that sensors may look along.
-        accuracy, elements: as in `modal`.
+        modes: number of elastic modes (default: that of the sensors, unless `fmax` is given).
+        fmax: all elastic modes up to this many Hz.
+        candidates: addresses of the places to choose from, with commas between, such as "bearings.*, casings.*".
+        directions: directions that sensors may look along, letters among x, y and z.
+        accuracy: as in `modal`.
+        elements: as in `modal`.
         progress: callable that is told fraction and step.
 
     Raises:

@@ -96,17 +96,19 @@ def optimise(
     Args:
         model: the model.
         free: addresses of the free numbers, with commas between; "*" for all names or places there.
-        margin: least |f_mode / f_line - 1|, such as 0.15 or "15 %".
-        bounds: pattern of addresses -> "LOW:HIGH", shares added to the value ("-20 %:20 %", the default) or values with units.
-            Places move by a tenth of their shaft where nothing is said, and never past gears, disks or bearings.
-        objective: change: the margin with small changes of the numbers; mass: with the least mass; scatter: by the most standard
-            deviations of the frequencies, where the numbers of the model's [scatter] do.
-        speeds: of the input shaft, in rad/s or with units; the operating speed where not given.
-        mesh_orders, shaft_orders: the excitations.
-        participation: least share of the exciting part in the energy of a mode from which on it counts.
-        searches: how many searches: the first from the file, the others from points within the bounds.
-        seed: of those points.
-        elements: basic elements in each shaft segment; one of order 4 where not given.
+        margin: least distance |f_mode / f_line - 1| of excitations from modes that they excite, such as 0.15 or "15 %".
+        bounds: address (or a pattern of addresses) with its LOW:HIGH, shares added to the value (default: "-20 %:20 %") or
+            values with units. Places move by a tenth of their shaft unless it is given, and never past gears, disks or
+            bearings.
+        objective: change (keep the margin with small changes of the numbers), mass (with the least mass) or scatter (by the
+            most standard deviations of the frequencies, where the numbers of the model's [scatter] vary).
+        speeds: speeds of the input shaft in rad/s or with units (default: the operating speed).
+        mesh_orders: orders of every mesh that count.
+        shaft_orders: orders of every shaft that count.
+        participation: as in `scatter`.
+        searches: number of searches: the first from the numbers of the file, the others from points within the bounds.
+        seed: seed of those points.
+        elements: number of basic elements in each shaft segment (default: one of fourth order).
         progress: callable that is told fraction and step.
 
     Raises:

@@ -53,16 +53,17 @@ def modal(
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        speed: speed of the input shaft in rad/s, or a text such as "16350 rpm": damped modes with gyroscopic terms.
-            None: undamped at standstill.
-        modes: how many; 24 where neither `modes` nor `fmax` is given.
+        speed: speed of the input shaft in rad/s or with its unit, such as "16350 rpm": damped modes with gyroscopic terms
+            (default: undamped modes at standstill).
+        modes: number of modes (default: 24, unless `fmax` is given).
         fmax: all modes with a natural frequency |s|/2 pi up to this many Hz.
-        elements: so many basic elements in each piece of a section, and no refinement.
-        accuracy: refine until every frequency is estimated to be within this relative error; 1e-3 where neither this nor
-            `elements` is given.
-        only: motions among bending, axial and torsion; groups of dofs that no such motion reaches are left out.
-        pruning: False solves all dofs as one group, for comparison.
-        error_estimate: False leaves the estimate out, for timing; only with `elements` or a system.
+        elements: number of basic elements in each shaft segment, without refinement.
+        accuracy: refine the mesh until every frequency is estimated to be within this relative error (default: 1e-3, unless
+            `elements` is given).
+        only: kinds of motion among bending, axial and torsion; groups of degrees of freedom that none of them reaches are left
+            out.
+        pruning: solve groups of degrees of freedom that nothing couples apart from each other; False is for comparison.
+        error_estimate: False leaves the estimate of the discretisation error out, for timing; only with `elements` or a system.
         progress: callable that is told fraction and step.
 
     Raises:

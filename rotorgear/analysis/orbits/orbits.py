@@ -63,19 +63,20 @@ def orbits(
 
     Args:
         model: the model.
-        over: {"operation.speed": "3000 rpm:6000 rpm"}: an address and both ends of its range, as a text or two values. With a
-            second one branches are followed over the first at the begin of the second, and the folds and period doublings on
-            them over both.
-        harmonics: of the base period; 30 where not given.
-        instants: at which laws are evaluated in a base period; 16 for each harmonic where not given.
-        method: harmonic balance, shooting (small systems), or auto, which takes shooting where it serves.
-        excite: name of a mesh (or another part that varies): its stage excites alone, all others are at their mean.
+        over: address in the model file with both ends of its range, such as 'operation.speed=3000 rpm:6000 rpm'. With a second
+            one branches are followed over the first at the beginning of the second, and the folds and period doublings on them
+            over both. In Python {"operation.speed": "3000 rpm:6000 rpm"}, or two values.
+        harmonics: number of harmonics of the base period (default: 30).
+        instants: number of instants in a base period at which the laws are evaluated (default: 16 for each harmonic).
+        method: auto, harmonic balance or shooting (for small systems).
+        excite: mesh (or another part that varies) whose stage excites alone, with all others at their mean.
         from_transient: begin from the motion that a transient of 400 periods settles on, not from the static state.
         switch: follow the branches of twice the period behind period doublings, too.
         verify: start transients on some of the motions and tell how they leave them.
         accuracy: wanted relative accuracy of the motions; harmonics and instants are doubled until it is reached.
-        step: longest step along a branch as a share of the range. points: of a branch, at most.
-        elements: basic elements in each shaft segment; one of second order where not given, as in `transient`.
+        step: longest step along a branch, as a share of the range.
+        points: largest number of points of a branch.
+        elements: number of basic elements in each shaft segment (default: one of second order).
         progress: callable that is told fraction and step.
 
     Raises:

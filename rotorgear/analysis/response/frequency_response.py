@@ -66,16 +66,18 @@ def frf(
 
     Args:
         model: any model; contacts are closed, on the flanks that its loads choose.
-        frequencies: in Hz, positive, (f,), in place of an evenly spaced range.
-        inputs, outputs: names of points, a part and a direction such as "bearings.left:x", a seat of a casing such as
-            "casings.box.left:x", or the point of its surface next to a place, "casings.box(0 mm; 280 mm; 200 mm):y".
-        fmax, fmin: highest and lowest frequency of the range in Hz; `fmin` is one step where not given.
+        frequencies: frequencies in Hz, positive, (f,), in place of an evenly spaced range.
+        inputs: places where unit forces act: points, a part and a direction such as "bearings.left:x", a seat of a casing such
+            as "casings.box.left:x", or the point of its surface next to a place, "casings.box(0 mm; 280 mm; 200 mm):y".
+        outputs: places where the response is read, named as the inputs are.
+        fmax: highest frequency of the range in Hz.
+        fmin: lowest frequency of the range in Hz (default: one step).
         points: number of frequencies between them, evenly spaced.
-        speed: of the input shaft in rad/s or with its unit; None: standstill.
-        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
-        elements: basic elements in each shaft segment. None: refined as for modes up to the highest frequency.
-        accuracy: refine until each response is estimated to be within this share of its largest. Where neither this nor
-            `elements` is given, these modes are refined to 1e-3, whatever that makes of the responses.
+        speed: speed of the input shaft in rad/s or with its unit (default: standstill).
+        modal_damping: as in `response`.
+        elements: as in `response`.
+        accuracy: refine the mesh until each response is estimated to be within this share of its largest (default: modes up to
+            the highest frequency are refined to 1e-3, whatever that makes of the responses).
         progress: callable that is told fraction and step.
 
     Raises:

@@ -66,17 +66,19 @@ def response(
     Args:
         model: a model with unbalances, loads of an order or a frequency, or meshes with harmonics of transmission error or
             stiffness.
-        start, stop: lowest and highest speed of the input shaft, in rad/s or with units; where not given 10 and 120 % of
-            the operating speed.
+        start: lowest speed of the input shaft in rad/s or with its unit (default: 0.1 times the operating speed).
+        stop: highest speed of the input shaft (default: 1.2 times the operating speed).
         points: number of speeds between them, evenly spaced.
-        speeds: these, in place of an evenly spaced range.
-        fmax: orders above this frequency in Hz at the highest speed are left out; None: none is.
-        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
-        method: "modal", "direct" or "auto".
-        elements: basic elements in each shaft segment. None: refined as for modes up to the highest frequency.
-        accuracy: refine until the forces are estimated to be within this relative error of the largest. Where neither this nor
-            `elements` is given, these modes are refined to 1e-3, whatever that makes of the forces.
-        shape_speed: where the deflection shapes are kept; None: the operating speed, else the speed of the largest force.
+        speeds: these speeds, in place of an evenly spaced range.
+        fmax: leave out orders that are above this many Hz at the highest speed.
+        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside the damping of
+            the model.
+        method: auto, modal (superposition of modes) or direct (a solution at each speed).
+        elements: number of basic elements in each shaft segment (default: refined as for modes up to the highest frequency).
+        accuracy: refine the mesh until the forces are estimated to be within this relative error of the largest (default: modes
+            up to the highest frequency are refined to 1e-3, whatever that makes of the forces).
+        shape_speed: speed at which the deflection shapes are kept (default: the operating speed, else that of the largest
+            force).
         progress: callable that is told fraction and step.
 
     Raises:

@@ -79,13 +79,14 @@ def state_space(
 
     Args:
         model: any model; contacts are closed, on the flanks that its loads choose.
-        inputs, outputs: names of places as in `frf`: points, "bearings.left:x", seats and surfaces of casings.
+        inputs: as in `frf`.
+        outputs: places where displacements are read, named as the inputs are.
         fmax: highest frequency in Hz that the system is meant for; the mesh is refined for it as that of `frf`.
-        speed: of the input shaft in rad/s or with its unit; None: standstill.
-        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
-        elements: basic elements in each shaft segment. None: refined for modes up to the highest frequency.
-        accuracy: reduce no further than to this share of the largest size of each response, and refine the mesh until frequencies
-            are within it; where not given 1e-4 and 1e-3.
+        speed: as in `frf`.
+        modal_damping: as in `frf`.
+        elements: number of basic elements in each shaft segment (default: refined for modes up to the highest frequency).
+        accuracy: reduce no further than to this share of the largest size of each response (default: 1e-4), and refine the mesh
+            until frequencies are within it (default: 1e-3).
         full: all degrees of freedom in place of modes and static shapes.
         progress: callable that is told fraction and step.
 

@@ -73,11 +73,17 @@ def compare(
 
     Args:
         source: modes of a model, or a model, whose modes are then found up to 1.15 times the highest line.
-        rig: a rig file (CSV), lines, or plain frequencies in Hz.
-        tolerance: largest |f_mode / f_rig - 1| of a match.
-        speed, accuracy, elements: of a model, as in `modal`; a result has its own.
+        rig: measured frequencies (CSV); in Python also lines, or plain frequencies in Hz.
+        tolerance: largest relative difference |f_mode / f_rig - 1| of a match.
+        speed: as in `modal`; a saved result has its own.
+        accuracy: as in `modal`; a saved result has its own.
+        elements: as in `modal`; a saved result has its own.
         known_to_hz: frequency up to which a result has all modes, where that is above its last one.
-        excitation_tolerance, band, seed, samples: as in `compare_lines`.
+        excitation_tolerance: relative distance within which an order of a shaft or a mesh coincides with a line or a mode.
+        band: frequency range in Hz that the rig looked at, for the chance of a match (default: from the lowest to the highest
+            line, widened by the tolerance at both ends).
+        seed: seed of the random lists that chance is found from.
+        samples: number of random lists that chance is found from.
         progress: callable that is told fraction and step.
 
     Returns:

@@ -106,21 +106,24 @@ def scatter(
 
     Args:
         model: the model. Its table [scatter] says what scatters, unless `free` does.
-        free: addresses of numbers, with commas between, "*" for all names or places there; or address -> its scatter.
-        sigma: standard deviation of those addresses, a share such as "10 %" (the default) or a size such as "0.1 mm".
-        tolerance: in place of it, the half width of a tolerance: the limits where uniform, else three standard deviations.
-        distribution: of those addresses: normal, lognormal or uniform.
-        samples: how many.
-        sampling: of the numbers: sobol (scrambled), latin (hypercube) or random.
-        seed: of the samples.
-        sobol: base points of Sobol indices, which cost so many samples for each number and two more; 0 for none.
-        speed: of the input shaft in rad/s or with its unit; None: the operating speed, else standstill.
-        modes: how many elastic modes, lowest first.
-        margin: least distance of modes from excitations that the samples are judged by.
-        participation: share of an exciting part in the energy of a mode from which on the mode counts.
-        sharing: whether load shares of meshes are sampled too; index errors of gears with a class of ISO 1328 then scatter.
-        accuracy, elements: of the mesh, as in `modal`.
-        workers: threads; all cores where not given. The result does not depend on it.
+        free: addresses of the numbers that scatter, with commas between, "*" for all names or places there (default: the table
+            [scatter] of the model); in Python also address -> its scatter.
+        sigma: standard deviation of those numbers, a share such as "10 %" (the default) or a size such as "0.1 mm".
+        tolerance: half width of a tolerance in place of it: the limits where uniform, else three standard deviations.
+        distribution: distribution of those numbers: normal, lognormal or uniform.
+        samples: number of samples.
+        sampling: how the numbers are sampled: sobol (scrambled), latin (hypercube) or random.
+        seed: seed of the samples.
+        sobol: base points of Sobol indices, such as 512, each of which costs two samples and one more for each number; 0 for
+            none.
+        speed: speed of the input shaft in rad/s or with its unit (default: the operating speed, else standstill).
+        modes: number of elastic modes, lowest first.
+        margin: least distance of modes from excitations, for the share of samples below it.
+        participation: least share of the exciting part in the energy of a mode for the mode to count.
+        sharing: sample the load shares of meshes, too; index errors of gears with a class of ISO 1328 then scatter.
+        accuracy: as in `modal`.
+        elements: as in `modal`.
+        workers: number of threads, on which the result does not depend (default: all cores).
         executor: takes the blocks in place of threads: `rotorgear.cluster(address)`, or any object with `submit`.
         stream: keeps blocks while samples go on (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.

@@ -67,9 +67,8 @@ def standards(
 
     Args:
         model: a model with an operating speed.
-        start: lowest speed of the input shaft at which peaks are looked for, as in `critical`.
-        stop: highest speed of the input shaft at which peaks are looked for, rad/s or with its unit; None: 1.5 times the
-            operating speed.
+        start: as in `campbell`.
+        stop: highest speed of the input shaft at which peaks are looked for (default: 1.5 times the operating speed).
         grade: balance quality grade G of ISO 21940-11 in mm/s.
         progress: callable that is told fraction and step.
 

@@ -61,10 +61,10 @@ def static(
 
     Args:
         model: a model with torques, forces or moments, gravity or index errors.
-        speed: of the input shaft in rad/s or with its unit; it chooses the working flanks and the values of bearings with
-            tables. None: the operating speed.
-        elements: basic elements in each shaft segment; 4 where it is not given. They are exact in statics.
-        accuracy: halve them until the forces are estimated to be within this relative error of the largest.
+        speed: speed of the input shaft in rad/s or with its unit; its sign chooses the working flanks, and bearings with tables
+            take their values at it (default: the operating speed).
+        elements: number of basic elements in each shaft segment, which are exact in statics (default: 4).
+        accuracy: halve the elements until the forces are estimated to be within this relative error of the largest.
         tilt: all meshes between gears with a width feel the tilt of their shafts, whatever the model says.
         progress: callable that is told fraction and step.
 

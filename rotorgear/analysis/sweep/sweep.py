@@ -63,24 +63,29 @@ def sweep(
 
     Args:
         model: a model with meshes that have teeth. Beyond 80 degrees of freedom it is reduced (analysis/sweep/reduce.py).
-        over: address in the model file -> its values: numbers in SI, texts with units, or "FROM:TO:COUNT". A part "*" of an
-            address means all names there.
-        change: returns the model at a point from the model and the values, in place of the addresses, which are then only names.
-        direction: each: every point starts from its own static state; up, down: from where the point before ended; both.
-        initial_conditions: number of runs at each point: the first from the static equilibrium, the others from random
-            initial conditions.
-        discard: transient periods discarded; sample: periods sampled after them. Both count least common periods of all meshes.
-        exponents: how many Lyapunov exponents are found; 0 for none.
-        steps: of the Runge-Kutta method of order 4 in a period of the fastest mesh; where not given, the highest frequency of the
-            model decides.
-        tolerance, chaos: of the criterion that tells the response types apart (analysis/sweep/classify.py).
-        seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
-        modes: reduce the model to so many elastic modes and the static shapes of contacts and loads, whatever the error.
+        over: address in the model file with its values: FROM:TO:COUNT, or values with commas between; "*" in an address means
+            all names there. Once or twice. In Python a mapping of addresses to such texts, or to numbers in SI or texts with
+            units.
+        change: returns the model at a point from the model and the values, in place of the addresses, which are then only
+            names.
+        direction: each (every point starts from its own static state), up or down (from where the point before ended), or both.
+        initial_conditions: number of runs at each point: the first from the static equilibrium, the others from random states.
+        discard: number of periods of the transient that are discarded, in least common periods of all meshes.
+        sample: number of periods after them that are sampled.
+        exponents: number of Lyapunov exponents; 0 for none.
+        steps: number of Runge-Kutta steps (order 4) in a period of the fastest mesh (default: by the highest frequency of the
+            model).
+        tolerance: share of the peak-to-peak value within which a response repeats.
+        chaos: Lyapunov exponent per mesh period above which a response is chaotic.
+        seed: seed of the random states.
+        throw: size of the random states; at 1 contacts are moved by up to some backlashes.
+        modes: number of elastic modes that the model is reduced to, with the static shapes of contacts and loads, whatever the
+            error.
         reduction_error: largest relative error of the receptances at the contacts that a reduction may make.
-        elements: basic elements in each shaft segment; one of second order where not given, as in `transient`.
-        portraits: how many points, spread over the sweep, keep their trajectory over some periods more; or the values of the
-            parameters, in their units, next to which points do: 3250.0 or "3250 rpm", with two parameters (3250.0, 20.0).
-        workers: threads; all cores where not given. The result does not depend on it.
+        elements: number of basic elements in each shaft segment (default: one of second order).
+        portraits: number of points, spread over the sweep, that keep their trajectory over some periods more; or the values of
+            the parameters, in their units, next to which points do: 3250.0 or "3250 rpm", with two parameters (3250.0, 20.0).
+        workers: number of threads, on which the result does not depend (default: all cores).
         executor: runs the blocks of points in place of threads: `rotorgear.cluster(address)`, or any object with `submit`.
         stream: keeps blocks while the sweep goes on (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.

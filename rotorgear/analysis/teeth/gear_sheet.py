@@ -43,7 +43,7 @@ def gear(model: Model, mesh: str | None = None) -> GearSheet:
 
     Args:
         model: a checked model.
-        mesh: name of a mesh; all where it is None.
+        mesh: name of a mesh, for it and its two gears alone (default: all).
 
     Raises:
         AnalysisError: no such mesh, or nothing with teeth.

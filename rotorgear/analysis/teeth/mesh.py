@@ -50,15 +50,17 @@ def mesh(
 
     Args:
         model: a checked model.
-        mesh: name of the mesh; None where there is only one.
-        stiffness: a stiffness model in place of the file's, or "given"; a mesh with a number in the file takes "tooth_fe".
-        torque: on the pinion, in N m or as a text such as "2000 N m", in place of the torque flow's.
-        preset, body: of the finite elements, in place of the file's.
+        mesh: name of the mesh; it may be left out where there is only one.
+        stiffness: stiffness model: tooth_fe, iso, contact_line, potential_energy, or given for the numbers of the file
+            (default: the model that the file names, else tooth_fe).
+        torque: torque on the pinion in N m or with its unit, such as "2000 N m" (default: that of the torque flow).
+        preset: preset of the finite elements: preview, default or fine (default: that of the file).
+        body: body under the teeth: rim, ring or wheel (default: that of the file).
         accuracy: take the cheapest preset whose estimated relative errors are within it, and more positions where they decide.
-        positions: in one mesh period, placed where teeth come and go and where the curves need them.
-        periods: how many mesh periods (default 1, or enough for all teeth with pitch errors).
+        positions: number of positions in one mesh period, placed where teeth come and go and where the curves need them.
+        periods: number of mesh periods (default: 1, or enough for all teeth with pitch errors).
         load_factors: also solve at these multiples of the load.
-        estimate: whether other meshes and more positions are solved too, for the error estimates.
+        estimate: solve other meshes and more positions, too, for the error estimates.
         progress: callable that is told fraction and step.
 
     Raises:

@@ -1,4 +1,4 @@
-"""The verb behind `rotorgear mesh --over`: one mesh over torque and misalignment."""
+"""The verb behind `rotorgear mesh-map`: one mesh over torque and misalignment."""
 
 from __future__ import annotations
 
@@ -34,10 +34,13 @@ def mesh_map(
 
     Args:
         model: a checked model.
-        mesh: name of the mesh; None where there is only one.
+        mesh: as in `mesh`.
         over: "torque" on the pinion and "misalignment" over the face: a list of values each, in N m and m or as texts with
             units. What is not given is that of the model.
-        torque, preset, body, positions: as for `mesh`.
+        torque: as in `mesh`.
+        preset: as in `mesh`.
+        body: as in `mesh`.
+        positions: as in `mesh`.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -87,7 +90,7 @@ def mesh_map(
 
 
 def _left_out(single: tuple[int, ...]) -> tuple[str, ...]:
-    said = ["error estimates: `rotorgear mesh` without --over gives them for one point"]
+    said = ["error estimates: `rotorgear mesh` gives them for one point"]
     if single:
         said.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
     return tuple(said)

@@ -1,4 +1,4 @@
-"""The verb behind `rotorgear mesh --optimise`: flanks with the smallest transmission error over torques and misalignments.
+"""The verb behind `rotorgear optimise-flanks`: flanks with the smallest transmission error over torques and misalignments.
 
 The mean of the peak to peak over the operating points, weighted, is the smallest within the bounds:
 
@@ -144,16 +144,19 @@ def optimise_flanks(
 
     Args:
         model: a checked model.
-        mesh: name of the mesh; None where there is only one.
-        variables: what may change: "tip_relief", "tip_relief_length", ... of both gears alike, or of one: "wheel.bias".
+        mesh: as in `mesh`.
+        variables: modifications that may change: tip_relief, tip_relief_length, ... of both gears alike, or wheel.bias of one.
         over: "torque" and "misalignment", as for `mesh_map`.
-        bounds: (lowest, highest) in m or as texts by variable; without them those of usual modifications.
-        weights: one for each torque, in the order of `over`; all alike by default.
-        pressure_limit: largest contact pressure at all points, in Pa or as a text; None for no limit.
-        tolerance: up and down, in m or as texts by variable; a tenth of the bounds' width by default.
-        samples: flanks of the tolerance band; 0 for none.
-        evaluations: flanks that the search tries at most; by default 60 for each variable.
-        torque, preset, body, positions: as for `mesh`.
+        bounds: lowest and highest value of a variable in m or with units (default: those of usual modifications).
+        weights: one for each torque, in the order of `over` (default: all alike).
+        pressure_limit: largest contact pressure at all points in Pa or with its unit, such as "1200 MPa" (default: no limit).
+        tolerance: tolerance of a variable, up and down, in m or with its unit (default: a tenth of the width of its bounds).
+        samples: number of flanks of the tolerance band; 0 for none.
+        evaluations: number of flanks that the search tries at most (default: 60 for each variable).
+        torque: as in `mesh`.
+        preset: as in `mesh`.
+        body: as in `mesh`.
+        positions: as in `mesh`.
         progress: callable that is told fraction and step.
 
     Raises:

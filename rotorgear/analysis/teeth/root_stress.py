@@ -1,4 +1,4 @@
-"""The verb behind `rotorgear mesh --root-stress`: stress in the fillets while a tooth passes through the mesh.
+"""The verb behind `rotorgear root-stress`: stress in the fillets while a tooth passes through the mesh.
 
 The loaded contact gives the forces on the flanks at each position, the inside of the teeth the stress for them. All teeth are
 alike: tooth k at position u stands where tooth 0 is at u + k, so that one mesh period shows a tooth on its whole way.
@@ -43,8 +43,12 @@ def root_stress(
     """Follow the stress in the root fillets of both gears of the first helix over the mesh cycle.
 
     Args:
-        model, mesh, torque, preset, body: as for `mesh`.
-        positions: in the mesh period, 4 to 256.
+        model: a checked model.
+        mesh: as in `mesh`.
+        torque: as in `mesh`.
+        preset: as in `mesh`.
+        body: as in `mesh`.
+        positions: number of positions in the mesh period, 4 to 256.
         progress: callable that is told fraction and step.
 
     Raises:

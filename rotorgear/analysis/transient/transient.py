@@ -62,21 +62,24 @@ def transient(
 
     Args:
         model: a model, or its assembled system.
-        speed: of the input shaft in rad/s or as a text, or pairs (time, speed), linear in between. None: the operating speed.
-        speed_to: run up (or down) from `speed` to this one within the duration that is evaluated, which `time` has to say.
-        time: duration that is evaluated, in s or as a text; 30 periods of the slowest mesh where it is not given.
-        discard: duration of the transient before it, which is computed but not evaluated.
-        steps: steps in a period of the fastest mesh; without it the step is halved until the accuracy is reached or out of reach.
-        records: records in a period of the fastest mesh; 40 where not given.
-        accuracy: wanted relative accuracy of the statistics; 0.01 where neither it nor `steps` is given.
+        speed: speed of the input shaft in rad/s or with its unit (default: the operating speed); in Python also pairs (time,
+            speed), linear in between.
+        speed_to: run up (or down) from `speed` to this one within the time evaluated, which `time` has to say.
+        time: time that is evaluated, in s or with its unit, such as "0.2 s" (default: 30 periods of the slowest mesh).
+        discard: time of the transient before it, which is computed but not evaluated.
+        steps: number of steps in a period of the fastest mesh (default: the step is halved until the accuracy is reached or out
+            of reach).
+        records: number of records in a period of the fastest mesh (default: 40).
+        accuracy: wanted relative accuracy of the statistics (default: 0.01, unless `steps` is given).
         method: auto, newmark, hht, generalised-alpha, exponential or explicit.
-        modes: for the exponential method: so many real modes and residual vectors in place of all.
+        modes: number of modes kept by the exponential method, with residual vectors (default: all).
         modal_damping: damping ratio added to every elastic mode, in place of the one in the model; exponential method only.
-        rho_inf: for hht and generalised-alpha: what remains of the highest frequencies after a step, 0 to 1.
-        beta, gamma: for newmark; 1/4 and 1/2 where not given.
-        elements: basic elements in each shaft segment; one of second order where not given.
-        error_estimate: False leaves the comparison with twice the step out.
-        frames: so many records at the end keep the motion of all nodes, for an animation.
+        rho_inf: what remains of the highest frequencies after a step of hht or generalised-alpha: 1 damps nothing, 0 most.
+        beta: of newmark (default: 1/4).
+        gamma: of newmark (default: 1/2).
+        elements: number of basic elements in each shaft segment (default: one of second order).
+        error_estimate: compare with a run of twice the step; False leaves it out.
+        frames: number of records at the end that keep the motion of all nodes, for an animation.
         stream: keeps chunks while the run goes on (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.
 

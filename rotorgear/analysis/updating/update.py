@@ -71,23 +71,25 @@ def update(
 
     Args:
         model: the model.
-        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`).
-        shapes: in place of it, a universal file with shapes and their frequencies.
-        frf: beside these or alone, a universal file with frequency responses, or what it holds (`rg.read_rig_frf`).
-        points: table of sensors of shapes and responses, as in `rg.read_rig_shapes`; None: each node is at the nearest place of
-            the model.
-        free: addresses of numbers, with commas between; "*" stands for all names or places there.
-        prior: relative standard deviation of the free numbers before the test, of all or by address.
-        shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
+        rig: measured frequencies (CSV); in Python also lines, plain frequencies in Hz, or lines with measured shapes
+            (`rg.Measured`).
+        shapes: measured mode shapes with their frequencies (UFF, dataset 55), in place of the frequencies alone.
+        frf: measured frequency responses (UFF, dataset 58), beside frequencies or shapes or alone; in Python also what
+            `rg.read_rig_frf` read.
+        points: table of the sensors of shapes and responses (CSV: point,node,direction; default: each node is at the nearest
+            place of the model).
+        free: addresses of the free numbers, with commas between; "*" stands for all names or places there.
+        prior: relative standard deviation of the free numbers before the test; in Python also by address.
+        shape_noise: standard deviation of a measured displacement, as a share of the root mean square of its shape.
         frf_noise: standard deviation of a measured frequency response, as a share of its size.
-        modal_damping: damping ratio added to every elastic mode of the responses, as in `frf`.
-        speed: of the input shaft while it was measured, in rad/s or with its unit; None: at standstill.
-        campaigns: in place of all these, several campaigns (`rg.Campaign`) or their file (TOML), each at its speed and in its
-            state of the gearbox.
-        tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
-        accuracy: relative accuracy of the frequencies that the mesh is refined to; default: a tenth of the least noise of a line,
-            at most 1e-4.
-        elements: so many basic elements in each piece of a section, and no refinement.
+        modal_damping: damping ratio added to every elastic mode of the frequency responses.
+        speed: speed of the input shaft while it was measured, in rad/s or with its unit (default: standstill).
+        campaigns: several campaigns, each at its speed and in its state of the gearbox, in place of all these: their file
+            (TOML); in Python also a list of `rg.Campaign`.
+        tolerance: largest relative difference |f_mode / f_rig - 1| of a pair where no shapes were measured.
+        accuracy: relative accuracy of the frequencies that the mesh is refined to (default: a tenth of the least noise of a
+            line, at most 1e-4).
+        elements: as in `modal`.
         progress: callable that is told fraction and step.
 
     Returns:

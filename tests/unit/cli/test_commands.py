@@ -1,4 +1,4 @@
-"""The table of commands says what the commands say, and none of them is imported for it."""
+"""The list of commands needs none of them; each is found by its name."""
 
 from __future__ import annotations
 
@@ -8,32 +8,28 @@ import pytest
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from rotorgear.cli.commands import HELP, function_of
+from rotorgear.cli.commands import COMMANDS
 from rotorgear.cli.main import app
-from tests.paths import ROOT
-
-# Files of cli/ beside the commands.
-SHARED = {"mesh_tasks", "mesh_texts", "__init__", "commands", "common", "main", "old_options", "speed_options"}
 
 
-@pytest.mark.parametrize("name", HELP)
-def test_the_help_of_all_commands_says_what_each_says_of_itself(name: str) -> None:
-    function = function_of(name)
-    assert function.__doc__.partition("\n")[0] == HELP[name]
-
-
-def test_every_file_of_the_command_line_is_a_command_or_shared() -> None:
-    files = {file.stem for file in (ROOT / "rotorgear" / "cli").glob("*.py")} - SHARED
-    assert {name.rstrip("_") for name in files} == set(HELP)
-
-
-def test_help_imports_no_command_and_lists_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in HELP:
+def test_help_lists_all_commands_in_their_groups_and_reads_no_verb(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("run", "show", "bodies"):
         monkeypatch.delitem(sys.modules, f"rotorgear.cli.{name}", raising=False)
-    said = CliRunner().invoke(app, ["--help"]).output
-    assert not {f"rotorgear.cli.{name}" for name in HELP} & set(sys.modules)
-    listed = said.partition("Commands:")[2].splitlines()
-    assert [line.split()[0] for line in listed if line.startswith("  ") and line[2:3].isalpha()] == list(HELP)
+    monkeypatch.setattr("rotorgear.cli.verb.source_of", lambda module: pytest.fail(f"{module} was read"))
+    said = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["--help"]).output
+    assert not {"rotorgear.cli.run", "rotorgear.cli.show", "rotorgear.cli.bodies"} & set(sys.modules)
+    assert max(map(len, said.splitlines())) <= 80
+    place = 0
+    for group in dict.fromkeys(command.group for command in COMMANDS):
+        place = said.index(f"\n{group}:\n", place)
+        for command in COMMANDS:
+            if command.group == group:
+                place = said.index(f"\n  {command.name} ", place)
+
+
+def test_what_the_list_says_of_a_command_fits_its_line() -> None:
+    widest = max(len(command.name) for command in COMMANDS)
+    assert {command.name for command in COMMANDS if len(command.summary) > 80 - 2 - widest - 2} == set()
 
 
 def test_a_slip_in_a_command_is_answered_with_its_name_and_an_unknown_one_with_a_refusal() -> None:
@@ -42,3 +38,18 @@ def test_a_slip_in_a_command_is_answered_with_its_name_and_an_unknown_one_with_a
     assert "Did you mean 'modal', 'models'?" in slip.output
     with pytest.raises(KeyError):
         get_command(app).commands["modla"]  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [("", {command.name for command in COMMANDS}), ("mo", {"modal", "models"}), ("root", {"root-stress"})],
+)
+def test_a_shell_completes_commands(words: str, found: set[str]) -> None:
+    environment = {"_ROTORGEAR_COMPLETE": "complete_bash", "COMP_WORDS": f"rotorgear {words}", "COMP_CWORD": "1"}
+    said = CliRunner(env=environment).invoke(app, [], prog_name="rotorgear").output
+    assert set(said.split()) == found
+
+
+def test_a_shell_completes_options() -> None:
+    environment = {"_ROTORGEAR_COMPLETE": "complete_bash", "COMP_WORDS": "rotorgear modal --sp", "COMP_CWORD": "2"}
+    assert CliRunner(env=environment).invoke(app, [], prog_name="rotorgear").output.split() == ["--speed"]

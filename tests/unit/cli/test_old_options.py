@@ -1,4 +1,4 @@
-"""Former options of the command line are passed on by their present names, with a warning that says them."""
+"""Former commands and options are passed on by their present names, with a warning that says them."""
 
 from __future__ import annotations
 
@@ -6,20 +6,40 @@ import pytest
 from typer.main import get_command
 
 from rotorgear.cli.main import app
-from rotorgear.cli.old_options import OPTIONS, with_current_options
+from rotorgear.cli.old_options import OPTIONS, current
 
 
 def test_a_former_option_is_passed_on_with_its_value_and_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
-    args = ["model.toml", "--settle", "40", "--count=20", "--steps", "80"]
-    assert with_current_options("sweep", args) == ["model.toml", "--discard", "40", "--sample=20", "--steps", "80"]
+    args = ["sweep", "model.toml", "--settle", "40", "--count=20", "--steps", "80"]
+    assert current(args) == ["sweep", "model.toml", "--discard", "40", "--sample=20", "--steps", "80"]
     warned = capsys.readouterr().err
     assert "--settle is now --discard" in warned
     assert "--count is now --sample" in warned
 
 
+@pytest.mark.parametrize(
+    ("former", "present"),
+    [
+        (
+            ["--over", "torque=1 N m", "--csv", "a.csv"],
+            ["mesh-map", "m.toml", "--over", "torque=1 N m", "--csv", "a.csv"],
+        ),
+        (["--over=torque=1 N m"], ["mesh-map", "m.toml", "--over=torque=1 N m"]),
+        (["--root-stress", "--json", "a"], ["root-stress", "m.toml", "--json", "a"]),
+        (["--over", "x", "--optimise", "bias"], ["optimise-flanks", "m.toml", "--over", "x", "--variables", "bias"]),
+    ],
+)
+def test_what_was_an_option_of_mesh_is_a_command(
+    former: list[str], present: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert current(["mesh", "m.toml", *former]) == present
+    assert f"is now the command {present[0]}" in capsys.readouterr().err
+
+
 def test_present_options_pass_without_a_word(capsys: pytest.CaptureFixture[str]) -> None:
-    args = ["model.toml", "--discard", "40"]
-    assert with_current_options("sweep", args) == args
+    args = ["sweep", "model.toml", "--discard", "40"]
+    assert current(args) == args
+    assert current([]) == []
     assert capsys.readouterr().err == ""
 
 

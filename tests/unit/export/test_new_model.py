@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import rotorgear as rg
-from rotorgear.cli.models import models as print_models
+from rotorgear.cli.main import app
 from tests.paths import ROOT
 
 
@@ -16,9 +17,8 @@ def test_every_model_of_the_repository_comes_with_the_package_and_has_a_title() 
     assert all(model.title for model in rg.models())
 
 
-def test_the_command_gives_each_model_one_line_of_80_columns(capsys: pytest.CaptureFixture[str]) -> None:
-    print_models()
-    lines = capsys.readouterr().out.splitlines()
+def test_the_command_gives_each_model_one_line_of_80_columns() -> None:
+    lines = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["models"]).output.splitlines()
     assert [line.split()[0] for line in lines[: len(rg.models())]] == [model.name for model in rg.models()]
     assert max(map(len, lines)) <= 80
 

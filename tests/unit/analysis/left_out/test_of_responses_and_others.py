@@ -139,7 +139,7 @@ def test_a_map_over_torques_has_no_estimate_and_the_first_period_only() -> None:
         rg.mesh_map(spur_pair(**TEETH, gears__pinion__flank=flank), over={"torque": [200.0]}, positions=32)
         for flank in ({}, {"pitch_errors": {"12": "8 um"}})
     )
-    assert says(odd, "error estimates: `rotorgear mesh` without --over gives them for one point")
+    assert says(odd, "error estimates: `rotorgear mesh` gives them for one point")
     assert not [name for name in vars(odd) if "estimate" in name]
     assert says(odd, "errors of single teeth beyond the first mesh period")
     # The odd tooth comes twelve periods later: the first one is that of a pair without it.

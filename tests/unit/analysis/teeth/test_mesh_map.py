@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.cli.mesh_texts import parse_over
+from rotorgear.cli.options import axes_of
 from tests.unit.analysis.geared import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
@@ -57,7 +57,7 @@ def test_the_command_writes_table_and_picture(tmp_path: Path) -> None:
     file.write_text(pair_file(mesh=PREVIEW))
     table = tmp_path / "map.csv"
     picture = tmp_path / "map.png"
-    asked = ["mesh", str(file), "--over", "torque=500 N m:1000 N m:2", "--positions", "8"]
+    asked = ["mesh-map", str(file), "--over", "torque=500 N m:1000 N m:2", "--positions", "8"]
     done = CliRunner().invoke(app, [*asked, "--csv", str(table), "--plot", str(picture)], env={"COLUMNS": "80"})
     assert done.exit_code == 0, done.output
     assert max(map(len, done.output.splitlines())) <= 80 + len(str(tmp_path))
@@ -67,8 +67,8 @@ def test_the_command_writes_table_and_picture(tmp_path: Path) -> None:
 
 
 def test_ranges_and_lists_of_values_are_read_with_their_units() -> None:
-    assert parse_over(["torque=1 kN m:2000 N m:3"])["torque"] == pytest.approx([1000.0, 1500.0, 2000.0])
-    both = parse_over(["torque=500 N m:600 N m,misalignment=-5 um:0 um:9 um"])
+    assert axes_of(["torque=1 kN m:2000 N m:3"])["torque"] == pytest.approx([1000.0, 1500.0, 2000.0])
+    both = axes_of(["torque=500 N m:600 N m,misalignment=-5 um:0 um:9 um"])
     assert both["torque"] == pytest.approx([500.0, 600.0])
     assert both["misalignment"] == pytest.approx([-5e-6, 0.0, 9e-6])
 
@@ -82,13 +82,11 @@ def test_ranges_and_lists_of_values_are_read_with_their_units() -> None:
         (["--over", "torque=-100 N m:100 N m:2"], "one sense"),
         (["--over", "torque=0 N m"], "one sense|not zero"),
         (["--over", "torque=100 N m", "--over", "torque=200 N m"], "given twice"),
-        (["--over", "torque=100 N m", "--load-factors", "0.5"], "--load-factors does not go with --over"),
-        (["--csv", "x.csv"], "give --over too"),
     ],
 )
 def test_what_cannot_be_is_refused(tmp_path: Path, arguments: list[str], said: str) -> None:
     file = tmp_path / "pair.toml"
     file.write_text(pair_file(mesh=PREVIEW))
-    done = CliRunner().invoke(app, ["mesh", str(file), *arguments], env={"COLUMNS": "200"})
+    done = CliRunner().invoke(app, ["mesh-map", str(file), *arguments], env={"COLUMNS": "200"})
     assert isinstance(done.exception, rg.AnalysisError)
     assert any(text in str(done.exception) for text in said.split("|"))

@@ -133,9 +133,9 @@ def test_what_cannot_be_is_refused(given: dict[str, Any], said: str) -> None:
 def test_the_command_prints_lines_for_the_file(tmp_path: Path) -> None:
     file = tmp_path / "pair.toml"
     file.write_text(TEXT)
-    asked = ["--optimise", "profile_crowning", "--over", "torque=400 N m:800 N m:2", "--positions", "8"]
+    asked = ["--variables", "profile_crowning", "--over", "torque=400 N m:800 N m:2", "--positions", "8"]
     more = ["--evaluations", "12", "--samples", "4", "--bounds", "profile_crowning=0 um:30 um"]
-    done = CliRunner().invoke(app, ["mesh", str(file), *asked, *more], env={"COLUMNS": "80"})
+    done = CliRunner().invoke(app, ["optimise-flanks", str(file), *asked, *more], env={"COLUMNS": "80"})
     assert done.exit_code == 0, done.output
     assert "[gears.pinion.flank]" in done.output
     assert "90 % band" in done.output

@@ -85,7 +85,7 @@ def test_what_cannot_be_is_refused_and_the_command_draws(tmp_path: Path) -> None
     file = tmp_path / "pair.toml"
     file.write_text(pair_file(mesh=PREVIEW))
     picture = tmp_path / "roots.png"
-    asked = ["mesh", str(file), "--root-stress", "--positions", "4", "--plot", str(picture)]
+    asked = ["root-stress", str(file), "--positions", "4", "--plot", str(picture)]
     done = CliRunner().invoke(app, asked, env={"COLUMNS": "80"})
     assert done.exit_code == 0, done.output
     assert "at the 30 deg tangent, MPa" in done.output
