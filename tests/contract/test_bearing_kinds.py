@@ -15,7 +15,7 @@ from rotorgear.forces.registry import law_of, names
 from rotorgear.model.parts.bearings.geometry import BearingGeometry
 from rotorgear.model.parts.supports import Bearing
 from rotorgear.results.bearing import BearingSheet
-from tests.disk_in_bearing import disk_in_bearing
+from tests.models import disk_in_bearing
 from tests.paths import ROOT
 
 THRUST = {

@@ -18,7 +18,7 @@ from rotorgear.elements.shaft import cowper, quarter_turn, shaft_elements
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.quantity import RPM_PER_RAD_S, parse_quantity
 from rotorgear.system.system import System
-from tests.contract.small_models import (
+from tests.models import (
     NU,
     RHO,
     STEEL,

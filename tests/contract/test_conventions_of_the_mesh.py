@@ -14,7 +14,7 @@ import scipy.optimize as optimize
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, flank_normal, gear_mesh
 from rotorgear.system.system import System
-from tests.contract.small_models import (
+from tests.models import (
     STEEL,
     bearing,
     clamp,

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from tests.models import pair_file
 from tests.paths import ROOT
-from tests.unit.analysis.geared import pair_file
 from tests.unit.analysis.static.test_bearing_states import BALLS
 from tests.unit.analysis.static.test_bearing_states import rotor as pulled_rotor
 

@@ -25,8 +25,8 @@ from rotorgear.results.kinds import keys_of, kinds
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.spectrum import SpectralLines
+from tests.models import pair_file
 from tests.paths import ROOT
-from tests.unit.analysis.geared import pair_file
 from tests.unit.analysis.static.test_bearing_states import BALLS
 from tests.unit.analysis.static.test_bearing_states import rotor as pulled_rotor
 from tests.unit.casings.blocks import block, write_inp

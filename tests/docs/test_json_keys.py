@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from rotorgear.analysis.static.static import static
 from rotorgear.cli.main import app
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 from tests.unit.analysis.static.test_bearing_states import rotor
 from tests.unit.casings.blocks import block, write_inp
 

@@ -8,7 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import ModelError
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 SHORT = {"time": 0.05, "discard": 0.1, "steps": 400, "error_estimate": False}
 

@@ -8,7 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.gears.stiffness_models import mesh_stiffness
 from rotorgear.progress import listener, listening, part_of, silent
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 
 
 def test_a_part_of_the_work_takes_its_share() -> None:

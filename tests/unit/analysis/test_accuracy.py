@@ -15,23 +15,10 @@ from rotorgear.analysis.accuracy import STUDIES
 from rotorgear.analysis.common.study import Judged, Setting, Study, measured
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, ConvergenceError
+from tests.models import overhung_disk
 
 ROOT = Path(__file__).parents[3]
 SHORT: dict[str, Any] = {"elements": (2, 4), "accuracies": (1e-3,), "repeat": 0}
-
-
-def overhung(**shaft: Any) -> rg.Model:
-    """A shaft on two bearings with a wide disk beyond them: its gyroscopic moments move critical speeds strongly."""
-    return rg.Model(
-        shafts={"s": {"sections": [{"length": 0.6, "outer_diameter": 0.04}], **shaft}},
-        disks={"d": {"shaft": "s", "at": 0.6, "outer_diameter": 0.35, "bore": 0.04, "width": 0.03}},
-        bearings={
-            "a": {"shaft": "s", "at": 0.0, "stiffness": {"radial": 1e8, "axial": 1e8}, "damping": {"radial": 500.0}},
-            "b": {"shaft": "s", "at": 0.35, "stiffness": {"radial": 1e8}, "damping": {"radial": 500.0}},
-        },
-        operation={"input_shaft": "s", "speed": 800.0, "gravity": [0.0, -9.81, 0.0]},
-        unbalances={"u": {"shaft": "s", "at": 0.6, "magnitude": 1e-4}},
-    )
 
 
 def within(study: rg.ConvergenceStudy, low: float, high: float) -> None:
@@ -81,13 +68,13 @@ def test_memory_of_a_run_is_that_of_its_arrays() -> None:
 
 def test_critical_speeds_carry_the_error_of_the_speed_and_not_of_the_frequency() -> None:
     # Gyroscopic moments: the error of the crossing is that of the frequency at a held speed over 1 - d(frequency)/d(speed).
-    study = STUDIES["critical"].study(overhung(), elements=(2, 4), accuracies=(), repeat=0)
+    study = STUDIES["critical"].study(overhung_disk(), elements=(2, 4), accuracies=(), repeat=0)
     within(study, 0.8, 1.25)
     falls_with_order(study, 1.5)
-    last = rg.critical(overhung(), elements=2).speeds[-1]
+    last = rg.critical(overhung_disk(), elements=2).speeds[-1]
 
     def mode(speed: float) -> tuple[float, float]:
-        found = rg.modal(overhung(), speed=speed, elements=2, modes=12)
+        found = rg.modal(overhung_disk(), speed=speed, elements=2, modes=12)
         k = int(np.argmin(np.abs(found.eigenvalues.imag / (2.0 * np.pi) - last.frequency_hz)))
         return float(found.eigenvalues[k].imag), float(found.error_estimate[k])
 
@@ -108,7 +95,7 @@ def test_a_free_rotation_of_a_fine_mesh_is_no_critical_speed() -> None:
 
 @pytest.mark.long
 def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> None:
-    study = STUDIES["campbell"].study(overhung(), modes=6, **SHORT)
+    study = STUDIES["campbell"].study(overhung_disk(), modes=6, **SHORT)
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.5)
 
@@ -116,7 +103,7 @@ def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> Non
 @pytest.mark.long
 @pytest.mark.parametrize("analysis", ["response", "frf"])
 def test_amplitudes_are_held_to_those_of_a_mesh_of_high_order(analysis: str) -> None:
-    study = STUDIES[analysis].study(overhung(), modal_damping=0.01, **SHORT)
+    study = STUDIES[analysis].study(overhung_disk(), modal_damping=0.01, **SHORT)
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.5)
     assert study.rungs[-1].error <= 1e-3
@@ -129,14 +116,14 @@ def test_a_model_in_torsion_alone_has_its_response_between_rotations() -> None:
 
 
 def test_statics_of_the_basic_element_are_exact() -> None:
-    study = STUDIES["static"].study(overhung(), **SHORT)
+    study = STUDIES["static"].study(overhung_disk(), **SHORT)
     assert max(rung.error for rung in study.rungs) < 1e-11
     assert all("rounding only" in rung.notes for rung in study.rungs)
 
 
 def test_lumped_mass_is_measured_against_consistent_mass() -> None:
     study = rg.convergence_study(
-        overhung(mass_matrix="lumped"), modes=6, elements=(8, 16), accuracies=(), repeat=0, speed=800.0
+        overhung_disk(mass_matrix="lumped"), modes=6, elements=(8, 16), accuracies=(), repeat=0, speed=800.0
     )
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.8)
@@ -175,21 +162,21 @@ def test_orbits_of_a_rotor_without_meshes_are_compared_by_its_own_displacements(
 @pytest.mark.parametrize("analysis", ["scatter", "update", "optimise", "compare", "sensors", "standards", "gear"])
 def test_a_verb_without_a_discretisation_says_where_its_errors_stand(analysis: str) -> None:
     with pytest.raises(AnalysisError, match=f"{analysis} has no study of its own: it"):
-        rg.accuracy(overhung(), analysis)
+        rg.accuracy(overhung_disk(), analysis)
 
 
 def test_an_accuracy_of_amplitudes_is_reached_or_said_to_be_missed() -> None:
     points = {"inputs": ["disks.d:y"], "outputs": ["disks.d:y"], "fmax": 300.0, "points": 60}
-    reached = rg.frf(overhung(), **points, modal_damping=0.001, accuracy=1e-5)
+    reached = rg.frf(overhung_disk(), **points, modal_damping=0.001, accuracy=1e-5)
     assert reached.error_estimate <= 1e-5
     assert reached.status == "success"
-    missed = rg.static(overhung(), accuracy=1e-11)
+    missed = rg.static(overhung_disk(), accuracy=1e-11)
     assert missed.status == "success"
 
 
 def test_a_missed_accuracy_is_a_warning_and_a_status(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rotorgear.analysis.static.static._estimate", lambda *given: 0.5)
-    result = rg.static(overhung(), accuracy=1e-3)
+    result = rg.static(overhung_disk(), accuracy=1e-3)
     assert result.status.startswith("accuracy 0.001 not reached: the error is estimated at 0.5")
     assert result.status in result.warnings
 
@@ -208,6 +195,6 @@ def test_the_command_writes_every_column_and_refuses_what_belongs_elsewhere(tmp_
     )
     assert picture.stat().st_size > 10_000
     with pytest.raises(AnalysisError, match="--to belongs to --analysis campbell or critical, not to static"):
-        rg.accuracy(overhung(), "static", stop=100.0)
+        rg.accuracy(overhung_disk(), "static", stop=100.0)
     with pytest.raises(AnalysisError, match="expected modal, campbell"):
-        rg.accuracy(overhung(), "dance")
+        rg.accuracy(overhung_disk(), "dance")

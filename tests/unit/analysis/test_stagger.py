@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 OFFSET = 0.025  # m from the gears' middle to each helix: (gap + width)/2
 BODY = {"pinion": (2.0, 2.4e-3, 2.9e-3), "wheel": (4.5, 1.2e-2, 1.0e-2)}  # kg, kg m^2, kg m^2 of the whole gears

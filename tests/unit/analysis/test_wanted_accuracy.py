@@ -10,25 +10,13 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
+from tests.models import overhung_disk
 from tests.paths import MODELS
-
-
-def overhung() -> rg.Model:
-    return rg.Model(
-        shafts={"s": {"sections": [{"length": 0.6, "outer_diameter": 0.04}]}},
-        disks={"d": {"shaft": "s", "at": 0.6, "outer_diameter": 0.35, "bore": 0.04, "width": 0.03}},
-        bearings={
-            "a": {"shaft": "s", "at": 0.0, "stiffness": {"radial": 1e8, "axial": 1e8}, "damping": {"radial": 500.0}},
-            "b": {"shaft": "s", "at": 0.35, "stiffness": {"radial": 1e8}, "damping": {"radial": 500.0}},
-        },
-        operation={"input_shaft": "s", "speed": 800.0, "gravity": [0.0, -9.81, 0.0]},
-        unbalances={"u": {"shaft": "s", "at": 0.6, "magnitude": 1e-4}},
-    )
 
 
 def undamped() -> rg.Model:
     """Its modes as sensors and scatter take them."""
-    return overhung().with_({f"bearings.{name}.damping": {"radial": 0.0} for name in "ab"})
+    return overhung_disk().with_({f"bearings.{name}.damping": {"radial": 0.0} for name in "ab"})
 
 
 def backlash(**more: Any) -> rg.Model:
@@ -38,23 +26,35 @@ def backlash(**more: Any) -> rg.Model:
 PLACE = ["disks.d:y"]
 # What the accuracy of each verb is held to.
 ESTIMATED: dict[str, tuple[Callable[[float], Any], Callable[[Any], Any]]] = {
-    "modal": (lambda a: rg.modal(overhung(), modes=6, accuracy=a), lambda r: r.error_estimate),
-    "modal at speed": (lambda a: rg.modal(overhung(), modes=6, speed=800.0, accuracy=a), lambda r: r.error_estimate),
-    "campbell": (lambda a: rg.campbell(overhung(), modes=4, points=3, accuracy=a), lambda r: r.error_estimate),
+    "modal": (lambda a: rg.modal(overhung_disk(), modes=6, accuracy=a), lambda r: r.error_estimate),
+    "modal at speed": (
+        lambda a: rg.modal(overhung_disk(), modes=6, speed=800.0, accuracy=a),
+        lambda r: r.error_estimate,
+    ),
+    "campbell": (
+        lambda a: rg.campbell(overhung_disk(), modes=4, points=3, accuracy=a),
+        lambda r: r.error_estimate,
+    ),
     "critical": (
-        lambda a: rg.critical(overhung(), stop=1500.0, accuracy=a),
+        lambda a: rg.critical(overhung_disk(), stop=1500.0, accuracy=a),
         lambda r: [each.error_estimate for each in r.speeds],
     ),
-    "static": (lambda a: rg.static(overhung(), accuracy=a), lambda r: r.error_estimate),
-    "response": (lambda a: rg.response(overhung(), points=3, accuracy=a), lambda r: r.error_estimate),
+    "static": (lambda a: rg.static(overhung_disk(), accuracy=a), lambda r: r.error_estimate),
+    "response": (lambda a: rg.response(overhung_disk(), points=3, accuracy=a), lambda r: r.error_estimate),
     "frf": (
         lambda a: rg.frf(
-            overhung(), inputs=PLACE, outputs=PLACE, fmax=300.0, points=20, modal_damping=0.01, accuracy=a
+            overhung_disk(),
+            inputs=PLACE,
+            outputs=PLACE,
+            fmax=300.0,
+            points=20,
+            modal_damping=0.01,
+            accuracy=a,
         ),
         lambda r: r.error_estimate,
     ),
     "state_space": (
-        lambda a: rg.state_space(overhung(), inputs=PLACE, outputs=PLACE, fmax=300.0, accuracy=a),
+        lambda a: rg.state_space(overhung_disk(), inputs=PLACE, outputs=PLACE, fmax=300.0, accuracy=a),
         lambda r: [r.reduction_error, r.error_estimate],
     ),
     "transient": (

@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.cli.main import app
+from tests.models import spur_pair
 from tests.paths import ROOT
-from tests.unit.analysis.spur_pair import spur_pair
 
 ROLLING = {
     "kind": "ball",

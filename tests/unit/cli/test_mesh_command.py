@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
 

@@ -22,7 +22,7 @@ from rotorgear.elements.gear_mesh import (
 )
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.system.system import System
-from tests.contract.small_models import lumped_gear, lumped_pair, pair_points, random_contact, rigid_motions
+from tests.models import lumped_gear, lumped_pair, pair_points, random_contact, rigid_motions
 
 Z = np.array([0.0, 0.0, 1.0])
 

@@ -8,7 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.elements.shaft import shaft_elements
 from rotorgear.elements.spring import linking_spring, rigid_transfer
-from tests.contract.small_models import RHO, STEEL, elements
+from tests.models import RHO, STEEL, elements
 
 
 @pytest.mark.parametrize("lumped", [True, False])

@@ -21,8 +21,8 @@ from rotorgear.errors import RotorgearError
 from rotorgear.export.files import WriteError
 from rotorgear.export.stream import read_chunk
 from rotorgear.model.model import model_hash
+from tests.models import spur_pair
 from tests.paths import ROOT
-from tests.unit.analysis.spur_pair import spur_pair
 
 SETTINGS: dict[str, Any] = {"time": 0.1, "discard": 0.02, "steps": 160, "error_estimate": False}
 
@@ -118,7 +118,7 @@ def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(
 def test_what_kill_leaves_is_readable_and_goes_on(tmp_path: Path) -> None:
 
     program = (
-        "import rotorgear as rg\nfrom tests.unit.analysis.spur_pair import spur_pair\n"
+        "import rotorgear as rg\nfrom tests.models import spur_pair\n"
         f"rg.transient(spur_pair(), time=20.0, discard=0.0, steps=160, error_estimate=False, method='newmark', "
         f"stream=rg.stream({str(tmp_path / 'run.h5')!r}))\n"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import rotorgear as rg
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 
 
 @pytest.mark.parametrize(

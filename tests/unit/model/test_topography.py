@@ -12,7 +12,7 @@ from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.model.layout.mesh_layout import mirrored
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
 OUTLINE = tooth_outline(rg.gear(rg.loads(pair_file(torque=""))).pairs["pair"].first)

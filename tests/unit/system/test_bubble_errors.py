@@ -9,7 +9,7 @@ import rotorgear as rg
 from rotorgear.system.bubble_errors import bubble_errors
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
-from tests.contract.small_models import STEEL
+from tests.models import STEEL
 
 
 @pytest.mark.parametrize(

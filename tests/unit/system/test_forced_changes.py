@@ -13,7 +13,7 @@ from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
-from tests.contract.small_models import STEEL
+from tests.models import STEEL
 
 
 def rotor(shaft: dict[str, Any], damping: dict[str, float]) -> rg.Model:

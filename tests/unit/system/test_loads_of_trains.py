@@ -10,7 +10,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.system.system import System
-from tests.contract.small_models import lumped_gear, lumped_pair
+from tests.models import lumped_gear, lumped_pair
 
 RADII = {"a": 0.05, "b": 0.12, "c": 0.03, "d": 0.1}  # one - two - three
 SPEED = 150.0

@@ -16,7 +16,7 @@ from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 from tests.unit.analysis.transient.test_against_response import herringbone
 
 BACKWARDS = {"operation__input_shaft": "two", "operation__output_shaft": "one"}

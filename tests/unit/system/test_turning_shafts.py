@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.contract.small_models import STEEL, E, clamp, disk, lumped_gear
+from tests.models import STEEL, E, clamp, disk, lumped_gear
 
 Table = dict[str, Any]
 

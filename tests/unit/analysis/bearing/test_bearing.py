@@ -11,7 +11,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
 from rotorgear.system.local_parts import bearing_law
-from tests.disk_in_bearing import disk_in_bearing
+from tests.models import disk_in_bearing
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.contract.small_models import STEEL
+from tests.models import STEEL
 from tests.paths import MODELS
 
 

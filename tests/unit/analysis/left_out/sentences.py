@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 
 def sentence(result: Any, *words: str) -> str:

@@ -13,9 +13,8 @@ from rotorgear.analysis.transient.request import rotation_of
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
-from tests.contract.small_models import bearing, cantilever, disk
+from tests.models import bearing, cantilever, disk, spur_pair
 from tests.unit.analysis.left_out.sentences import modes, numbers, pair, says, sentence
-from tests.unit.analysis.spur_pair import spur_pair
 
 SPRING = {"law": "plain_spring", "shaft": "two", "at": "end", "directions": ["y"], "parameters": {"stiffness": 1e6}}
 SECTION = {"length": 0.4, "outer_diameter": 0.03}

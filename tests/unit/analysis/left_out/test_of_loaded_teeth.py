@@ -23,8 +23,8 @@ from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
+from tests.models import spur_pair
 from tests.unit.analysis.left_out.sentences import modes, numbers, pair, says, sentence
-from tests.unit.analysis.spur_pair import spur_pair
 from tests.unit.analysis.written_maps import Approach, ripple, written
 from tests.unit.gears.tooth_pairs import spur
 

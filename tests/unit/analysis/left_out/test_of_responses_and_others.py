@@ -9,9 +9,9 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.journal_film import JournalFilm
+from tests.models import spur_pair
 from tests.paths import MODELS
 from tests.unit.analysis.left_out.sentences import numbers, pair, says, sentence
-from tests.unit.analysis.spur_pair import spur_pair
 
 SPEED = "1500 rpm"
 

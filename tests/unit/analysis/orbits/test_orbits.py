@@ -9,8 +9,8 @@ import rotorgear as rg
 from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.periodic.floquet import basis_of
+from tests.models import spur_pair
 from tests.paths import MODELS
-from tests.unit.analysis.spur_pair import spur_pair
 from validation.cases.journal_whirl.whirl import FINITE, SHORT, closed_form, model
 from validation.studies.dead_zone import HALF_BACKLASH, DeadZone, jumps
 

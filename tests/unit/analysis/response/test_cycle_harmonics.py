@@ -16,7 +16,7 @@ from rotorgear.analysis.response.cycle_harmonics import (
     strong,
     that_matter,
 )
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 MESH = 24 * 1500.0 / 60.0
 

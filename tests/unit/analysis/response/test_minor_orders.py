@@ -7,7 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 from tests.unit.analysis.written_maps import written
 
 K = 3e8

@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from tests.contract.small_models import lumped_gear
+from tests.models import lumped_gear
 from tests.unit.analysis.written_maps import ripple, written
 
 K = 4e8

@@ -22,7 +22,7 @@ from rotorgear.model.numbers import numbers_of
 from rotorgear.model.parts.operation import Scatter
 from rotorgear.model.spreads import spreads_of
 from rotorgear.system.plan import Plan
-from tests.contract.small_models import STEEL
+from tests.models import STEEL
 from tests.paths import MODELS, ROOT
 
 PENDULUM = """

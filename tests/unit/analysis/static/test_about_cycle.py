@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.static.state_at import state_at
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
 

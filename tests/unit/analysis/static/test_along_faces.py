@@ -19,7 +19,7 @@ from rotorgear.errors import ModelError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.system.system import System
-from tests.contract.small_models import clamp, lumped_gear, lumped_pair
+from tests.models import clamp, lumped_gear, lumped_pair
 from tests.paths import MODELS
 
 STIFFNESS = 4e8

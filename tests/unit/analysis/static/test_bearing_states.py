@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 import rotorgear as rg
 from rotorgear.forces.ball_bearing import BallBearing
-from tests.disk_in_bearing import disk_in_bearing
+from tests.models import disk_in_bearing
 
 BALLS = 'kind = "ball", elements = 7, element_diameter = "11.5 mm", pitch_diameter = "43.5 mm"'
 ROLLERS = 'kind = "roller", elements = 15, element_diameter = "11 mm", pitch_diameter = "65.5 mm", length = "12 mm"'

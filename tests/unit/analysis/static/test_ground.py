@@ -7,7 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.transient.task import prepare
-from tests.contract.small_models import lumped_gear
+from tests.models import lumped_gear
 from tests.paths import MODELS
 
 

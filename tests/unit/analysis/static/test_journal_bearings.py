@@ -7,7 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError, ModelError
-from tests.disk_in_bearing import disk_in_bearing
+from tests.models import disk_in_bearing
 
 FRISWELL = {"diameter": 0.1, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
 

@@ -16,7 +16,7 @@ from rotorgear.forces.registry import register_law
 from rotorgear.solvers.time.compiled import force_function
 from rotorgear.solvers.time.kernel_contact import no_schedule
 from rotorgear.system.system import System
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 K = 3e7
 C = 400.0

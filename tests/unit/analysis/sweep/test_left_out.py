@@ -9,7 +9,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.sweep.notes import left_out_of
 from rotorgear.analysis.sweep.point import PointMaker
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 BACKLASH: dict[str, Any] = {"meshes__pair__backlash": "80 um"}
 

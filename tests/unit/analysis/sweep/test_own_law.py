@@ -12,7 +12,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.forces import law as law_module
 from rotorgear.forces import registry
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 
 @pytest.fixture

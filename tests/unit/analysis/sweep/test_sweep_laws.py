@@ -19,7 +19,7 @@ from rotorgear.forces.torque_curve import TorqueCurve
 from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
 from rotorgear.solvers.lanes.own_laws import not_held, own_laws
 from rotorgear.solvers.time.local_system import LocalSystem
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 from validation.oscillators import integrate, local_system
 
 MESH = MeshContact(

@@ -21,9 +21,8 @@ from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.model.model import Model
 from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
 from rotorgear.solvers.lanes.small_system import small_system
+from tests.models import pair_file, spur_pair
 from tests.paths import ROOT
-from tests.unit.analysis.geared import pair_file
-from tests.unit.analysis.spur_pair import spur_pair
 from tests.unit.analysis.sweep.test_sweep_laws import ROLLING
 
 FLEXIBLE = ROOT / "models" / "flexible_pair.toml"

@@ -14,8 +14,8 @@ import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.plots.gear_mesh import contact_points, gear_contour
+from tests.models import pair_file
 from tests.paths import MODELS
-from tests.unit.analysis.geared import pair_file
 
 PAIR = MODELS / "helical_pair.toml"
 

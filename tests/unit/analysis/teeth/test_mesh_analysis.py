@@ -20,8 +20,8 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.system.system import System
+from tests.models import pair_file
 from tests.paths import MODELS
-from tests.unit.analysis.geared import pair_file
 
 PREVIEW = 'tooth_fe = { preset = "preview" }'
 NAMED = f'stiffness = "tooth_fe"\n{PREVIEW}'

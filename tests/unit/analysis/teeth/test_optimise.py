@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
 TEXT = pair_file(mesh=PREVIEW)

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.gears.geometry.outline import root_section, tangent_angle, tooth_outline
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 from tests.unit.gears.tooth_pairs import spur
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'

@@ -14,7 +14,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.results.response import ResponseResult
 from rotorgear.results.transient import TransientResult
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 HEAVY = {name: {"radial": "2e4 N s/m", "axial": "1e4 N s/m"} for name in "abcd"}
 

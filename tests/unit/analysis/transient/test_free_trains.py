@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from tests.free_trains import chain, free_train
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 DRIFT = "do not balance"
 

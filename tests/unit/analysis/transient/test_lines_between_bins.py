@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 MESH = 24 * 1500.0 / 60.0
 

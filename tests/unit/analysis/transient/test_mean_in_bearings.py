@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.disk_in_bearing import disk_in_bearing
+from tests.models import disk_in_bearing
 
 BALLS = 'rolling = { kind = "ball", elements = 7, element_diameter = "11.5 mm", pitch_diameter = "43.5 mm" }'
 ROLLERS = (

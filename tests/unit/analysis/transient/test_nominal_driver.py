@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 _OPENS = [{"harmonic": 1, "amplitude": "4 um", "phase": "20 deg"}]
 _CLOSES = [{"harmonic": 1, "amplitude": "4 um", "phase": "200 deg"}]

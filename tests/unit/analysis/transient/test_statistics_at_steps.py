@@ -10,7 +10,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.solvers.time.kernel_gather import gather
 from rotorgear.solvers.time.statistics import Statistics, blank_gathered
-from tests.unit.analysis.spur_pair import spur_pair
+from tests.models import spur_pair
 
 MODELS = Path(__file__).resolve().parents[4] / "models"
 IMPACT = {"force": "3000 N", "duration": 0.02}

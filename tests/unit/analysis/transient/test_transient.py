@@ -13,8 +13,8 @@ from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
+from tests.models import spur_pair
 from tests.paths import MODELS
-from tests.unit.analysis.spur_pair import spur_pair
 
 MESH = 24 * 1500.0 / 60.0
 

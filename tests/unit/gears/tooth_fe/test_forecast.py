@@ -11,7 +11,7 @@ import rotorgear as rg
 from rotorgear.gears.loaded.tooth_contact import gear_key
 from rotorgear.gears.tooth_fe.compliance_model import forget, gear_compliance, layers_of, pitch_of
 from rotorgear.gears.tooth_fe.settings import ToothFe
-from tests.unit.analysis.geared import pair_file
+from tests.models import pair_file
 from tests.unit.gears.tooth_pairs import COARSE, helical
 
 
