@@ -13,8 +13,15 @@ from rotorgear.forces.law import ForceLaw
 from rotorgear.solvers.time.explicit import Explicit
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_forces import gather
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, local_values, state_at_rest
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import (
+    Integrator,
+    LocalSystem,
+    Records,
+    Rotation,
+    State,
+    local_values,
+    state_at_rest,
+)
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 

@@ -17,8 +17,7 @@ from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_s
 from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.solvers.time.local_system import LocalSystem
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
 from rotorgear.system.groups import (

@@ -19,7 +19,7 @@ from rotorgear.model.layout.state import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.supports import Bearing, element_law
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
 from rotorgear.system.system import System

@@ -22,8 +22,7 @@ import rotorgear as rg
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import LocalSystem, State, evaluated, local_values, state_at_rest
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation, State, evaluated, local_values, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.system.local import local_model
 from rotorgear.system.plan import Plan

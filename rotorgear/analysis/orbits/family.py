@@ -21,8 +21,7 @@ from rotorgear.model.parts.old_names import current_address
 from rotorgear.solvers.lanes.columns import PRESCRIBED
 from rotorgear.solvers.periodic.plant import Plant, Plants
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
-from rotorgear.solvers.time.local_system import LocalSystem
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.local import LocalModel
 
 # Periods of the fastest mesh that a motion may take at most: unknowns grow with them.

@@ -21,8 +21,7 @@ from rotorgear.solvers.lanes.own_laws import own_laws
 from rotorgear.solvers.lanes.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces, unbalanced
 from rotorgear.solvers.time.local_forces import LocalForces
-from rotorgear.solvers.time.local_system import LocalSystem
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import flow_system
 

@@ -12,8 +12,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, contact_rates
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
 from rotorgear.system.system import System
 

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.linalg.lapack import dposv
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.solvers.time.unilateral import unilateral
+from rotorgear.solvers.contact.unilateral import unilateral
 
 # Newton's rounds: four to eight as a rule.
 _ROUNDS = 100

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.solvers.lanes.arguments import ActingLaws
-from rotorgear.solvers.time.kernel_gather import DISSIPATED, ENERGIES
+from rotorgear.solvers.time.kernel_time import DISSIPATED, ENERGIES
 from rotorgear.solvers.time.local_forces import LocalForces, gather
 from rotorgear.solvers.time.local_system import LocalSystem, evaluated
 

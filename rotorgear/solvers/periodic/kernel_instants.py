@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.solvers.time.arguments import Answer
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import force_all, schedule_all
-from rotorgear.solvers.time.kernel_gather import ENERGIES, SIDE
+from rotorgear.solvers.time.kernel_time import ENERGIES, SIDE
 
 # Changes of piece that are looked for in one cell.
 MOST_IN_CELL = 6

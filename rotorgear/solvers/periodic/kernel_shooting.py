@@ -13,7 +13,7 @@ import numpy as np
 from rotorgear.solvers.time.arguments import Answer
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import ENERGIES, force_all, schedule_all
-from rotorgear.solvers.time.kernel_gather import set_row
+from rotorgear.solvers.time.kernel_time import set_row
 
 _STAGES = 7
 _SMALLEST = 1e-13

@@ -58,7 +58,8 @@ class ContactWork(NamedTuple):
         state: (s,) of the laws, filled for the step. d_free, v_free: (m,) at its end without local forces.
         d, v: (m,) there with them; v is the mean velocity where forces are those of a whole step. answer: of the laws.
         guess, step: (m,) and J: (m, m) of Newton's method. begin: (m,) displacements at the step's begin; middle: half way.
-        still, begun, ended: answers at rest in the middle, at the begin and at the end, all in the state of the step.
+        zeros: (m,), velocities at rest. unmoved, begun, ended: answers at rest in the middle, at the begin and at the end of the
+        step, all in the state of the step.
     """
 
     state: np.ndarray
@@ -72,8 +73,8 @@ class ContactWork(NamedTuple):
     J: np.ndarray
     begin: np.ndarray
     middle: np.ndarray
-    rest: np.ndarray
-    still: Answer
+    zeros: np.ndarray
+    unmoved: Answer
     begun: Answer
     ended: Answer
 
@@ -88,7 +89,7 @@ class Span(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """Prescribed rotation of the reference: speeds and angles at times, (k,); see solvers/time/motion.py."""
+    """Prescribed rotation of the reference: speeds and angles at times, (k,); see solvers/time/local_system.py."""
 
     times: np.ndarray
     speeds: np.ndarray
@@ -96,12 +97,12 @@ class Turning(NamedTuple):
 
 
 class Gathered(NamedTuple):
-    """Statistics of g quantities over the steps that count; see solvers/time/gathered.py.
+    """Statistics of g quantities over the steps that count; see solvers/time/kernel_time.py.
 
     Attributes:
         recent: (g, 3) values at the last three steps, oldest first. level: (g,) that sums are taken about.
         sums: (g, 3) over the steps of x - level, of its square, and of the negative part of x.
-        extremes: (g, 2) least and largest. steps: (1,) so many count.
+        extremes: (g, 2) least and largest. steps: (1,) number of steps that count.
     """
 
     recent: np.ndarray

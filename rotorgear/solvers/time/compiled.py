@@ -10,8 +10,8 @@ import re
 import shutil
 import tempfile
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ except ImportError:
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 # Places in the package whose functions are compiled, or compiled into others.
 COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/lanes", "solvers/periodic")
-# Folders of other sources that are kept beside: of other checkouts or versions in use at the same time.
+# Number of such folders that are kept: other checkouts or versions may be in use at the same time.
 MOST_VERSIONS = 12
 # Sums may be reordered so that they vectorise; NaN and infinity keep their meaning, so that divergence is seen.
 FAST = {"contract", "nsz", "reassoc"}
@@ -58,27 +58,12 @@ def cache_folder() -> Path | None:
             os.utime(folder)
         except OSError:
             continue
-        _forget_old(parent)
+        # The folders of sources that have not been run for longest are removed.
+        with suppress(OSError):
+            for old in sorted(parent.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_VERSIONS]:
+                shutil.rmtree(old, ignore_errors=True)
         return folder
     return None
-
-
-def _forget_old(parent: Path) -> None:
-    """Remove the folders of sources that have not been run for longest."""
-    with suppress(OSError):
-        for folder in sorted(parent.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_VERSIONS]:
-            shutil.rmtree(folder, ignore_errors=True)
-
-
-@contextmanager
-def _cache_in(folder: Path) -> Iterator[None]:
-    """numba takes the folder from its settings when a function is decorated; other users of numba keep theirs."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
-    try:
-        yield
-    finally:
-        numba.config.CACHE_DIR = before
 
 
 def compiled(
@@ -125,11 +110,15 @@ def compiled(
 
 def _kept(function: Callable[..., Any], folder: Path, options: dict[str, Any]) -> Any:
     """The function as numba compiles it and keeps it in a folder; None for one without a file, such as one typed at a prompt."""
-    with _cache_in(folder):
-        try:
-            made = numba.njit(cache=True, **options)(function)
-        except (RuntimeError, OSError):
-            return None
+    # numba takes the folder from its settings when a function is decorated; other users of numba keep theirs.
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        made = numba.njit(cache=True, **options)(function)
+    except (RuntimeError, OSError):
+        return None
+    finally:
+        numba.config.CACHE_DIR = before
     place = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
     made._cache = CompiledOnce(made._cache, folder / (re.sub(r"[^\w.-]", "_", place) + ".lock"))
     return made

@@ -7,8 +7,8 @@ Equations I (Springer 1993), II.5.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -22,7 +22,7 @@ from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Record
 MOST_DOFS = 600
 # Evaluations of the forces that a run may take, at some 0.1 ms each and once more for the error estimate: a minute.
 MOST_EVALUATIONS = 2e5
-# A step spans about so many radians of the fastest motion, and evaluates the forces so often.
+# Radians of the fastest motion that a step spans, and evaluations of the forces in it.
 _RADIANS = 6.0
 _STAGES = 12
 _FINEST = 1e-13
@@ -83,20 +83,35 @@ def check_length(system: LocalSystem, time: float) -> None:
 
 @dataclass
 class ExplicitStepper:
-    """The method made ready for one system and speed; `h` is the distance at which forces are looked at."""
+    """The method made ready for one system and speed; `h` is the time between the instants at which forces are recorded."""
 
     system: LocalSystem
     h: float
     speed: float
     relative: float
     _inverse: tuple[np.ndarray, ...] = field(init=False)
+    _laws: list[tuple[Any, ...]] = field(init=False)
 
     def __post_init__(self) -> None:
         s = self.system
         factor = factor_general(s.M)
         dense = (s.K.toarray(), s.velocity_terms(self.speed).toarray(), s.B.toarray(), s.load[:, None])
         self._inverse = tuple(np.ascontiguousarray(factor.solve(A)) if A.size else A for A in dense)
-        self._local = _LocalForces(s)
+        # Of each law its functions and its parts of the arrays of all. Laws are called one by one from Python at each stage,
+        # since numba takes microseconds to look at arrays, but milliseconds for the tuple of all laws' functions.
+        forces = s.forces
+        self._laws = [
+            (
+                forces.schedules[forces.kind[i]],
+                forces.forces[forces.kind[i]],
+                forces.parameters[forces.parameters_first[i] : forces.parameters_first[i + 1]],
+                np.zeros(forces.state_first[i + 1] - forces.state_first[i]),
+                slice(forces.first[i], forces.first[i + 1]),
+                np.zeros((2, forces.block_first[i + 1] - forces.block_first[i])),
+            )
+            for i in range(len(forces.laws))
+        ]
+        self._Bt = s.B.T.tocsr()
 
     def start(self, state: State) -> None:
         """Any consistent state will do."""
@@ -106,8 +121,23 @@ class ExplicitStepper:
         q = y[:n]
         v = y[n:]
         K, D, B, load = self._inverse
-        F, _ = self._local.at(q, v, t)
+        F, _ = self._local_forces(q, v, t)
         return np.concatenate([v, load[:, 0] - K @ q - D @ v - B @ F])
+
+    def _local_forces(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (m,) and energies (4 l,)."""
+        from rotorgear.solvers.time.kernel_time import rotation_at
+
+        rotation = self.system.rotation
+        angle, speed = rotation_at(t, Turning(rotation.times, rotation.speeds, rotation.angles))
+        F = np.zeros(self.system.m)
+        energy = np.zeros(4 * len(self._laws))
+        d = np.ascontiguousarray(self._Bt @ q)
+        v = np.ascontiguousarray(self._Bt @ v)
+        for i, (schedule, force, parameters, state, rows, tangents) in enumerate(self._laws):
+            schedule(angle, speed, t, parameters, state)
+            force(parameters, state, d[rows], v[rows], F[rows], tangents[0], tangents[1], energy[4 * i : 4 * i + 4])
+        return F, energy
 
     def advance(self, state: State, steps: int, every: int) -> Records:
         """Advance a state in place by some steps and record every `every`-th."""
@@ -139,19 +169,21 @@ class ExplicitStepper:
         s = self.system
         ratio = np.abs(s.stiffness_about.diagonal()) / s.M.diagonal()
         typical = float(np.sqrt(np.median(ratio[ratio > 0.0]))) if np.any(ratio > 0.0) else 1.0
-        far = max(_size(state.q), _smallest(s), _size(state.v) / typical)
+        # Not less than a share of what the load does to the stiffest dof.
+        stiffest = _size(s.stiffness_about.diagonal())
+        far = max(_size(state.q), _size(s.load) / stiffest if stiffest else 0.0, 1e-12, _size(state.v) / typical)
         return np.concatenate([np.full(s.n, far), np.full(s.n, far * typical)])
 
     def _look(self, state: State, kept: Kept, number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
-        from rotorgear.solvers.time.kernel_gather import gather
+        from rotorgear.solvers.time.kernel_time import gather
 
         n = self.system.n
         t = (state.step + number) * self.h
         state.q[:] = y[:n]
         state.v[:] = y[n:]
         state.a[:] = self._slope(t, y)[n:]
-        F, energy = self._local.at(state.q, state.v, t)
+        F, energy = self._local_forces(state.q, state.v, t)
         state.before[:] = state.F
         state.F[:] = F
         powers = energy.reshape(-1, 4)
@@ -176,68 +208,5 @@ class ExplicitStepper:
             kept.energy[r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]
 
 
-@dataclass
-class _BoundLaw:
-    """One law with its parts of the arrays of all.
-
-    It is called from Python at each stage, and numba looks at arrays in microseconds, but at the tuple of all laws' functions,
-    which the compiled loops take once a block, in milliseconds.
-    """
-
-    schedule: Callable[..., None]
-    force: Callable[..., None]
-    parameters: np.ndarray
-    state: np.ndarray
-    rows: slice
-    in_d: np.ndarray
-    in_v: np.ndarray
-    energy: slice
-
-
-class _LocalForces:
-    """Local forces with arrays that are made once."""
-
-    def __init__(self, system: LocalSystem) -> None:
-        self._system = system
-        self._Bt = system.B.T.tocsr()
-        forces = system.forces
-        self._laws = [
-            _BoundLaw(
-                forces.schedules[forces.kind[i]],
-                forces.forces[forces.kind[i]],
-                forces.parameters[forces.parameters_first[i] : forces.parameters_first[i + 1]],
-                np.zeros(forces.state_first[i + 1] - forces.state_first[i]),
-                slice(forces.first[i], forces.first[i + 1]),
-                np.zeros(forces.block_first[i + 1] - forces.block_first[i]),
-                np.zeros(forces.block_first[i + 1] - forces.block_first[i]),
-                slice(4 * i, 4 * (i + 1)),
-            )
-            for i in range(len(forces.laws))
-        ]
-
-    def at(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """Forces (m,) and energies (4 l,)."""
-        from rotorgear.solvers.time.kernel_time import rotation_at
-
-        rotation = self._system.rotation
-        angle, speed = rotation_at(t, Turning(rotation.times, rotation.speeds, rotation.angles))
-        F = np.zeros(self._system.forces.m)
-        energy = np.zeros(4 * len(self._laws))
-        d = np.ascontiguousarray(self._Bt @ q)
-        v = np.ascontiguousarray(self._Bt @ v)
-        for law in self._laws:
-            law.schedule(angle, speed, t, law.parameters, law.state)
-            rows = law.rows
-            law.force(law.parameters, law.state, d[rows], v[rows], F[rows], law.in_d, law.in_v, energy[law.energy])
-        return F, energy
-
-
-def _size(*values: np.ndarray) -> float:
-    return max(float(np.abs(x).max(initial=0.0)) for x in values)
-
-
-def _smallest(system: LocalSystem) -> float:
-    """Least displacement that is followed: a share of what the load does to the stiffest dof."""
-    stiffest = float(np.abs(system.stiffness_about.diagonal()).max(initial=0.0))
-    load = float(np.abs(system.load).max(initial=0.0))
-    return max(load / stiffest if stiffest else 0.0, 1e-12)
+def _size(x: np.ndarray) -> float:
+    return float(np.abs(x).max(initial=0.0))

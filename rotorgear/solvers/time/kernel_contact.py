@@ -1,10 +1,21 @@
 """Compiled: evaluation of local laws, and the forces of one implicit step.
 
 At the end of a step d = d_free - Ad F and v = v_free - Av F, with m x m compliances of the step; F follows from F = law(d, v), or
-from the potential over the whole step (kernel_middle.py). Newton's method is exact after one linear solution for laws that are
-piecewise linear. Its steps are shortened until the residual falls. Where that does not help, forces are found one by one: with
-the others held, law(d(F_i)) - F_i falls with F_i at least as fast as -F_i, so the root lies between F_i and the answer of the
-law, and bisection always ends there (Gauss and Seidel's method, which converges for potentials that are convex).
+from the potential over the whole step. Newton's method is exact after one linear solution for laws that are piecewise linear. Its
+steps are shortened until the residual falls. Where that does not help, forces are found one by one: with the others held,
+law(d(F_i)) - F_i falls with F_i at least as fast as -F_i, so the root lies between F_i and the answer of the law, and bisection
+always ends there (Gauss and Seidel's method, which converges for potentials that are convex).
+
+The force of a whole step does exactly the work by which the potential changes,
+
+    F = F(d_m, w) + lambda w/|w|^2,   d_m = (d_0 + d_1)/2,  w = (d_1 - d_0)/h,   lambda = [V(d_1) - V(d_0)]/h - dV(d_m)[w]
+
+with all that depends on time taken at the middle of the step (Gonzalez's discrete gradient). F w = dV/h + dissipation - power put
+in: with equations of motion that hold in the mean over a step, energy is kept, or dissipated, whatever the step, also where sides
+meet and part. lambda vanishes where V is quadratic between d_0 and d_1; it is not smaller than rounding where it counts.
+What a law answers gives dV(d_m)[w] = F w + P_in - P_diss at w less the same at rest: the rate of V that no motion makes.
+Simo and Tarnow, ZAMP 43 (1992) 757; Gonzalez, J. Nonlinear Science 6 (1996) 449; Laursen and Chawla, Int. J. Numer. Methods
+Eng. 40 (1997) 863.
 """
 
 from __future__ import annotations
@@ -13,10 +24,10 @@ import numpy as np
 
 from rotorgear.solvers.time.arguments import Answer, ContactWork
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
-from rotorgear.solvers.time.kernel_gather import ENERGIES
-from rotorgear.solvers.time.kernel_middle import all_straight, whole_step
+from rotorgear.solvers.time.kernel_time import DISSIPATED, ENERGIES, POWER_IN, SIDE, STORED
 
 _EPS = 2.220446049250313e-16
+_ROUNDING = 16.0 * _EPS
 # Of Newton's method: solutions, and halvings of one; then rounds over all forces one by one, and bisections of one.
 _ITERATIONS = 40
 _HALVINGS = 5
@@ -24,6 +35,73 @@ _ROUNDS = 400
 _BISECTIONS = 80
 FAILED = -1
 NOT_FINITE = -2
+
+
+@compiled(entry=False)
+def all_straight(laws, work):
+    """Whether no law needs more than its force half way: all are apart, or touch by one and the same spring, over the step."""
+    middle = work.answer
+    for law in range(laws.kind.size):
+        if not laws.conserves[law]:
+            continue
+        side = middle.energy[ENERGIES * law + SIDE]
+        if side != work.begun.energy[ENERGIES * law + SIDE] or side != work.ended.energy[ENERGIES * law + SIDE]:
+            return False
+        for p in range(laws.block_first[law], laws.block_first[law + 1]):
+            if middle.Kd[p] != work.begun.Kd[p] or middle.Kd[p] != work.ended.Kd[p]:
+                return False
+    return True
+
+
+@compiled(entry=False)
+def whole_step(laws, work, h):
+    """Turn the answer half way into that of the whole step, for laws whose stored energy is their potential.
+
+    `unmoved` are the answers half way at rest, `begun` and `ended` those at both ends of the step in the same state; the side
+    that touches is that of the end. Returns how far the rounding of the energies moves the forces.
+    """
+    answer = work.answer
+    uncertain = 0.0
+    energy = answer.energy
+    rest = work.unmoved.energy
+    begun = work.begun.energy
+    ended = work.ended.energy
+    for law in range(laws.kind.size):
+        if not laws.conserves[law]:
+            continue
+        a = laws.first[law]
+        b = laws.first[law + 1]
+        e = ENERGIES * law
+        energy[e + SIDE] = ended[e + SIDE]
+        square = 0.0
+        along = 0.0
+        size = 0.0
+        for i in range(a, b):
+            square += work.v[i] * work.v[i]
+            along += answer.F[i] * work.v[i]
+            size += abs(answer.F[i] * work.v[i])
+        moving = energy[e + POWER_IN] - energy[e + DISSIPATED]
+        held = rest[e + POWER_IN] - rest[e + DISSIPATED]
+        lacks = (ended[e + STORED] - begun[e + STORED]) / h - (along + moving - held)
+        for which in (POWER_IN, DISSIPATED):
+            size += abs(energy[e + which]) + abs(rest[e + which])
+        size += (abs(ended[e + STORED]) + abs(begun[e + STORED])) / h
+        lost = _ROUNDING * size
+        if square == 0.0 or abs(lacks) <= lost:
+            continue
+        # What rounding may have made of nothing is taken off, so that the force is continuous where the correction sets in.
+        lacks -= lost if lacks > 0.0 else -lost
+        uncertain = max(uncertain, lost / np.sqrt(square))
+        for i in range(a, b):
+            answer.F[i] += lacks * work.v[i] / square
+        if b - a == 1:
+            # F = dV/dd of one displacement grows by [V'(d_1) - dV/dd]/dd; V' at the end has the damper's share in it, as F has.
+            block = laws.block_first[law]
+            change = work.v[a] * h
+            steeper = (work.ended.F[a] - answer.F[a]) / change
+            steepest = max(answer.Kd[block], work.ended.Kd[block], work.begun.Kd[block])
+            answer.Kd[block] = max(min(2.0 * steeper, steepest), 0.0)
+    return uncertain
 
 
 @schedule_function
@@ -55,8 +133,8 @@ def schedule_all(laws, angle, speed, time, state):
 
 
 @compiled(entry=False)
-def force_all(laws, state, d, v, answer):
-    """Fill the answer of all laws to d and v (m,)."""
+def force_all(laws, state, d, v, answer, conserving=False):
+    """Fill the answer of all laws to d and v (m,), or of those alone whose stored energy is their potential (`conserving`)."""
     forces = laws.forces
     kind = laws.kind
     first = laws.first
@@ -69,6 +147,8 @@ def force_all(laws, state, d, v, answer):
     Kv = answer.Kv
     energy = answer.energy
     for i in range(kind.size):
+        if conserving and not laws.conserves[i]:
+            continue
         a = first[i]
         b = first[i + 1]
         p = block_first[i]
@@ -82,33 +162,6 @@ def force_all(laws, state, d, v, answer):
             Kd[p:q],
             Kv[p:q],
             energy[ENERGIES * i : ENERGIES * (i + 1)],
-        )
-
-
-@compiled(entry=False)
-def force_conserving(laws, state, d, v, answer):
-    """Fill the answer of those laws whose stored energy is their potential."""
-    forces = laws.forces
-    first = laws.first
-    parameters_first = laws.parameters_first
-    state_first = laws.state_first
-    block_first = laws.block_first
-    for i in range(laws.kind.size):
-        if not laws.conserves[i]:
-            continue
-        a = first[i]
-        b = first[i + 1]
-        p = block_first[i]
-        q = block_first[i + 1]
-        forces[laws.kind[i]](
-            laws.parameters[parameters_first[i] : parameters_first[i + 1]],
-            state[state_first[i] : state_first[i + 1]],
-            d[a:b],
-            v[a:b],
-            answer.F[a:b],
-            answer.Kd[p:q],
-            answer.Kv[p:q],
-            answer.energy[ENERGIES * i : ENERGIES * (i + 1)],
         )
 
 
@@ -211,9 +264,9 @@ def answer_to(laws, compliance, work, F, h):
             v[i] = (d[i] - work.begin[i]) / h
             work.middle[i] = 0.5 * (d[i] + work.begin[i])
         force_all(laws, work.state, work.middle, v, answer)
-        force_conserving(laws, work.state, d, v, work.ended)
+        force_all(laws, work.state, d, v, work.ended, True)
         if not all_straight(laws, work):
-            force_conserving(laws, work.state, work.middle, work.rest, work.still)
+            force_all(laws, work.state, work.middle, work.zeros, work.unmoved, True)
             floor = whole_step(laws, work, h)
     else:
         for i in range(m):

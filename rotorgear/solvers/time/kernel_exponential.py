@@ -3,7 +3,7 @@
 With z' = s z + w^T (B u + f) and the rest u = k d_m + c w - F of the local forces, which all hold for the whole step,
 z1 = e z0 + Q u + g is exact. In y = z - Q u it reads y1 = e y + e Q u0 + g, so that one pass over the modes serves the step;
 d at its end is C y1 + A u1. Motions without stiffness and damping follow r1 = r + h r' + h^2/2 u, r1' = r' + h u.
-F does the work by which its potential changes (kernel_middle.py), and so the step keeps the energy of a system without damping,
+F does the work by which its potential changes (kernel_contact.py), and so the step keeps the energy of a system without damping,
 and loses energy with it, whatever its length: Li and Wu, SIAM J. Sci. Comput. 38 (2016) A1876.
 Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """
@@ -18,11 +18,9 @@ from rotorgear.solvers.time.kernel_contact import (
     contact_step,
     contact_work,
     force_all,
-    force_conserving,
     schedule_all,
 )
-from rotorgear.solvers.time.kernel_gather import gather, record_whole, take_energies, take_events
-from rotorgear.solvers.time.kernel_time import rotation_at
+from rotorgear.solvers.time.kernel_time import gather, record_whole, rotation_at, take_energies, take_events
 
 _BLOCK = 256
 
@@ -173,7 +171,7 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
             work.begin[i] = begin[i]
             u_before[i] = u[i]
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
-        force_conserving(laws, work.state, work.begin, work.rest, work.begun)
+        force_all(laws, work.state, work.begin, work.zeros, work.begun, True)
         code = contact_step(laws, reference.compliance, work, F, tolerance, h)
         if code < 0:
             return number - 1, code, solutions

@@ -1,4 +1,9 @@
-"""Compiled: what all time loops share. Prescribed angle, sparse products and triangular solutions."""
+"""Compiled: what all time loops share: the prescribed angle, sparse products, triangular solutions, and what every step counts.
+
+Every step adds to energies, contact events, and statistics of forces, displacements and channels. Means are by the trapezoidal
+rule over values at steps, or plain over forces that are means of steps themselves. Between steps a cubic through four values
+gives the extremes, where the values bend one way only: a force that jumps or sets in has none there.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +11,19 @@ import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
 
+# Where a law's four energies stand.
+STORED, POWER_IN, DISSIPATED, SIDE = range(4)
+ENERGIES = 4
+# Sums of a quantity: about its level, of squares about it, and of the negative part.
+LEVEL, SQUARE, NEGATIVE = range(3)
+# Second differences of neighbours that differ by more than this share of their sum belong to no smooth curve.
+_SMOOTH = 0.5
+_ITERATIONS = 4
+
 
 @compiled
 def rotation_at(t, turning):
-    """Angle and speed of the reference at a time; see solvers/time/motion.py."""
+    """Angle and speed of the reference at a time; see solvers/time/local_system.py."""
     times = turning.times
     speeds = turning.speeds
     angles = turning.angles
@@ -51,6 +65,19 @@ def inertia_products(structure, x, out):
         out[i] = total
 
 
+@compiled(entry=False)
+def add_rows(matrix, x, out, at):
+    """Add a sparse matrix times x to out, from `at` on."""
+    first = matrix.first
+    column = matrix.column
+    value = matrix.value
+    for j in range(first.size - 1):
+        total = 0.0
+        for p in range(first[j], first[j + 1]):
+            total += value[p] * x[column[p]]
+        out[at + j] += total
+
+
 @compiled(fast=True, inner=True)
 def lu_solve(factors, b, y, x):
     """Solve A x = b from its `Triangles`; y is overwritten."""
@@ -79,3 +106,128 @@ def lu_solve(factors, b, y, x):
                 y[Ui[p]] -= Ux[p] * value
     for i in range(n):
         x[i] = y[column_place[i]]
+
+
+@compiled
+def take_account(energy, h, carried):
+    """Sum up energies put in and dissipated; count steps on the front side, apart and on the back, and contact losses."""
+    take_energies(energy, h, carried)
+    take_events(energy, carried)
+
+
+@compiled(entry=False)
+def take_energies(energy, h, carried):
+    """Sum up energies put in and dissipated."""
+    sums = carried.sums
+    for law in range(carried.last.size):
+        sums[law, 0] += h * energy[ENERGIES * law + POWER_IN]
+        sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
+
+
+@compiled(entry=False)
+def take_events(energy, carried):
+    """Count steps on the front side, apart and on the back, and contact losses."""
+    last = carried.last
+    events = carried.events
+    for law in range(last.size):
+        now = int(energy[ENERGIES * law + SIDE])
+        if now > 0:
+            events[law, 0] += 1
+        elif now < 0:
+            events[law, 2] += 1
+        else:
+            events[law, 1] += 1
+            if last[law] != 0:
+                events[law, 3] += 1
+        last[law] = now
+
+
+@compiled
+def gather(gathered, values, forces, whole):
+    """Take the values (g,) of a step into their statistics; the first `forces` of them, if `whole`, are means of the step.
+
+    No curve through forces crosses zero: sides that meet don't pull before.
+    """
+    recent = gathered.recent
+    sums = gathered.sums
+    levels = gathered.level
+    extremes = gathered.extremes
+    count = gathered.steps[0]
+    for i in range(values.size):
+        x = values[i]
+        a = recent[i, 0]
+        b = recent[i, 1]
+        c = recent[i, 2]
+        force = i < forces
+        if count == 0:
+            levels[i] = x if force and whole else c
+        level = levels[i]
+        now = x - level
+        if force and whole:
+            sums[i, LEVEL] += now
+            sums[i, SQUARE] += now * now
+            sums[i, NEGATIVE] += min(x, 0.0)
+        else:
+            before = c - level
+            sums[i, LEVEL] += 0.5 * (now + before)
+            sums[i, SQUARE] += 0.5 * (now * now + before * before)
+            sums[i, NEGATIVE] += 0.5 * (min(x, 0.0) + min(c, 0.0))
+        extremes[i, 0] = min(extremes[i, 0], x)
+        extremes[i, 1] = max(extremes[i, 1], x)
+        if count >= 3 and ((b >= a and c >= x) or (b <= a and c <= x)):
+            value = peak(a, b, c, x)
+            if not force or (value * b > 0.0 and value * c > 0.0):
+                extremes[i, 0] = min(extremes[i, 0], value)
+                extremes[i, 1] = max(extremes[i, 1], value)
+        recent[i, 0] = b
+        recent[i, 1] = c
+        recent[i, 2] = x
+    gathered.steps[0] = count + 1
+
+
+@compiled(entry=False)
+def peak(a, b, c, x):
+    """Extreme between b and c of the cubic through four values at equal distances (Bessel's formula); b where none is smooth."""
+    left = a - 2.0 * b + c
+    right = b - 2.0 * c + x
+    third = right - left
+    bend = 0.5 * (left + right)
+    if left * right <= 0.0 or abs(third) > 2.0 * _SMOOTH * abs(bend):
+        return b
+    t = 0.5 - (c - b) / bend
+    for _ in range(_ITERATIONS):
+        slope = c - b + (t - 0.5) * bend + third * (0.5 * t * (t - 1.0) + 1.0 / 12.0)
+        t -= slope / (bend + third * (t - 0.5))
+    if not 0.0 < t < 1.0:
+        return b
+    return b + t * (c - b) + 0.5 * t * (t - 1.0) * (bend + (t - 0.5) / 3.0 * third)
+
+
+@compiled(entry=False)
+def set_row(rows, r, values):
+    """Write a row. numba compiles the message of an assignment whose shapes don't match, which takes longer than a loop."""
+    for i in range(values.size):
+        rows[r, i] = values[i]
+
+
+@compiled(entry=False)
+def record_forces(r, h, work, carried, kept):
+    """Record local displacements, forces and energies at a step's end, whose sums follow the trapezoidal rule."""
+    set_row(kept.d, r, work.d)
+    set_row(kept.F, r, carried.F)
+    energy = work.answer.energy
+    for law in range(carried.last.size):
+        kept.energy[r, law, 0] = energy[ENERGIES * law + STORED]
+        kept.energy[r, law, 1] = carried.sums[law, 0] - 0.5 * h * energy[ENERGIES * law + POWER_IN]
+        kept.energy[r, law, 2] = carried.sums[law, 1] - 0.5 * h * energy[ENERGIES * law + DISSIPATED]
+
+
+@compiled(entry=False)
+def record_whole(r, answer, work, carried, kept):
+    """Record local displacements, and the answer of the laws at a step's end, where sums are over whole steps."""
+    set_row(kept.d, r, work.d)
+    set_row(kept.F, r, answer.F)
+    for law in range(carried.last.size):
+        kept.energy[r, law, 0] = answer.energy[ENERGIES * law + STORED]
+        kept.energy[r, law, 1] = carried.sums[law, 0]
+        kept.energy[r, law, 2] = carried.sums[law, 1]

@@ -1,10 +1,11 @@
-"""A linear structure with local forces, its state in time, and what integrators record of it.
+"""A linear structure with local forces, the rotation that is prescribed to it, its state in time, and what integrators record.
 
 M q'' + D q' + K q + B F(B^T q, B^T q', t) = f
 """
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
@@ -12,10 +13,58 @@ from typing import Protocol
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.errors import AnalysisError
 from rotorgear.solvers.time.arguments import Carried, Gathered, Kept
 from rotorgear.solvers.time.local_forces import LocalForces
-from rotorgear.solvers.time.motion import Rotation
 from rotorgear.solvers.time.statistics import blank_gathered
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """Speeds (k,) in rad/s at times (k,) in s; constant before the first and after the last."""
+
+    times: np.ndarray
+    speeds: np.ndarray
+
+    @staticmethod
+    def constant(speed: float) -> Rotation:
+        """Return the rotation at one speed."""
+        return Rotation(np.zeros(1), np.array([float(speed)]))
+
+    def __post_init__(self) -> None:
+        if self.times.size == 0 or self.times.size != self.speeds.size or np.any(np.diff(self.times) <= 0.0):
+            raise AnalysisError("the speed over time needs rising times, with one speed each")
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the speed never changes."""
+        return bool(np.all(self.speeds == self.speeds[0]))
+
+    @property
+    def accelerations(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Times in s and the accelerations in rad/s^2 that hold from them on; none where the speed never changes."""
+        if self.is_constant:
+            return (), ()
+        steps = np.diff(self.speeds) / np.diff(self.times)
+        return tuple(map(float, self.times)), (*map(float, steps), 0.0)
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Angle in rad at each of the times, with 0 at time 0."""
+        steps = 0.5 * (self.speeds[1:] + self.speeds[:-1]) * np.diff(self.times)
+        return self.speeds[0] * self.times[0] + np.concatenate([[0.0], np.cumsum(steps)])
+
+    def speed(self, t: np.ndarray) -> np.ndarray:
+        """Speed in rad/s at times (p,)."""
+        return np.asarray(np.interp(t, self.times, self.speeds))
+
+    def angle(self, t: np.ndarray) -> np.ndarray:
+        """Angle in rad at times (p,)."""
+        t = np.asarray(t, dtype=float)
+        i = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 1)
+        late = t - self.times[i]
+        mean = 0.5 * (self.speeds[i] + self.speed(t))
+        return np.asarray(self.angles[i] + np.where(t < self.times[0], self.speeds[0], mean) * late)
 
 
 @dataclass(frozen=True)
@@ -140,29 +189,15 @@ class State:
 
     def copy(self) -> State:
         """Return a copy with arrays of its own."""
-        return State(
-            self.step,
-            self.q.copy(),
-            self.v.copy(),
-            self.a.copy(),
-            self.F.copy(),
-            self.before.copy(),
-            self.d.copy(),
-            self.sums.copy(),
-            self.last.copy(),
-            self.events.copy(),
-            Gathered(*(x.copy() for x in self.gathered)),
-            {name: value.copy() for name, value in self.inner.items()},
-        )
+        return deepcopy(self)
 
 
 @dataclass(frozen=True)
 class Records:
     """r recorded steps: time (r,), local d and F (r, m), energies of each law (r, l, 3): stored, put in, dissipated.
 
-    `fields` gives rows of q, v and a. `status`: 0, or what stopped the loop (-1 no convergence, -2 not finite); `done`
-    steps done;
-    `solutions`: linear ones of m x m.
+    `fields` gives rows of q, v and a. `status`: 0, or what stopped the loop (-1 no convergence, -2 not finite). `done`: steps
+    that were taken. `solutions`: linear systems of m x m that were solved.
     """
 
     t: np.ndarray

@@ -2,7 +2,7 @@
 
 Average acceleration (beta 1/4, gamma 1/2) by default: second order, no numerical damping. It takes the equations of motion in
 the mean over a step, with local forces from their potential, so that energy is kept also where sides meet and part
-(kernel_middle.py).
+(kernel_contact.py).
 `rho_inf` < 1 damps what the step can't resolve: am = (2 rho - 1)/(rho + 1), af = rho/(rho + 1); these and other beta and gamma
 have local forces at a step's end, and may gain energy where stiff sides part. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67;
 Hilber, Hughes and Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283; Chung and Hulbert, J. Applied Mechanics 60 (1993) 371.
@@ -151,8 +151,7 @@ class NewmarkStepper:
 
     def advance(self, state: State, steps: int, every: int) -> Records:
         """Advance a state in place by some steps and record every `every`-th."""
-        from rotorgear.solvers.time.kernel_average import average_loop
-        from rotorgear.solvers.time.kernel_newmark import newmark_loop
+        from rotorgear.solvers.time.kernel_newmark import average_loop, newmark_loop
 
         loop = average_loop if self._method.keeps_energy else newmark_loop
         kept = blank_records(steps, every, self._system.n, self._system)
@@ -183,27 +182,16 @@ def _rows(A: sp.csc_array | np.ndarray) -> SparseRows:
 
 def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """Row starts and columns of the union of some sparse matrices, and the values of each in it."""
-    pattern = sp.csr_array(
-        sum(
-            (
-                sp.csr_array((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape[::-1]).T.tocsr()
-                for A in map(sp.csc_array, matrices)
-            ),
-            sp.csr_array(matrices[0].shape),
-        )
-    )
-    pattern.sort_indices()
-    rows = np.repeat(np.arange(pattern.shape[0]), np.diff(pattern.indptr))
-    values = []
-    for A in matrices:
-        full = sp.csr_array(A)
-        value = np.zeros(pattern.nnz)
-        coordinates = full.tocoo()
-        key = coordinates.row.astype(np.int64) * full.shape[1] + coordinates.col
-        place = np.searchsorted(rows.astype(np.int64) * full.shape[1] + pattern.indices, key)
-        np.add.at(value, place, coordinates.data)
-        values.append(value)
-    return pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), values
+    n = matrices[0].shape[0]
+    entries = [A.tocoo() for A in matrices]
+    keys = [one.row.astype(np.int64) * n + one.col for one in entries]
+    union = np.unique(np.concatenate(keys))
+    first = np.searchsorted(union, n * np.arange(n + 1, dtype=np.int64))
+    values = [
+        np.bincount(np.searchsorted(union, key), one.data, minlength=union.size)
+        for key, one in zip(keys, entries, strict=True)
+    ]
+    return first.astype(np.int32), (union % n).astype(np.int32), values
 
 
 def _triangles(lu: Any) -> Triangles:

@@ -13,7 +13,7 @@ import rotorgear as rg
 from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
 from tests.models import spur_pair

@@ -9,8 +9,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.model.parts.load import Unbalance
-from rotorgear.solvers.time.local_system import state_at_rest
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Rotation, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System

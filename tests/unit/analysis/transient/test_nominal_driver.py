@@ -66,7 +66,7 @@ def test_phases_that_follow_from_the_teeth_are_those_of_the_named_flanks() -> No
 
 
 def _parts(model: rg.Model) -> list[Any]:
-    from rotorgear.solvers.time.motion import Rotation
+    from rotorgear.solvers.time.local_system import Rotation
     from rotorgear.system.local import local_model
     from rotorgear.system.system import System
 

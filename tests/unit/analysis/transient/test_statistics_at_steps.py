@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.solvers.time.kernel_gather import gather
+from rotorgear.solvers.time.kernel_time import gather
 from rotorgear.solvers.time.statistics import Statistics, blank_gathered
 from tests.models import spur_pair
 

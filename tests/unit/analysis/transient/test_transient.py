@@ -10,7 +10,7 @@ from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.ball_bearing import BallBearing
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
 from tests.models import spur_pair

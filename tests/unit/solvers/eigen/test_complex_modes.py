@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 import rotorgear as rg
 from rotorgear.solvers.eigen.complex_modes import complex_modes
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

@@ -11,7 +11,7 @@ from rotorgear.forces.plain_spring import PlainSpring
 from rotorgear.solvers.time.arguments import Turning
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.kernel_time import rotation_at
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.solvers.time.newmark import Newmark
 from validation.oscillators import integrate, local_system
 

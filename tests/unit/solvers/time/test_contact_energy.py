@@ -9,8 +9,7 @@ import scipy.sparse as sp
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_forces import gather
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, State, state_at_rest
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, State, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 

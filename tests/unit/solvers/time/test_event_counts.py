@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.arguments import Carried
-from rotorgear.solvers.time.kernel_gather import take_account
+from rotorgear.solvers.time.kernel_time import take_account
 from rotorgear.solvers.time.statistics import blank_gathered
 
 

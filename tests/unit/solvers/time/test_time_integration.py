@@ -14,8 +14,7 @@ from rotorgear.forces.plain_spring import PlainSpring
 from rotorgear.forces.torque_curve import TorqueCurve
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import LocalSystem, state_at_rest
-from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 from validation.oscillators import METHODS, integrate, local_system, order

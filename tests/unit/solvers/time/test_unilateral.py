@@ -7,7 +7,7 @@ import pytest
 import scipy.optimize as so
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.solvers.time.unilateral import unilateral
+from rotorgear.solvers.contact.unilateral import unilateral
 
 
 def compliance(n: int, seed: int) -> np.ndarray:
