@@ -80,21 +80,21 @@ from rotorgear.solvers.time.compiled import schedule_function as schedule_functi
 from rotorgear.solvers.time.kernel_contact import no_schedule as no_schedule
 
 # A rig beside them.
-from rotorgear.analysis.rig.compare_result import compare as compare
-from rotorgear.analysis.correlation.compare_shapes import compare_shapes as compare_shapes
-from rotorgear.analysis.correlation.compare_frf import compare_frf as compare_frf
-from rotorgear.analysis.rig.frf_file import read_rig_frf as read_rig_frf
-from rotorgear.analysis.correlation.compare_orders import compare_orders as compare_orders
-from rotorgear.analysis.correlation.compare_orders import read_order_cuts as read_order_cuts
+from rotorgear.analysis.rig.compare import compare as compare
+from rotorgear.analysis.rig.compare_shapes import compare_shapes as compare_shapes
+from rotorgear.analysis.rig.compare_responses import compare_frf as compare_frf
+from rotorgear.analysis.rig.measured import read_rig_frf as read_rig_frf
+from rotorgear.analysis.rig.compare_responses import compare_orders as compare_orders
+from rotorgear.analysis.rig.compare_responses import read_order_cuts as read_order_cuts
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
-from rotorgear.analysis.correlation.compare_spectrum import compare_spectrum as compare_spectrum
-from rotorgear.analysis.updating.update import update as update
-from rotorgear.analysis.correlation.sensors import sensors as sensors
-from rotorgear.analysis.updating.campaigns import Campaign as Campaign
-from rotorgear.analysis.updating.campaigns import read_campaigns as read_campaigns
+from rotorgear.analysis.rig.compare_responses import compare_spectrum as compare_spectrum
+from rotorgear.analysis.rig.update import update as update
+from rotorgear.analysis.rig.sensors import sensors as sensors
+from rotorgear.analysis.rig.campaigns import Campaign as Campaign
+from rotorgear.analysis.rig.campaigns import read_campaigns as read_campaigns
 from rotorgear.analysis.rig.measured import Measured as Measured
-from rotorgear.analysis.rig.shape_file import read_rig_shapes as read_rig_shapes
-from rotorgear.analysis.rig.mac import mac as mac
+from rotorgear.analysis.rig.measured import read_rig_shapes as read_rig_shapes
+from rotorgear.analysis.rig.likeness import mac as mac
 from rotorgear.analysis.transient.spectra import spectrum as spectrum
 from rotorgear.analysis.transient.spectra import spectral_lines as spectral_lines
 

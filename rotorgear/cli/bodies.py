@@ -25,7 +25,7 @@ def modal(call: Call) -> None:
     numbers_of_modes(call["shapes"])  # refused before anything is computed
     fmax = call["fmax"]
     if rig and call["modes"] is None and fmax is None:
-        from rotorgear.analysis.rig.compare_result import ABOVE_RIG
+        from rotorgear.analysis.rig.compare import ABOVE_RIG
 
         fmax = ABOVE_RIG * max(line.frequency_hz for line in rig)
     result = call.result(**({} if fmax is None else {"fmax": fmax}))

@@ -17,7 +17,7 @@ from rotorgear.analysis.common.describe_model import check
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.response import response
-from rotorgear.analysis.rig.compare_result import compare
+from rotorgear.analysis.rig.compare import compare
 from rotorgear.analysis.standards.standards import HIGHEST, judged
 from rotorgear.analysis.static.static import static
 from rotorgear.analysis.teeth.gear_sheet import gear

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from rotorgear.errors import Problem
 from rotorgear.results.rexs_import import Assumption
-from rotorgear.rexs.document import Component, Value
-from rotorgear.rexs.units import FACTORS, LARGEST, factor_of
+from rotorgear.rexs.document import FACTORS, LARGEST, Component, Value, factor_of
 
 _TRUE = ("true", "1", "yes")
 _FALSE = ("false", "0", "no")

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
-from rotorgear.rexs.frames import Frame, Frames
 from rotorgear.rexs.shafts import ShaftPart
-from rotorgear.rexs.structure import Pair, Structure
+from rotorgear.rexs.structure import Frame, Frames, Pair, Structure
 from rotorgear.rexs.toml_text import Table, number, quantity
 
 # Attribute names over the versions.

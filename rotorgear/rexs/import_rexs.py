@@ -14,13 +14,11 @@ from rotorgear.results.rexs_import import RexsImport
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.bearings import bearing_table, coupling_table, is_bearing, is_coupling
 from rotorgear.rexs.document import Document
-from rotorgear.rexs.frames import Frame, Frames
 from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read_gear
-from rotorgear.rexs.loads import load_tables
-from rotorgear.rexs.masses import MASS, mass_tables
+from rotorgear.rexs.loads import MASS, load_tables, mass_tables
 from rotorgear.rexs.read import read_document
 from rotorgear.rexs.shafts import Materials, ShaftPart, read_pieces, shaft_axes, shaft_table
-from rotorgear.rexs.structure import GEAR, Pair, Structure, refuse_other_kinds
+from rotorgear.rexs.structure import GEAR, Frame, Frames, Pair, Structure, refuse_other_kinds
 from rotorgear.rexs.toml_text import Names, Table, comment_line, text
 
 _NEWEST = (1, 6)

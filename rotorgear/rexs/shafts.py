@@ -9,8 +9,7 @@ import numpy as np
 
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component, Document
-from rotorgear.rexs.frames import Axis, Frame, Frames, axis_in
-from rotorgear.rexs.structure import Pair, Structure
+from rotorgear.rexs.structure import Axis, Frame, Frames, Pair, Structure, axis_in
 from rotorgear.rexs.toml_text import Names, Table, number, quantity, row
 
 # Ends of neighbouring sections closer than this are one place: files write differences of rounded coordinates.

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.correlation.compare_orders import OrderCut
-from rotorgear.analysis.rig.frf_file import MeasuredFrf
+from rotorgear.analysis.rig.compare_responses import OrderCut
+from rotorgear.analysis.rig.measured import MeasuredFrf
 from rotorgear.analysis.teeth.tooth_field import tooth_fields
 from rotorgear.export.hdf5 import read, save
 from rotorgear.model.model import model_hash

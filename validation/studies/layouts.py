@@ -22,8 +22,7 @@ from scipy.optimize import OptimizeResult, differential_evolution
 
 import rotorgear as rg
 from rotorgear.analysis.common.excitation import excitation_orders
-from rotorgear.analysis.layout.bounds import bounds_of
-from rotorgear.analysis.layout.problem import Problem
+from rotorgear.analysis.layout.problem import Problem, bounds_of
 from rotorgear.model.numbers import numbers_of
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.plan import Plan

@@ -21,8 +21,8 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 import rotorgear as rg
+from rotorgear.analysis.rig.likeness import pairs_of
 from rotorgear.analysis.rig.measured import Measured
-from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.model.numbers import free_numbers
 from rotorgear.results.comparison import RigLine

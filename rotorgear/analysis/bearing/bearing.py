@@ -1,15 +1,20 @@
-"""The verb `bearing`: one bearing at the loads of its gearbox, inside and from outside, and over speed."""
+"""The verb `bearing`: one bearing at the loads of its gearbox, inside and from outside, and over speed.
+
+Stability over speed is that of the whole gearbox on its bearings: the least logarithmic decrement, and where it falls through
+zero.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
-from rotorgear.analysis.bearing.stability import Decrements
 from rotorgear.analysis.bearing.state import (
     Carried,
     address_of,
@@ -21,9 +26,12 @@ from rotorgear.analysis.bearing.state import (
     on_grid,
     relative,
 )
+from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.static.solve import Equilibrated, LawState
+from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.inside import OilField, RollingLoads
 from rotorgear.forces.law import CYCLE_POINTS
@@ -31,6 +39,63 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.bearing import BearingSheet, BearingSpeed
+
+_MODES = 24
+# Smaller damping ratios are rounding of a mode that nothing damps.
+_UNDAMPED = 1e-9
+# The threshold is found to this share of its speed.
+_THRESHOLD = 1e-5
+
+
+class Decrements:
+    """Least logarithmic decrements of a model at speeds in a range.
+
+    The mesh is one that serves the modes at both ends of the range, and is found once.
+
+    Args:
+        model: a checked model. speeds: of the reference shaft in rad/s, not empty.
+    """
+
+    def __init__(self, model: Model, speeds: Sequence[float]) -> None:
+        self._model = model
+        ends = (min(speeds, key=abs), max(speeds, key=abs))
+        self._system = system_for_speeds(model, ends, modes=_MODES, fmax=None, elements=None, accuracy=None)
+
+    def at(self, speed: float, near: Sequence[LawState] = ()) -> tuple[float | None, float]:
+        """Smallest decrement of what oscillates and is damped, None where nothing is, and its frequency in Hz.
+
+        Args:
+            speed: of the reference shaft in rad/s. near: the laws in a known equilibrium at that speed or near by.
+        """
+        state_at(self._model, [speed], near=near)  # which the modes find there
+        modes = modal(self._system, speed=speed, modes=_MODES, error_estimate=False)
+        s = modes.eigenvalues
+        s = s[(s.imag > 0.0) & ~modes.rigid & (np.abs(s.real) > _UNDAMPED * np.abs(s))]
+        if not s.size:
+            return None, 0.0
+        least = s[np.argmax(s.real / s.imag)]
+        return float(-2.0 * np.pi * least.real / least.imag), float(least.imag / (2.0 * np.pi))
+
+    def threshold(
+        self, speeds: Sequence[float], decrements: Sequence[float | None], near: Sequence[Sequence[LawState]]
+    ) -> tuple[float, float] | None:
+        """Speed in rad/s and frequency in Hz where the least decrement falls through zero first, at its own equilibria.
+
+        Args:
+            speeds: rising in size. decrements: at these. near: the laws in equilibrium at these.
+        """
+        rows = list(zip(speeds, decrements, near, strict=True))
+        for (low, begin, _), (high, end, laws) in pairwise(rows):
+            if begin is None or end is None or not begin > 0.0 >= end:
+                continue
+
+            def decrement(speed: float, laws: Sequence[LawState] = laws) -> float:
+                return self.at(speed, laws)[0] or 0.0
+
+            speed = float(brentq(decrement, low, high, xtol=_THRESHOLD * abs(high)))
+            return speed, self.at(speed, laws)[1]
+        return None
+
 
 # Of the operating speed, where no speeds are given.
 _SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)

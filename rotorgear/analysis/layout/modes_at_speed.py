@@ -1,17 +1,37 @@
-"""A model with other numbers, and its modes at every operating speed: one solution of the whole system each."""
+"""Modes of a model at an operating speed, from one solution of the whole system, and how far they scatter.
+
+Where numbers of [scatter] vary, the frequencies near excitations have standard deviations, to first order:
+
+    H_j = phi_a^H (K' - w_a w_b M' + i (w_a + w_b) / 2 (W G)') phi_b / (2 sqrt(w_a w_b)),    sigma^2 = sum_j (s_j |H_j|)^2
+
+of number j with standard deviation s_j, over modes closer than 0.2 % as one space. |H_j| is the largest eigenvalue, which does
+not care how modes turn into each other at a veering. A mode alone has |H_j| = |dw/dp_j|, the band of `rotorgear scatter`.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.basis import with_shapes
-from rotorgear.analysis.scatter.forms import FormNames, forms_of
-from rotorgear.analysis.scatter.modes import FormModes, modes_of
-from rotorgear.analysis.scatter.samples import participations, spin_signs
+from rotorgear.analysis.sensitivity.derivatives import systems_beside
+from rotorgear.analysis.sensitivity.forms import (
+    GYROSCOPIC,
+    MASS,
+    STIFFNESS,
+    FormModes,
+    FormNames,
+    complex_forms,
+    coupling,
+    forms_of,
+    modes_of,
+    participations,
+    with_shapes,
+)
+from rotorgear.model.model import Model
+from rotorgear.model.spreads import spreads_of
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.system import System
@@ -21,6 +41,13 @@ _LEAST = 1e-3
 # Modes so many margins from a line, and with this share of the least participation, may come to count.
 _WIDER = 1.2
 _SOME = 0.5
+# Modes closer than this are looked at as one space.
+CLOSE = 2e-3
+# Half width of the differences, in standard deviations.
+_STEP = 1e-3
+# Modes scatter within so many margins of a line, and with this share of the least participation.
+MARGINS = 3.0
+_PERHAPS = 0.7
 
 
 @dataclass(frozen=True)
@@ -73,13 +100,12 @@ def state_of(
     first = found.eigenvalues[min(found.rigid_count, count - 1)]
     softest = _LEAST * float(np.sqrt(max(first, 1e-12)))
     hz = np.array([line.frequency_hz(speed) for line in lines])
-    names = FormNames.of(system.model)
-    senses = spin_signs(system.model, speed)
+    names = FormNames.of(system.model, speed)
 
     def over(V: NDArray[np.float64]) -> ModesAtSpeed:
         forms = forms_of(system, speed, V)
         modes = modes_of(forms, count, softest, V.shape[1])
-        return ModesAtSpeed(system, speed, V, forms, modes, participations(names, lines, forms, modes, senses), hz)
+        return ModesAtSpeed(system, speed, V, forms, modes, participations(names, lines, forms, modes), hz)
 
     rough = over(found.vectors)
     if not speed:
@@ -114,3 +140,68 @@ def total_mass(system: System) -> float:
             along = ((group.dofs < nodes) & (group.dofs % 6 == 0)).astype(float)
             total += float(np.einsum("ed,edf,ef->", along, M, along))
     return total
+
+
+def spaces_of(hz: NDArray[np.float64]) -> list[tuple[int, ...]]:
+    """Modes by number, those that are close together."""
+    spaces: list[list[int]] = []
+    for k, f in enumerate(hz):
+        if spaces and f / hz[spaces[-1][-1]] - 1.0 < CLOSE:
+            spaces[-1].append(k)
+        else:
+            spaces.append([k])
+    return [tuple(space) for space in spaces]
+
+
+def with_deviations(state: ModesAtSpeed, model: Model, margin: float, least: float) -> ModesAtSpeed:
+    """The state with relative standard deviations of its modes; 0 of those that no line is near to or excites.
+
+    Args:
+        state: modes of
+        model: whose [scatter] says what scatters.
+        margin: that modes keep from lines.
+        least: least participation that counts.
+
+    Raises:
+        AnalysisError: a number whose scatter moves a place past another one.
+    """
+    near = np.abs(state.hz[None, :] / state.line_hz[:, None] - 1.0) < MARGINS * margin
+    chosen = np.flatnonzero(np.any(near & (state.taken >= _PERHAPS * least), axis=0))
+    # A space is looked at as a whole.
+    own = [space for space in spaces_of(state.hz) if set(space) & set(chosen.tolist())]
+    modes = [k for space in own for k in space]
+    sigma = np.zeros(len(state.hz))
+    if modes:
+        spreads = spreads_of(model, model.scatter)
+        variance = np.zeros(len(state.hz))
+        shapes = np.asarray(state.V @ state.modes.q[:, modes], dtype=complex)
+        X = np.hstack([shapes.real, shapes.imag])
+        for step, address in zip(_STEP * np.eye(len(spreads)), spreads.numbers.addresses, strict=True):
+            above, below = systems_beside(
+                (spreads.at(step), spreads.at(-step)),
+                state.system,
+                state.speed,
+                f"[scatter] of {address}",
+                beside=state.system.state,
+            )
+            change = (forms_of(above, state.speed, X) - forms_of(below, state.speed, X))[:3] / (2.0 * _STEP)
+            K, M, G = (complex_forms(change)[form] for form in (STIFFNESS, MASS, GYROSCOPIC))
+            H = coupling(K, M, G, state.modes.omega[modes])
+            H = 0.5 * (H + H.conj().T)
+            for space in own:
+                at = [modes.index(k) for k in space]
+                size = np.abs(np.linalg.eigvalsh(H[np.ix_(at, at)])).max()
+                variance[list(space)] += (size / state.modes.omega[list(space)]) ** 2
+        sigma = np.sqrt(variance)
+    return replace(state, sigma=sigma)
+
+
+def kept_deviations(states: list[ModesAtSpeed], margin: float, least: float) -> float:
+    """By how many standard deviations the modes that count keep a margin, the least of all; infinite where none is near."""
+    found = [np.inf]
+    for state in states:
+        assert state.sigma is not None
+        for F, taken in zip(state.line_hz, state.taken, strict=True):
+            counts = (taken >= least) & (state.sigma > 0.0)
+            found += list((np.abs(state.hz / F - 1.0)[counts] - margin) / (state.sigma * state.hz / F)[counts])
+    return float(min(found))

@@ -18,10 +18,8 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
-from rotorgear.analysis.layout.bounds import bounds_of
-from rotorgear.analysis.layout.deviation import MARGINS, kept_deviations
-from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, total_mass
-from rotorgear.analysis.layout.problem import Problem
+from rotorgear.analysis.layout.modes_at_speed import MARGINS, ModesAtSpeed, kept_deviations, total_mass
+from rotorgear.analysis.layout.problem import Problem, bounds_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import numbers_of

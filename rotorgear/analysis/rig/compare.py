@@ -1,25 +1,40 @@
 """Compare natural frequencies with the lines of a test rig: one-to-one on log frequency, beside what chance gives.
 
 The assignment is globally optimal (`solvers/eigen/assignment.py`): first as many lines as possible within the tolerance, then
-the least sum of |ln(f_mode / f_rig)|. A pair outside the tolerance is no match; both sides are then listed as
-unmatched. Rigid modes take no part.
+the least sum of |ln(f_mode / f_rig)|. A pair outside the tolerance is no match; both sides are then listed as unmatched. Rigid
+modes take no part.
+
+What a random list of lines would match is the yardstick. N random lines, uniform in log frequency over the band and independent,
+are assigned one-to-one to the same modes as the rig lines were. Monte Carlo significance (1 + hits) / (1 + samples): Davison &
+Hinkley, Bootstrap Methods and their Application (1997), section 4.2. In closed form, if lines could share a mode: the number of
+matches is binomial with the covered share of the band as probability.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import functools
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole
-from rotorgear.analysis.rig.chance import estimate_chance
-from rotorgear.analysis.rig.learnt import learnt_stiffnesses
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.rig.posterior import learnt_stiffnesses
+from rotorgear.analysis.rig.rig_file import read_rig_lines
 from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.old_names import warn_old
+from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import (
     Candidate,
+    Chance,
     Comparison,
     ExcitationLine,
     Match,
@@ -27,7 +42,70 @@ from rotorgear.results.comparison import (
     UnmatchedMode,
     UnmatchedRigLine,
 )
-from rotorgear.solvers.eigen.assignment import ROUNDING, assign
+from rotorgear.results.modal import ModalResult
+from rotorgear.solvers.eigen.assignment import ROUNDING, assign, covered_share, miss_cost
+
+# A random list that does as well to the last digit is a hit; rounding must not decide it.
+TIE = 1e-12
+
+
+def estimate_chance(
+    rig_hz: NDArray[np.float64],
+    mode_hz: NDArray[np.float64],
+    tolerance: float,
+    band: tuple[float, float],
+    *,
+    samples: int = 2000,
+    seed: int = 0,
+) -> Chance:
+    """Return what chance gives for as many lines as `rig_hz` (r,) against the elastic modes `mode_hz` (m,), all in Hz.
+
+    Args:
+        tolerance: relative, between 0 and 1.
+        band: lowest and highest frequency of a random line, in Hz.
+        samples, seed: number of random lists, and their seed.
+    """
+    low, high = band
+    in_reach = mode_hz[(mode_hz >= low * (1.0 - tolerance)) & (mode_hz <= high * (1.0 + tolerance))]
+    matched, distance = _score(rig_hz, mode_hz, tolerance)
+    draws = np.random.default_rng(seed).random((samples, rig_hz.size))
+    scores = np.array([_score(low * (high / low) ** draw, in_reach, tolerance) for draw in draws])
+    coverage = covered_share(mode_hz, tolerance, low, high)
+    return Chance(
+        band_low_hz=low,
+        band_high_hz=high,
+        modes_in_band=int(np.count_nonzero((mode_hz >= low) & (mode_hz <= high))),
+        coverage=coverage,
+        expected_random_matches=float(scores[:, 0].mean()),
+        probability_as_many=_significance(scores[:, 0] >= matched),
+        probability_as_close=_significance(scores[:, 1] <= distance + TIE),
+        binomial_expected=rig_hz.size * coverage,
+        binomial_probability=binomial_tail(rig_hz.size, matched, coverage),
+        samples=samples,
+        seed=seed,
+    )
+
+
+def binomial_tail(count: int, at_least: int, probability: float) -> float:
+    """Return the probability of `at_least` or more successes in `count` independent trials.
+
+    The tail is the incomplete beta function I_p(k, n - k + 1) (Abramowitz & Stegun 26.5.24), whose terms do not overflow.
+    """
+    from scipy.special import betainc
+
+    return 1.0 if at_least == 0 else float(betainc(at_least, count - at_least + 1, probability))
+
+
+def _score(lines: NDArray[np.float64], modes: NDArray[np.float64], tolerance: float) -> tuple[int, float]:
+    """Return the number of matches and the sum of |ln(f / r)|, an unmatched line counting with the full tolerance."""
+    pairs = assign(lines, modes, tolerance)
+    distance = math.fsum(abs(math.log(modes[mode] / lines[line])) for line, mode in pairs)
+    return len(pairs), distance + (lines.size - len(pairs)) * miss_cost(tolerance)
+
+
+def _significance(hits: NDArray[np.bool_]) -> float:
+    return float((1 + np.count_nonzero(hits)) / (1 + hits.size))
+
 
 # A rig line that states no uncertainty is not trusted beyond this when two modes compete for it.
 READING_ACCURACY = 1e-3
@@ -241,3 +319,105 @@ def _warnings(
             "a single rig line spans no band of its own: give the band that was measured to make the chance meaningful"
         )
     return found
+
+
+# Modes of a model are found up to this much above the highest line of the rig, so that every line meets all its candidates.
+ABOVE_RIG = 1.15
+
+
+def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, ...]:
+    """The lines of a rig from a file (CSV), from lines, or from plain frequencies in Hz.
+
+    Raises:
+        AnalysisError: no lines at all. ModelError: the file can't be read, or holds mistakes.
+    """
+    if isinstance(rig, str | Path):
+        return read_rig_lines(rig)
+    lines = tuple(line if isinstance(line, RigLine) else RigLine(float(line)) for line in rig)
+    if not lines:
+        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
+    return lines
+
+
+def _understanding_lists(verb: Callable[..., Comparison]) -> Callable[..., Comparison]:
+    """The call of version 0.1, compare(frequencies, descriptions, lines), is understood for one version more."""
+
+    @functools.wraps(verb)
+    def call(source: Any, *args: Any, **kwargs: Any) -> Comparison:
+        if isinstance(source, Model | ModalResult):
+            return verb(source, *args, **kwargs)
+        warn_old("the call", "compare(frequency_hz, descriptions, rig_lines)", "compare(result, rig)")
+        return compare_lines(source, *args, **kwargs)
+
+    return call
+
+
+@_understanding_lists
+@recorded
+def compare(
+    source: Model | ModalResult,
+    rig: str | Path | Sequence[RigLine | float],
+    *,
+    tolerance: float = 0.05,
+    speed: float | str | None = None,
+    accuracy: float | None = None,
+    elements: int | None = None,
+    known_to_hz: float | None = None,
+    excitation_tolerance: float = 0.005,
+    band: tuple[float, float] | None = None,
+    seed: int = 0,
+    samples: int = 2000,
+    progress: Progress = silent,
+) -> Comparison:
+    """Assign the lines of a rig to modes and say what the agreement is worth.
+
+    Lines of excitation are those at the speed of the analysis, else at the operating point.
+
+    Args:
+        source: modes of a model, or a model, whose modes are then found up to 1.15 times the highest line.
+        rig: measured frequencies (CSV); in Python also lines, or plain frequencies in Hz.
+        tolerance: largest relative difference |f_mode / f_rig - 1| of a match.
+        speed: as in `modal`; a saved result has its own.
+        accuracy: as in `modal`; a saved result has its own.
+        elements: as in `modal`; a saved result has its own.
+        known_to_hz: frequency up to which a result has all modes, where that is above its last one.
+        excitation_tolerance: relative distance within which an order of a shaft or a mesh coincides with a line or a mode.
+        band: frequency range in Hz that the rig looked at, for the chance of a match (default: from the lowest to the highest
+            line, widened by the tolerance at both ends).
+        seed: seed of the random lists that chance is found from.
+        samples: number of random lists that chance is found from.
+        progress: callable that is told fraction and step.
+
+    Returns:
+        Matches, lines and modes without a partner, and what chance alone would give.
+
+    Raises:
+        AnalysisError: no lines, the same line twice, settings that make no sense, or settings of a model beside a result.
+        ModelError: a rig file that can't be read.
+    """
+    lines = rig_lines_of(rig)
+    if isinstance(source, Model):
+        known_to_hz = ABOVE_RIG * max(line.frequency_hz for line in lines)
+        result = modal(source, speed=speed, fmax=known_to_hz, accuracy=accuracy, elements=elements, progress=progress)
+    elif speed is not None or accuracy is not None or elements is not None:
+        raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
+    else:
+        result = source
+    operation = result.model.operation
+    turning = result.speed if result.speed is not None else (operation.speed if operation else None)
+    return compare_lines(
+        result.frequency_hz,
+        result.description,
+        lines,
+        rigid=result.rigid,
+        # At standstill without damping a ratio of 0 is no statement about the damping.
+        damping_ratio=result.damping_ratio if result.speed is not None else None,
+        strain_energy=result.strain_energy,
+        excitations=excitation_lines(result.model, turning) if turning else (),
+        tolerance=tolerance,
+        excitation_tolerance=excitation_tolerance,
+        band=band,
+        known_to_hz=known_to_hz,
+        seed=seed,
+        samples=samples,
+    )

@@ -5,15 +5,23 @@ y = ln(f / f0) = J x + noise, with standard deviations N = diag(sigma_y). In uni
 The direction V_k of the parameters is known from the lines to the share s_k^2 / (1 + s_k^2), the rest is the prior's; the
 sum of the shares is the effective number of parameters learnt (MacKay 1992, Bayesian interpolation, Neural Computation 4,
 eq. 4.9). Posterior covariance: S (1 - V diag(share) V^T) S.
-"""
+
+What lines teach of stiffnesses is known before anybody updates a model: d ln f / d ln k of a spring is half its share in the
+strain energy of the mode (Rayleigh's quotient: Fox and Kapoor 1968, Rates of change of eigenvalues and eigenvectors, AIAA
+Journal 6), so a modal analysis holds all that is needed."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from rotorgear.analysis.sensitivity.derivatives import SPRINGS
+from rotorgear.model.numbers import DEFAULT_PRIOR
+from rotorgear.results.comparison import LearntParameter, RigLine
 
 
 @dataclass(frozen=True)
@@ -83,3 +91,48 @@ class Posterior:
         """Most probable x (p,) for y - f(x_0) + J x_0 = `residual` (n,)."""
         left, singular, right = self._directions
         return self.prior * (right @ (singular / (1.0 + singular**2) * (left.T @ (residual / self.noise))))
+
+
+# What a rig knows of a frequency for which it states nothing.
+LINE_NOISE = 0.005
+
+
+def learnt_stiffnesses(
+    strain_energy: Mapping[str, ArrayLike], modes: Sequence[int], lines: Sequence[RigLine]
+) -> tuple[LearntParameter, ...]:
+    """Return what each spring's stiffness is known to once mode `modes[k]` is held to `lines[k]`.
+
+    Args:
+        strain_energy: share of each part in the strain energy of all m modes, part -> (m,).
+        modes: index of the mode of each matched line (n).
+        lines: the matched lines (n).
+    """
+    springs = _springs(strain_energy)
+    if not springs or not lines:
+        return ()
+    shares = spring_shares(strain_energy, np.array(modes))
+    posterior = Posterior(
+        jacobian=0.5 * shares.T,
+        noise=np.array([line_noise(line) for line in lines]),
+        prior=np.full(len(springs), DEFAULT_PRIOR),
+    )
+    rows = zip(springs, posterior.sigma, posterior.learnt, strict=True)
+    return tuple(
+        LearntParameter(f"{part}.stiffness", DEFAULT_PRIOR, float(sigma), float(learnt)) for part, sigma, learnt in rows
+    )
+
+
+def spring_shares(strain_energy: Mapping[str, ArrayLike], modes: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Share of each spring in the strain energy of some modes, (springs, modes)."""
+    rows = [np.asarray(strain_energy[part], dtype=float)[modes] for part in _springs(strain_energy)]
+    return np.array(rows).reshape(-1, len(modes))
+
+
+def _springs(strain_energy: Mapping[str, ArrayLike]) -> list[str]:
+    return [part for part in strain_energy if part.partition(".")[0] in SPRINGS]
+
+
+def line_noise(line: RigLine) -> float:
+    """Relative standard deviation of a line: its own, else 0.5 %."""
+    # A line that claims to be exact would settle one direction entirely; no reading is better than rounding.
+    return LINE_NOISE if line.uncertainty_hz is None else max(line.uncertainty_hz / line.frequency_hz, 1e-12)

@@ -1,54 +1,43 @@
-"""The modes of a model with free numbers, as an update asks for them again and again: one mesh, all modes below one frequency."""
+"""The modes of a model with free numbers, as an update asks for them again and again: one mesh, all modes below one frequency.
+
+What was measured in several states of the gearbox, or at several speeds, are campaigns: each has a model of its own, and all
+share the logs of the free factors. Their modes follow one another in one list."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.points import point_rows
+from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.analysis.rig.rotating_sensitivity import rotating_changes, rotating_shape_slopes, rotating_slopes
-from rotorgear.analysis.rig.sensitivity import changes_of, frequency_derivatives, shape_derivatives, system_of
+from rotorgear.analysis.sensitivity.derivatives import changes_of, frequency_slopes, shape_slopes
+from rotorgear.analysis.sensitivity.forms import Shapes
+from rotorgear.analysis.static.state_at import linear_system
+from rotorgear.model.model import Model
 from rotorgear.model.numbers import FreeNumbers
+from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-Shapes = NDArray[np.float64] | NDArray[np.complex128]
+
+def plan_of(model: Model, fmax: float, accuracy: float | None) -> Plan:
+    """The mesh on which all modes up to `fmax` are within an accuracy."""
+    return mesh_of(modal(model, fmax=fmax, accuracy=accuracy))
 
 
-class ComparedModes(Protocol):
-    """What lines are compared with: the modes of one model, or those of all campaigns one after the other."""
-
-    @property
-    def system(self) -> System: ...
-    @property
-    def eigenvalues(self) -> NDArray[np.float64]: ...
-    @property
-    def frequency_hz(self) -> NDArray[np.float64]: ...
-    @property
-    def campaign(self) -> NDArray[np.intp]: ...
-    @property
-    def at_points(self) -> Shapes: ...
-    @property
-    def parts(self) -> tuple[Any, ...]: ...
-    def overlap(self, other: Any) -> NDArray[np.float64]: ...
-
-
-class ComparedModel(Protocol):
-    """Where such modes come from; it understands its own modes only."""
-
-    @property
-    def numbers(self) -> FreeNumbers: ...
-    @property
-    def solutions(self) -> int: ...
-    def modes(self, x: NDArray[np.float64]) -> ComparedModes: ...
-    def derivatives(
-        self, x: NDArray[np.float64], modes: Any, chosen: NDArray[np.intp], *, shapes: bool
-    ) -> tuple[NDArray[np.float64], Shapes]: ...
+def mesh_of(result: ModalResult) -> Plan:
+    """The mesh that modes were found on."""
+    cut = {}
+    counted: dict[str, int] = {}
+    for piece in result.discretisation:
+        number = counted.get(piece.shaft, 0)
+        counted[piece.shaft] = number + 1
+        cut[piece.shaft, number] = (piece.elements, piece.order)
+    return Plan(cut=cut)
 
 
 @dataclass(frozen=True)
@@ -75,16 +64,6 @@ class RigModes:
     def frequency_hz(self) -> NDArray[np.float64]:
         """Natural frequencies in Hz, (m,)."""
         return np.sqrt(self.eigenvalues) / (2.0 * np.pi)
-
-    @property
-    def campaign(self) -> NDArray[np.intp]:
-        """Number of the campaign that each mode belongs to, (m,)."""
-        return np.zeros(len(self.eigenvalues), dtype=np.intp)
-
-    @property
-    def parts(self) -> tuple[RigModes, ...]:
-        """The modes of each campaign: there is one."""
-        return (self,)
 
     def overlap(self, other: RigModes) -> NDArray[np.float64]:
         """|phi_i^H M phi_k|^2 of each mode i here with each mode k of the other, (m, m'): 1 where they are the same mode.
@@ -120,7 +99,7 @@ class RigModel:
 
     def modes(self, x: NDArray[np.float64]) -> RigModes:
         """The elastic modes at x."""
-        system = system_of(self.numbers.at(x), self.plan, self.speed)
+        system = linear_system(self.numbers.at(x), [self.speed or None], self.plan)
         found = solve(system, Wanted(self.speed or None, None, 2.0 * np.pi * self.fmax, damped=False))
         self.solutions += 1
         elastic = ~found.rigid & (np.abs(found.eigenvalues) > 0.0)
@@ -140,29 +119,92 @@ class RigModel:
         system = modes.system
         X = modes.vectors[:, chosen]
         values = modes.eigenvalues[chosen]
-        moved: Shapes = np.zeros((system.n, 0, 0))
-        if self.speed:
-            omega = np.sqrt(modes.eigenvalues)
-            turning = rotating_changes(
-                self.numbers,
-                x,
-                system,
-                self.plan,
-                self.speed,
-                omega[chosen],
-                np.asarray(X, dtype=complex),
-                shapes=shapes,
-            )
-            slopes = rotating_slopes(system, self.speed, turning, omega[chosen], np.asarray(X, dtype=complex))
-            if shapes:
-                vectors = np.asarray(modes.vectors, dtype=complex)
-                moved = rotating_shape_slopes(system, self.speed, turning, omega, vectors, chosen)
-        else:
-            changes = changes_of(self.numbers, x, system, self.plan, np.real(X), shapes=shapes)
-            slopes = frequency_derivatives(changes, values)
-            if shapes:
-                moved = shape_derivatives(system, changes, modes.eigenvalues, np.real(modes.vectors), chosen)
+        changes = changes_of(self.numbers, x, system, self.speed, values, X, shapes=shapes)
+        slopes = frequency_slopes(system, self.speed, changes, values, X)
         if not shapes:
             return slopes, np.zeros((len(chosen), len(self.points), len(x)))
+        moved = shape_slopes(system, self.speed, changes, modes.eigenvalues, modes.vectors, chosen)
         at_points = np.tensordot(point_rows(system, self.points).toarray(), moved, axes=(1, 0))
         return slopes, np.transpose(at_points, (1, 0, 2))
+
+
+@dataclass(frozen=True)
+class CampaignModes:
+    """Modes of all campaigns, one after the other: as `RigModes`, at the points of all (m, s)."""
+
+    parts: tuple[RigModes, ...]
+    at_points: Shapes
+
+    @property
+    def system(self) -> System:
+        """That of the first campaign."""
+        return self.parts[0].system
+
+    @property
+    def eigenvalues(self) -> NDArray[np.float64]:
+        """w^2 (m,)."""
+        return np.concatenate([part.eigenvalues for part in self.parts])
+
+    @property
+    def frequency_hz(self) -> NDArray[np.float64]:
+        """Natural frequencies in Hz, (m,)."""
+        return np.sqrt(self.eigenvalues) / (2.0 * np.pi)
+
+    @property
+    def campaign(self) -> NDArray[np.intp]:
+        """Number of the campaign that each mode belongs to, (m,)."""
+        return np.repeat(np.arange(len(self.parts)), [len(part.eigenvalues) for part in self.parts])
+
+    def overlap(self, other: CampaignModes) -> NDArray[np.float64]:
+        """How far each mode here is one there (m, m'); nothing between campaigns."""
+        found = np.zeros((len(self.eigenvalues), len(other.eigenvalues)))
+        for number, (part, moved) in enumerate(zip(self.parts, other.parts, strict=True)):
+            found[np.ix_(self.campaign == number, other.campaign == number)] = part.overlap(moved)
+        return found
+
+
+@dataclass
+class CampaignModel:
+    """The models of all campaigns with the same free factors; `points` are those of all of them."""
+
+    parts: tuple[RigModel, ...]
+    points: tuple[str, ...]
+
+    @property
+    def numbers(self) -> FreeNumbers:
+        """The free numbers, as the first campaign has them."""
+        return self.parts[0].numbers
+
+    @property
+    def solutions(self) -> int:
+        """Eigenproblems solved: each campaign has one at every set of numbers, and the most of them counts."""
+        return max(part.solutions for part in self.parts)
+
+    def modes(self, x: NDArray[np.float64]) -> CampaignModes:
+        """The elastic modes at x."""
+        parts = tuple(part.modes(x) for part in self.parts)
+        turning = any(np.iscomplexobj(part.at_points) for part in parts)
+        counts = np.cumsum([0, *(len(part.eigenvalues) for part in parts)])
+        table = np.zeros((counts[-1], len(self.points)), dtype=complex if turning else float)
+        for first, model, part in zip(counts, self.parts, parts, strict=False):
+            table[first : first + len(part.eigenvalues), self._at(model)] = part.at_points
+        return CampaignModes(parts, table)
+
+    def derivatives(
+        self, x: NDArray[np.float64], modes: CampaignModes, chosen: NDArray[np.intp], *, shapes: bool
+    ) -> tuple[NDArray[np.float64], Shapes]:
+        """d ln f / dx (k, p) and d phi / dx at the points (k, s, p) of k chosen modes."""
+        slopes = np.zeros((len(chosen), len(x)))
+        kind = complex if np.iscomplexobj(modes.at_points) else float
+        moved = np.zeros((len(chosen), len(self.points), len(x)), dtype=kind)
+        first = 0
+        for number, (model, part) in enumerate(zip(self.parts, modes.parts, strict=True)):
+            rows = np.flatnonzero(modes.campaign[chosen] == number)
+            if len(rows):
+                slopes[rows], at_points = model.derivatives(x, part, chosen[rows] - first, shapes=shapes)
+                moved[np.ix_(rows, np.array(self._at(model), dtype=np.intp))] = at_points
+            first += len(part.eigenvalues)
+        return slopes, moved
+
+    def _at(self, model: RigModel) -> list[int]:
+        return [self.points.index(point) for point in model.points]

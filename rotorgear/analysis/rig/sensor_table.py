@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.points import coordinates
-from rotorgear.analysis.rig.csv_rows import csv_rows
+from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model

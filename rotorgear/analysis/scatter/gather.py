@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.samples import Study, nearest_margin, participations, signs
+from rotorgear.analysis.scatter.samples import Study, nearest_margin
+from rotorgear.analysis.sensitivity.forms import participations
 from rotorgear.results.scatter import (
     HIGH,
     LOW,
@@ -152,7 +153,7 @@ def _group_bands(study: Study, values: Values) -> tuple[GroupBand, ...]:
 
 
 def _margin_bands(study: Study, values: Values, least: float) -> tuple[MarginBand, ...]:
-    taken = participations(study.names, study.lines, study.family.nominal, study.nominal, signs(study.family))
+    taken = participations(study.names, study.lines, study.family.nominal, study.nominal)
     found = []
     for k, (line, hz) in enumerate(zip(study.lines, study.hz, strict=True)):
         nominal = nearest_margin(study.nominal.omega / (2.0 * np.pi), taken[k] >= study.share, float(hz))

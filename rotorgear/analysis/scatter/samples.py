@@ -15,13 +15,22 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.family import Family, sample_at
-from rotorgear.analysis.scatter.forms import MASS, STIFFNESS, FormNames
-from rotorgear.analysis.scatter.modes import FormModes, modes_of, overlaps, times
+from rotorgear.analysis.sensitivity.forms import (
+    GYROSCOPIC,
+    MASS,
+    STIFFNESS,
+    FormModes,
+    FormNames,
+    Shapes,
+    coupling,
+    modes_of,
+    overlaps,
+    participations,
+)
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.static.static import solved
 from rotorgear.errors import RotorgearError
-from rotorgear.model.model import Model
 from rotorgear.progress import silent
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.system.plan import Plan
@@ -32,6 +41,9 @@ SPARE = 6
 LEAST_HELD = 0.5
 # Two modes of which one sample holds this share of one in the other turn into each other.
 _TURNED = 0.2
+# Half width of the differences of energies and forces, in standard deviations: nothing is solved again but statics.
+_STEP = 1e-3
+_STATIC_STEP = 0.05
 
 
 @dataclass(frozen=True)
@@ -83,7 +95,7 @@ def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float6
         forms = study.family.at(z)
         modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
         followed, own, held = _followed(study, modes)
-        taken = participations(study.names, study.lines, forms, modes, signs(study.family))
+        taken = participations(study.names, study.lines, forms, modes)
         shares = shares_at(study, z)
     except (RotorgearError, np.linalg.LinAlgError):
         # A sample beyond what the model can be: counted and said, not hidden.
@@ -121,7 +133,7 @@ def groups_of(study: Study, Z: NDArray[np.float64]) -> tuple[tuple[int, ...], ..
     return tuple(sorted(tuple(sorted(group)) for group in groups))
 
 
-def _assigned(study: Study, modes: FormModes) -> tuple[NDArray[np.complex128] | NDArray[np.float64], NDArray[np.intp]]:
+def _assigned(study: Study, modes: FormModes) -> tuple[Shapes, NDArray[np.intp]]:
     """Overlaps of nominal and sampled modes (k, k'), and the sampled mode of each nominal one."""
     from scipy.optimize import linear_sum_assignment
 
@@ -145,65 +157,6 @@ def _followed(study: Study, modes: FormModes) -> tuple[NDArray[np.float64], NDAr
     return followed, own, held
 
 
-def signs(family: Family) -> dict[str, float]:
-    """Sense of each shaft's spin about +z, 0 at rest."""
-    model = family.spreads.numbers.model
-    return spin_signs(model, family.speed)
-
-
-def spin_signs(model: Model, speed: float | None) -> dict[str, float]:
-    """Sense of each shaft's spin about +z at a speed of the reference shaft, 0 at rest."""
-    return {name: float(np.sign(model.layout.train.ratio(name) * (speed or 0.0))) for name in model.shafts}
-
-
-def participations(
-    names: FormNames,
-    lines: tuple[ExcitationOrder, ...],
-    forms: NDArray[np.float64],
-    modes: FormModes,
-    senses: dict[str, float],
-) -> NDArray[np.float64]:
-    """Share of what a line shakes in each mode, (l, m).
-
-    Meshes in the strain energy; shafts in the kinetic energy, of their first order (unbalance) the forward whirl of bending:
-    q^H (M + i sign(W) M J) q / 2, half of it where nothing turns.
-    """
-    found = np.zeros((len(lines), len(modes.omega)))
-    sizes: dict[bool, NDArray[np.float64]] = {}
-    for row, line in enumerate(lines):
-        part, whole = exciting_forms(names, line, forms, senses)
-        # Kinetic energies of all shaft orders, strain energies of all mesh orders are the same.
-        of_shafts = line.kind == "shaft"
-        if of_shafts not in sizes:
-            sizes[of_shafts] = diagonal(whole, modes.q)
-        found[row] = diagonal(part, modes.q) / sizes[of_shafts]
-    return found
-
-
-def exciting_forms(
-    names: FormNames,
-    line: ExcitationOrder,
-    forms: NDArray[np.float64] | NDArray[np.complex128],
-    senses: dict[str, float],
-) -> tuple[NDArray[np.complex128] | NDArray[np.float64], NDArray[np.complex128] | NDArray[np.float64]]:
-    """Hermitian forms (r, r) of what a line shakes and of the whole: their ratio in a mode is its participation."""
-    if line.kind != "shaft":
-        return np.sum([forms[names.mesh(part)] for part in line.parts], axis=0), forms[STIFFNESS]
-    if not line.name.endswith(" 1x"):
-        return np.sum([forms[names.kinetic(part)] for part in line.parts], axis=0), forms[MASS]
-    bending = np.sum([forms[names.bending(part)] for part in line.parts], axis=0)
-    swept = np.sum([senses[part] * forms[names.swept(part)] for part in line.parts], axis=0)
-    return 0.5 * (bending + 1j * swept), forms[MASS]
-
-
-def diagonal(
-    form: NDArray[np.complex128] | NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """q^H A q of the columns of Q (r, m), A Hermitian."""
-    product = form @ Q if np.iscomplexobj(form) else times(np.real(form), Q)
-    return np.real(np.sum(Q.conj() * product, axis=0))
-
-
 def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: float) -> float:
     """f / f_line - 1 of the nearest mode that takes part; NaN without one."""
     if not able.any():
@@ -221,3 +174,27 @@ def shares_at(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
     model = sample_at(family.spreads, tuple(map(float, z)))
     found = load_shares(solved(model, Plan(1), family.speed, silent, nominal).equilibrium)
     return np.array([found.get(key, np.nan) for key in study.shared])
+
+
+def frequency_slopes(study: Study) -> NDArray[np.float64]:
+    """d ln w / dz at the nominal model, (m, p), of the wanted modes."""
+    family = study.family
+    omega = study.nominal.omega
+    Q = study.nominal.q
+    slopes = []
+    for z in _STEP * np.eye(len(family.spreads)):
+        change = (family.at(z)[:3] - family.at(-z)[:3]) / (2.0 * _STEP)
+        K, M, G = (Q.conj().T @ change[form] @ Q for form in (STIFFNESS, MASS, GYROSCOPIC))
+        slopes.append(np.real(np.diagonal(coupling(K, M, G, omega))) / omega)
+    return np.array(slopes).T[: study.count]
+
+
+def share_slopes(study: Study) -> NDArray[np.float64]:
+    """d share / dz at the nominal model, (s, p), by statics on both sides."""
+    spreads = study.family.spreads
+    found = np.zeros((len(study.shared), len(spreads)))
+    if study.shared:
+        for j, z in enumerate(_STATIC_STEP * np.eye(len(spreads))):
+            above, below = (shares_at(study, side * z) for side in (1.0, -1.0))
+            found[:, j] = (above - below) / (2.0 * _STATIC_STEP)
+    return found

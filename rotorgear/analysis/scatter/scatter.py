@@ -20,13 +20,10 @@ from rotorgear.analysis.common.pool import Pool, in_order
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.scatter.basis import basis_of, nominal_modes, whole_modes, with_shapes
-from rotorgear.analysis.scatter.family import Family, family_of
-from rotorgear.analysis.scatter.first_order import frequency_slopes, share_slopes
-from rotorgear.analysis.scatter.forms import FormNames
+from rotorgear.analysis.scatter.family import Family, basis_of, family_of, nominal_modes, whole_modes
 from rotorgear.analysis.scatter.gather import Sampled, gathered
-from rotorgear.analysis.scatter.modes import modes_of
-from rotorgear.analysis.scatter.samples import SPARE, Study, groups_of, run_samples
+from rotorgear.analysis.scatter.samples import SPARE, Study, frequency_slopes, groups_of, run_samples, share_slopes
+from rotorgear.analysis.sensitivity.forms import FormNames, modes_of, with_shapes
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.analysis.static.static import solved
@@ -302,7 +299,7 @@ def _study(
         chosen,
         hz[inside],
         participation,
-        FormNames.of(family.spreads.numbers.model),
+        FormNames.of(family.spreads.numbers.model, speed),
         shared,
     )
     return replace(study, groups=groups_of(study, Z[:_PILOTS])), error, len(judges), notes

@@ -255,7 +255,7 @@ def test_a_load_case_takes_the_place_of_the_values_of_its_components(tmp_path: P
     [("6305-2Z", 25, 62), ("NUP204-E-XL-TVP2", 20, 47), ("33014", 70, 110), ("6202", 15, 35), ("K 50x58x25", 50, 58)],
 )
 def test_a_designation_says_bore_and_outer_diameter(designation: str, bore: float, outer: float) -> None:
-    from rotorgear.rexs.bearing_estimate import size_of_designation
+    from rotorgear.rexs.bearings import size_of_designation
 
     size = size_of_designation(designation)
     assert size is not None

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rotorgear as rg
-from rotorgear.analysis.correlation.compare_shapes import phase_collinearity
+from rotorgear.analysis.rig.compare_shapes import phase_collinearity
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.uff.datasets import Function, Shape

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.correlation.sensors import best_rows, independence
+from rotorgear.analysis.rig.sensors import best_rows, independence
 from rotorgear.errors import AnalysisError
 from tests.paths import MODELS
 

@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.layout.bounds import bounds_of
 from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, total_mass
 from rotorgear.analysis.layout.penalty import frequency_slopes, near_modes
-from rotorgear.analysis.layout.problem import Problem
-from rotorgear.analysis.scatter.forms import forms_of
-from rotorgear.analysis.scatter.modes import modes_of
+from rotorgear.analysis.layout.problem import Problem, bounds_of
+from rotorgear.analysis.sensitivity.forms import forms_of, modes_of
 from rotorgear.analysis.static import state_at
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.numbers import numbers_of

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from rotorgear.analysis.rig.chance import binomial_tail
+from rotorgear.analysis.rig.compare import binomial_tail
 from rotorgear.analysis.rig.compare import compare_lines as compare
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.results.comparison import ExcitationLine, RigLine

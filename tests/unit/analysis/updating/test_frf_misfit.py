@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.rig.frf_file import MeasuredFrf
+from rotorgear.analysis.rig.measured import MeasuredFrf
+from rotorgear.analysis.rig.receptance_model import ReceptanceModel
 from rotorgear.analysis.rig.rig_model import RigModel
-from rotorgear.analysis.updating.receptance_model import ReceptanceModel
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import free_numbers
 from rotorgear.system.plan import Plan

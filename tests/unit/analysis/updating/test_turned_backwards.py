@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.rig.frf_file import MeasuredFrf
+from rotorgear.analysis.rig.measured import MeasuredFrf
 from tests.paths import MODELS
 
 FREE = "meshes.*.stiffness, bearings.*.stiffness"

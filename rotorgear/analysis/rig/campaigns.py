@@ -7,7 +7,7 @@ Their modes stand one after the other, and a line is only ever paired with a mod
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -15,13 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.frf_file import MeasuredFrf
-from rotorgear.analysis.rig.measured import Measured
-from rotorgear.analysis.rig.rig_model import RigModel, RigModes, Shapes
+from rotorgear.analysis.rig.measured import Measured, MeasuredFrf
 from rotorgear.errors import ModelError, Problem
-from rotorgear.model.numbers import FreeNumbers
 from rotorgear.results.comparison import RigLine
-from rotorgear.system.system import System
 
 _KEYS = ("name", "rig", "shapes", "frf", "points", "speed", "changes")
 _FILES = ("rig", "shapes", "frf", "points")
@@ -104,92 +100,3 @@ def joined(measured: Sequence[Measured]) -> tuple[Measured, NDArray[np.intp]]:
             at = [points.index(point) for point in given.points]
             table[np.ix_(owner == number, at)] = given.shapes
     return Measured(lines, points, table, notes), owner
-
-
-@dataclass(frozen=True)
-class CampaignModes:
-    """Modes of all campaigns, one after the other: as `RigModes`, at the points of all (m, s)."""
-
-    parts: tuple[RigModes, ...]
-    at_points: Shapes
-
-    @property
-    def system(self) -> System:
-        """That of the first campaign."""
-        return self.parts[0].system
-
-    @property
-    def eigenvalues(self) -> NDArray[np.float64]:
-        """w^2 (m,)."""
-        return np.concatenate([part.eigenvalues for part in self.parts])
-
-    @property
-    def frequency_hz(self) -> NDArray[np.float64]:
-        """Natural frequencies in Hz, (m,)."""
-        return np.sqrt(self.eigenvalues) / (2.0 * np.pi)
-
-    @property
-    def campaign(self) -> NDArray[np.intp]:
-        """Number of the campaign that each mode belongs to, (m,)."""
-        return np.repeat(np.arange(len(self.parts)), [len(part.eigenvalues) for part in self.parts])
-
-    def overlap(self, other: CampaignModes) -> NDArray[np.float64]:
-        """How far each mode here is one there (m, m'); nothing between campaigns."""
-        found = np.zeros((len(self.eigenvalues), len(other.eigenvalues)))
-        for number, (part, moved) in enumerate(zip(self.parts, other.parts, strict=True)):
-            found[np.ix_(self.campaign == number, other.campaign == number)] = part.overlap(moved)
-        return found
-
-
-@dataclass
-class CampaignModel:
-    """The models of all campaigns with the same free factors; `points` are those of all of them."""
-
-    parts: tuple[RigModel, ...]
-    points: tuple[str, ...]
-
-    @property
-    def numbers(self) -> FreeNumbers:
-        """The free numbers, as the first campaign has them."""
-        return self.parts[0].numbers
-
-    @property
-    def solutions(self) -> int:
-        """Eigenproblems solved: each campaign has one at every set of numbers, and the most of them counts."""
-        return max(part.solutions for part in self.parts)
-
-    def modes(self, x: NDArray[np.float64]) -> CampaignModes:
-        """The elastic modes at x."""
-        parts = tuple(part.modes(x) for part in self.parts)
-        turning = any(np.iscomplexobj(part.at_points) for part in parts)
-        counts = np.cumsum([0, *(len(part.eigenvalues) for part in parts)])
-        table = np.zeros((counts[-1], len(self.points)), dtype=complex if turning else float)
-        for first, model, part in zip(counts, self.parts, parts, strict=False):
-            table[first : first + len(part.eigenvalues), self._at(model)] = part.at_points
-        return CampaignModes(parts, table)
-
-    def derivatives(
-        self, x: NDArray[np.float64], modes: CampaignModes, chosen: NDArray[np.intp], *, shapes: bool
-    ) -> tuple[NDArray[np.float64], Shapes]:
-        """d ln f / dx (k, p) and d phi / dx at the points (k, s, p) of k chosen modes."""
-        slopes = np.zeros((len(chosen), len(x)))
-        kind = complex if np.iscomplexobj(modes.at_points) else float
-        moved = np.zeros((len(chosen), len(self.points), len(x)), dtype=kind)
-        for rows, model, part, own in self._of_each(modes, chosen):
-            slopes[rows], at_points = model.derivatives(x, part, own, shapes=shapes)
-            moved[np.ix_(rows, np.array(self._at(model), dtype=np.intp))] = at_points
-        return slopes, moved
-
-    def _of_each(
-        self, modes: CampaignModes, chosen: NDArray[np.intp]
-    ) -> Iterator[tuple[NDArray[np.intp], RigModel, RigModes, NDArray[np.intp]]]:
-        """Rows of the chosen modes of each campaign, its model and modes, and their numbers in it."""
-        first = 0
-        for number, (model, part) in enumerate(zip(self.parts, modes.parts, strict=True)):
-            rows = np.flatnonzero(modes.campaign[chosen] == number)
-            if len(rows):
-                yield rows, model, part, chosen[rows] - first
-            first += len(part.eigenvalues)
-
-    def _at(self, model: RigModel) -> list[int]:
-        return [self.points.index(point) for point in model.points]

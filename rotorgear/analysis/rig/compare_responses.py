@@ -1,8 +1,12 @@
-"""Order cuts of a measured run-up beside the response of a model: the same orders at the same speeds.
+"""Compare what a rig measured of responses with those of a model: frequency responses, order cuts, spectral lines.
 
-A CSV file has the columns `speed_rpm`, `order` (frequency over that of the input shaft) and one for each named point, with
-amplitudes in m/s^2 (rad/s^2 for rotations). A universal file has order functions (dataset 58): rpm along, the order as value on
-the z-axis.
+Frequency responses are compared pair by pair of places, at the frequencies of the rig:
+
+    FRAC = |sum H_rig^* H_model|^2 / (sum |H_rig|^2 sum |H_model|^2)      (Heylen and Lammens 1996)
+
+Order cuts of a run-up are compared with the response at the same speeds. A CSV file of them has the columns `speed_rpm`, `order`
+(frequency over that of the input shaft) and one for each named point, with amplitudes in m/s^2 (rad/s^2 for rotations). A
+universal file has order functions (dataset 58): rpm along, the order as value on the z-axis.
 """
 
 from __future__ import annotations
@@ -14,17 +18,99 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.response.frequency_response import frf
 from rotorgear.analysis.response.response import response
-from rotorgear.analysis.rig.csv_rows import csv_rows
+from rotorgear.analysis.rig.likeness import frac
+from rotorgear.analysis.rig.measured import MeasuredFrf, read_rig_frf
+from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.analysis.rig.sensor_table import read_sensor_table
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.frf_comparison import OrderComparison, OrderMatch
+from rotorgear.results.comparison import ExcitationLine, RigLine
+from rotorgear.results.frf_comparison import FrfComparison, FrfMatch, OrderComparison, OrderMatch
+from rotorgear.results.spectrum import RigSpectrum, SpectralLines
+from rotorgear.results.transient import TransientResult
 from rotorgear.uff.datasets import DERIVATIVES, RPM
 from rotorgear.uff.read import read_universal
+
+
+@recorded
+def compare_frf(
+    model: Model,
+    frf: str | Path | MeasuredFrf,
+    *,
+    points: str | Path | None = None,
+    speed: float | str | None = None,
+    modal_damping: float = 0.0,
+    accuracy: float | None = None,
+    elements: int | None = None,
+    progress: Progress = silent,
+) -> FrfComparison:
+    """Put measured frequency responses beside those of a model.
+
+    Args:
+        model: the model, with its damping.
+        frf: measured frequency responses: a universal file (dataset 58 or 58b); in Python also what it holds.
+        points: as in `compare_shapes`.
+        speed: as in `compare`.
+        modal_damping: as in `frf`.
+        accuracy: as in `frf`.
+        elements: as in `frf`.
+        progress: callable that is told fraction and step.
+
+    Returns:
+        FRAC of each pair of places, with and without phase, and the ratio of sizes.
+
+    Raises:
+        ModelError: a file that can't be read. AnalysisError: no frequency responses, places that the model has not.
+    """
+    given = frf if isinstance(frf, MeasuredFrf) else read_rig_frf(frf, points, model)
+    inputs = list(dict.fromkeys(given.references))
+    outputs = list(dict.fromkeys(given.responses))
+    found = _model_frf(
+        model,
+        given.frequency_hz,
+        inputs=inputs,
+        outputs=outputs,
+        speed=speed,
+        modal_damping=modal_damping,
+        accuracy=accuracy,
+        elements=elements,
+        progress=progress,
+    )
+    computed = np.array(
+        [
+            found.receptance[:, outputs.index(o), inputs.index(i)]
+            for o, i in zip(given.responses, given.references, strict=True)
+        ]
+    )
+    matches = []
+    pairs = zip(given.responses, given.references, given.receptance, computed, strict=True)
+    for output, reference, rig, own in pairs:
+        sizes = (float(np.linalg.norm(rig)), float(np.linalg.norm(own)))
+        ratio = sizes[1] / sizes[0] if sizes[0] > 0.0 else float("nan")
+        matches.append(FrfMatch(output, reference, frac(rig, own), frac(np.abs(rig), np.abs(own)), ratio))
+    return FrfComparison(
+        model=model,
+        frequency_hz=given.frequency_hz,
+        pairs=tuple(matches),
+        measured=given.receptance,
+        computed=computed,
+        damping_ratio=found.damping_ratio,
+        dofs=found.dofs,
+        left_out=found.left_out,
+        warnings=(*given.notes, *found.warnings),
+        method="FRAC at the frequencies of the rig",
+    )
+
+
+# The verb's own argument is called as its option, --frf.
+_model_frf = frf
+
 
 # Two orders are the same where their ratios agree to this; orders are read from a display.
 _SAME_ORDER = 2e-3
@@ -195,3 +281,57 @@ def _cuts_of_csv(file: Path) -> tuple[OrderCut, ...]:
             if known.any():
                 found.append(OrderCut(name, float(ratio), part[known, 0], part[known, k]))
     return tuple(found)
+
+
+TOLERANCE = 0.01
+
+
+@recorded
+def compare_spectrum(
+    result: TransientResult, lines: SpectralLines, rig: Sequence[RigLine], tolerance: float = TOLERANCE
+) -> RigSpectrum:
+    """Put the nearest spectral line within a relative tolerance beside each rig line, and say why where there is none.
+
+    Args:
+        result: a transient.
+        lines: lines in the spectrum of one of its histories, from `spectral_lines`.
+        rig: lines of a rig.
+        tolerance: largest |f_line / f_rig - 1|.
+
+    Returns:
+        One row a rig line.
+    """
+    excitations = excitation_lines(result.model, float(result.speed[-1]))
+    near = []
+    sources = []
+    reasons = []
+    for line in rig:
+        error = np.abs(lines.frequency_hz / line.frequency_hz - 1.0)
+        best = int(np.argmin(error)) if error.size else -1
+        found = best >= 0 and error[best] <= tolerance
+        near.append((lines.frequency_hz[best], lines.amplitude[best]) if found else (np.nan, np.nan))
+        sources.append(lines.source[best] if found else "")
+        reasons.append("" if found else _reason(line.frequency_hz, excitations, tolerance))
+    f, a = np.array(near).T if near else np.zeros((2, 0))
+    return RigSpectrum(
+        lines.name,
+        lines.unit,
+        np.array([line.frequency_hz for line in rig]),
+        tuple(line.label or "" for line in rig),
+        f,
+        a,
+        tuple(sources),
+        tuple(reasons),
+        tolerance,
+    )
+
+
+def _reason(frequency: float, excitations: Sequence[ExcitationLine], tolerance: float) -> str:
+    """Whether anything in the model shakes at a frequency."""
+    orders = [(abs(e.frequency_hz / frequency - 1.0), e.name, e.frequency_hz) for e in excitations]
+    if not orders:
+        return "nothing turns"
+    error, name, f = min(orders)
+    if error <= tolerance:
+        return f"{name} at {f:.2f} Hz is there, but too weak at this place, or not excited by the model"
+    return f"no shaft or mesh order: the nearest is {name} at {f:.2f} Hz; a forced response has no line here"

@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.frf_file import MeasuredFrf
+from rotorgear.analysis.rig.measured import MeasuredFrf
+from rotorgear.analysis.rig.receptance_model import ReceptanceModel, Receptances
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
-from rotorgear.analysis.updating.receptance_model import ReceptanceModel, Receptances
 from rotorgear.errors import AnalysisError
 
 # So many frequencies are enough for all resonances of a band; more are left out evenly.

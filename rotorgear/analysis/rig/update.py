@@ -17,20 +17,15 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
-from rotorgear.analysis.rig.compare_result import ABOVE_RIG, rig_lines_of
-from rotorgear.analysis.rig.frf_file import MeasuredFrf, read_rig_frf
-from rotorgear.analysis.rig.learnt import LINE_NOISE, line_noise
-from rotorgear.analysis.rig.mac import frac, mac
-from rotorgear.analysis.rig.measured import Measured
-from rotorgear.analysis.rig.mesh_of_model import plan_of
-from rotorgear.analysis.rig.posterior import Posterior
-from rotorgear.analysis.rig.rig_model import RigModel
-from rotorgear.analysis.rig.shape_file import read_rig_shapes
-from rotorgear.analysis.updating.campaigns import Campaign, CampaignModel, joined, read_campaigns
-from rotorgear.analysis.updating.estimate import Estimate
-from rotorgear.analysis.updating.frf_misfit import FrfMisfit
-from rotorgear.analysis.updating.misfit import Misfit, Pair, State
-from rotorgear.analysis.updating.receptance_model import CARRIED
+from rotorgear.analysis.rig.campaigns import Campaign, joined, read_campaigns
+from rotorgear.analysis.rig.compare import ABOVE_RIG, rig_lines_of
+from rotorgear.analysis.rig.frf_misfit import FrfMisfit
+from rotorgear.analysis.rig.likeness import frac, mac
+from rotorgear.analysis.rig.measured import Measured, MeasuredFrf, read_rig_frf, read_rig_shapes
+from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, Pair, approach, first_fit, most_probable
+from rotorgear.analysis.rig.posterior import LINE_NOISE, Posterior, line_noise
+from rotorgear.analysis.rig.receptance_model import CARRIED
+from rotorgear.analysis.rig.rig_model import CampaignModel, RigModel, plan_of
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
@@ -39,8 +34,6 @@ from rotorgear.results.comparison import RigLine
 from rotorgear.results.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
 from rotorgear.system.plan import Plan
 
-# Noise of a measured displacement, as a share of the root mean square of its shape.
-SHAPE_NOISE = 0.02
 # Noise of a measured frequency response, as a share of its size.
 FRF_NOISE = 0.05
 # The mesh is finer than the noise by a tenth, within these bounds.
@@ -126,24 +119,14 @@ def update(
         if heard:
             responses[number] = FrfMisfit(models[-1], heard, frf_noise, modal_damping)
     every, owner = joined(measured)
-    turning = frozenset(number for number, one in enumerate(models) if one.speed)
-    problem = Misfit(
-        CampaignModel(tuple(models), every.points),
-        every,
-        shape_noise,
-        tolerance,
-        campaign=owner,
-        turning=turning,
-        responses=responses,
-    )
-    steps = Estimate(problem)
-    start = steps.start()
+    problem = Misfit(CampaignModel(tuple(models), every.points), every, owner, shape_noise, tolerance, responses)
+    start = first_fit(problem)
     if not start.pairs and not responses:
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
     doubts = [doubt for number, one in responses.items() for doubt in one.doubts(start.x, start.modes.parts[number])]
     try:
-        near = steps.approach(start, progress)
-        state, posterior = steps.estimate(near, progress)
+        near = approach(problem, start, progress)
+        state, posterior = most_probable(problem, near, progress)
     except ConvergenceError as error:
         raise ConvergenceError("; ".join([str(error), *doubts])) from None
     result = _result(model, [one.name for one in several], problem, start, state, posterior)
@@ -222,9 +205,7 @@ def _rig_model(
     return RigModel(numbers, plan, fmax, given.points, speed_in_si(speed) or 0.0)
 
 
-def _result(
-    model: Model, campaigns: list[str], problem: Misfit, start: State, state: State, p: Posterior
-) -> UpdateResult:
+def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, state: Fit, p: Posterior) -> UpdateResult:
     from scipy.stats import chi2
 
     numbers = problem.model.numbers
@@ -296,7 +277,7 @@ def _shape_warnings(problem: Misfit) -> list[str]:
     return []
 
 
-def _left_out(problem: Misfit, state: State) -> tuple[str, ...]:
+def _left_out(problem: Misfit, state: Fit) -> tuple[str, ...]:
     said = []
     if problem.given.lines:
         said.append(
@@ -313,7 +294,7 @@ def _left_out(problem: Misfit, state: State) -> tuple[str, ...]:
 
 
 def _response_rows(
-    campaigns: list[str], problem: Misfit, start: State, state: State, p: Posterior
+    campaigns: list[str], problem: Misfit, start: Fit, state: Fit, p: Posterior
 ) -> Iterator[UpdatedResponse]:
     """Each measured frequency response beside the model before, after, and after all others alone."""
     owner = -1
@@ -336,13 +317,13 @@ def _response_rows(
             owner -= 1
 
 
-def _without(state: State, p: Posterior, own: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _without(state: Fit, p: Posterior, own: NDArray[np.bool_]) -> NDArray[np.float64]:
     """The numbers that all other rows make most probable, to first order about the estimate."""
     linear = state.residual + p.jacobian @ state.x
     return Posterior(p.jacobian[~own], p.noise[~own], p.prior).estimate(linear[~own])
 
 
-def _held_out(state: State, p: Posterior, pair: Pair) -> tuple[float, float]:
+def _held_out(state: Fit, p: Posterior, pair: Pair) -> tuple[float, float]:
     """Frequency of a line in Hz as the other lines predict it, and its relative standard deviation with the noise of the line."""
     belongs = state.owner == pair.line
     rest = Posterior(p.jacobian[~belongs], p.noise[~belongs], p.prior)

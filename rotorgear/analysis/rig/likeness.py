@@ -1,8 +1,14 @@
-"""Which mode of the model a measured line is: by frequency, and by shape where shapes were measured.
+"""How far measured and computed modes are alike, and which mode of a model a measured line is.
 
-Before the test the model predicts ln f with the variance sigma_f^2 + sum_j (J_ij sigma_pj)^2, noise and the spread of its
-uncertain numbers. A pair costs the squared distance in units of that, and (1 - MAC) / 0.1 squared for its shapes: a mode whose
-shape agrees to 0.9 weighs as much as one that is one standard deviation off. The assignment of all lines together costs least.
+The modal assurance criterion says how far two shapes agree, whatever their scale (Allemang and Brown 1982),
+
+    MAC(a, b) = |a^H b|^2 / ((a^H a) (b^H b)),
+
+1 for shapes in proportion, 0 for orthogonal ones. Points that one of the two does not know take no part.
+
+Before a test the model predicts ln f with the variance sigma_f^2 + sum_j (J_ij sigma_pj)^2, noise and the spread of its uncertain
+numbers. A pair costs the squared distance in units of that, and (1 - MAC) / 0.1 squared for its shapes: a mode whose shape agrees
+to 0.9 weighs as much as one that is one standard deviation off. The assignment of all lines together costs least.
 """
 
 from __future__ import annotations
@@ -10,10 +16,37 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from rotorgear.analysis.rig.mac import mac
 from rotorgear.solvers.eigen.assignment import assign
+
+
+def mac(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
+    """Return the MAC of each shape of one set with each of another.
+
+    Args:
+        a: real or complex displacements at s points (n, s); NaN where unknown.
+        b: the same points (m, s).
+
+    Returns:
+        MAC (n, m), NaN where two shapes share no point.
+    """
+    first = np.asarray(a)
+    second = np.asarray(b)
+    known_a = np.isfinite(first)
+    known_b = np.isfinite(second)
+    A = np.where(known_a, first, 0.0)
+    B = np.where(known_b, second, 0.0)
+    cross = np.abs(A.conj() @ B.T) ** 2
+    size = (np.abs(A) ** 2 @ known_b.T) * (known_a @ (np.abs(B) ** 2).T)
+    return np.where(size > 0.0, cross / np.where(size > 0.0, size, 1.0), np.nan)
+
+
+def frac(a: NDArray[np.complex128] | NDArray[np.float64], b: NDArray[np.complex128] | NDArray[np.float64]) -> float:
+    """|a^H b|^2 / (a^H a b^H b); NaN where one is zero."""
+    size = float(np.sum(np.abs(a) ** 2) * np.sum(np.abs(b) ** 2))
+    return float(np.abs(np.vdot(a, b)) ** 2) / size if size > 0.0 else float("nan")
+
 
 _MAC_SCALE = 0.1
 # Further away in frequency, or less alike in shape, nothing is paired.

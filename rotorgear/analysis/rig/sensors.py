@@ -20,11 +20,11 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.analysis.rig.compare_result import ABOVE_RIG
-from rotorgear.analysis.rig.mac import mac
-from rotorgear.analysis.rig.mesh_of_model import plan_of
-from rotorgear.analysis.rig.sensitivity import system_of
+from rotorgear.analysis.rig.compare import ABOVE_RIG
+from rotorgear.analysis.rig.likeness import mac
+from rotorgear.analysis.rig.rig_model import plan_of
 from rotorgear.analysis.rig.sensor_table import places_of
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -126,7 +126,7 @@ def _shapes(
     """Frequencies in Hz (m,) and numbers (m,) of the elastic modes wanted, their motion at places (n, m), and the dofs."""
     if fmax is None:
         # A first look at the modes says how far up so many of them reach.
-        first = solve(system_of(model, Plan(elements or 2)), Wanted(None, count + 12, None))
+        first = solve(linear_system(model, [None], Plan(elements or 2)), Wanted(None, count + 12, None))
         elastic = np.sort(np.abs(first.eigenvalues[~first.rigid]))
         if not elastic.size:
             raise AnalysisError("the model has no elastic modes to tell apart")
@@ -135,7 +135,7 @@ def _shapes(
     else:
         most = None
     plan = Plan(elements) if elements else plan_of(model, fmax, accuracy)
-    system = system_of(model, plan)
+    system = linear_system(model, [None], plan)
     found = solve(system, Wanted(None, None, 2.0 * np.pi * fmax))
     elastic_at = np.flatnonzero(~found.rigid & (np.abs(found.eigenvalues) > 0.0))[:most]
     if len(elastic_at) < 2:

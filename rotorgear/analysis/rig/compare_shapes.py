@@ -1,4 +1,10 @@
-"""Compare measured mode shapes with those of a model: pairs by frequency and shape (`identity.py`), beside what chance gives.
+"""Compare measured mode shapes with those of a model: pairs by frequency and shape, beside what chance gives.
+
+A measured mode is not the nearest one in frequency and shape: between two modes that veer both are mixtures of what the model
+has, and its springs are known to 30 % only. So springs are first moved to where lines and shapes want them (`misfit.py`, a step
+each against less and less enlarged noise), lines are paired with the modes there, and each of these is followed back to the model
+as it is, along a straight path in the logs of the stiffnesses: one-to-one by overlap in mass, in halves where a mode turns too
+far in one step.
 
 Modes closer to each other than the model knows their frequencies turn into each other at the slightest change. A measured shape
 is compared with the plane that they span, and several of them by principal angles (Bjorck and Golub 1973), never one by one.
@@ -15,22 +21,83 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.points import point_node
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.correlation.identity import identified_pairs
-from rotorgear.analysis.correlation.sensor_errors import sensor_doubts
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.rig.compare_result import ABOVE_RIG
-from rotorgear.analysis.rig.learnt import LINE_NOISE, STIFFNESS_PRIOR, learnt_stiffnesses, spring_shares
-from rotorgear.analysis.rig.mac import mac
-from rotorgear.analysis.rig.measured import Measured
-from rotorgear.analysis.rig.mesh_of_model import mesh_of
-from rotorgear.analysis.rig.pairing import UNPAIRED, costs, pairs_by_both
-from rotorgear.analysis.rig.shape_file import read_rig_shapes
+from rotorgear.analysis.rig.compare import ABOVE_RIG
+from rotorgear.analysis.rig.likeness import UNPAIRED, costs, mac, pairs_by_both
+from rotorgear.analysis.rig.measured import Measured, read_rig_shapes
+from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Misfit, approach, first_fit
+from rotorgear.analysis.rig.posterior import DEFAULT_PRIOR, LINE_NOISE, learnt_stiffnesses, spring_shares
+from rotorgear.analysis.rig.rig_model import CampaignModel, CampaignModes, RigModel, mesh_of
+from rotorgear.analysis.rig.sensor_errors import sensor_doubts
+from rotorgear.analysis.sensitivity.derivatives import SPRINGS
 from rotorgear.errors import AnalysisError
+from rotorgear.model.address import tables_of
 from rotorgear.model.model import Model
+from rotorgear.model.numbers import free_numbers, is_number
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import RigLine
 from rotorgear.results.correlation import ALIKE, ShapeChance, ShapeComparison, ShapeMatch, Subspace
 from rotorgear.results.modal import ModalResult
+from rotorgear.system.plan import Plan
+
+# A mode is followed where this share of it is in one mode of the next place, or after so many halves of a step.
+_CLEAR = 0.6
+_HALVES = 5
+
+
+def identified_pairs(
+    model: Model, plan: Plan, fmax: float, given: Measured, tolerance: float
+) -> list[tuple[int, int]] | None:
+    """Return (line, elastic mode of the model), ascending in lines; None where no spring is uncertain or no line is near a mode.
+
+    Args:
+        model: the model, at standstill.
+        plan: its mesh.
+        fmax: modes below so many Hz are looked at.
+        given: measured shapes.
+        tolerance: largest |f_mode / f_rig - 1| of a line without shape.
+    """
+    tables = tables_of(model)
+    addresses = [
+        f"{table}.{name}.stiffness"
+        for table in SPRINGS
+        for name, part in tables.get(table, {}).items()
+        if is_number(part.get("stiffness"))
+    ]
+    if not addresses:
+        return None
+    part = RigModel(free_numbers(model, addresses, DEFAULT_PRIOR), plan, fmax, given.points)
+    campaign = CampaignModel((part,), given.points)
+    misfit = Misfit(campaign, given, np.zeros(len(given.lines), dtype=np.intp), SHAPE_NOISE, tolerance)
+    start = first_fit(misfit)
+    if not start.pairs:
+        return None
+    end = approach(misfit, start, silent)
+    wanted = np.array([pair.mode for pair in end.pairs], dtype=np.intp)
+    back = followed(campaign, (end.x, end.modes), (start.x, start.modes), wanted)
+    return [(pair.line, int(mode)) for pair, mode in zip(end.pairs, back, strict=True) if mode >= 0]
+
+
+def followed(
+    model: CampaignModel,
+    here: tuple[NDArray[np.float64], CampaignModes],
+    there: tuple[NDArray[np.float64], CampaignModes],
+    wanted: NDArray[np.intp],
+    halves: int = _HALVES,
+) -> NDArray[np.intp]:
+    """Numbers at `there` of the modes that have the numbers `wanted` (k,) at `here`; -1 of one that left the range."""
+    from scipy.optimize import linear_sum_assignment
+
+    overlap = here[1].overlap(there[1])
+    rows, columns = linear_sum_assignment(-overlap)
+    now = dict(zip(rows.tolist(), columns.tolist(), strict=True))
+    clear = all(k < 0 or overlap[k, now[k]] > _CLEAR for k in wanted if k < 0 or k in now)
+    if clear or halves == 0:
+        return np.array([now.get(int(k), -1) for k in wanted], dtype=np.intp)
+    x = 0.5 * (here[0] + there[0])
+    middle = (x, model.modes(x))
+    return followed(model, middle, there, followed(model, here, middle, wanted, halves - 1), halves - 1)
+
 
 # A pair lies within four standard deviations, so that a model without uncertain springs reaches as far as the tolerance.
 _DEVIATIONS = 4.0
@@ -151,7 +218,7 @@ def compare_shapes(
 
 def _highest(given: Measured) -> float:
     """Frequency in Hz up to which a line may have its mode: one that softer springs than the model's have brought down."""
-    return ABOVE_RIG * (1.0 + 0.5 * STIFFNESS_PRIOR) * max(line.frequency_hz for line in given.lines)
+    return ABOVE_RIG * (1.0 + 0.5 * DEFAULT_PRIOR) * max(line.frequency_hz for line in given.lines)
 
 
 def _pairs(
@@ -212,7 +279,7 @@ class _Modes:
         everywhere = np.moveaxis(result.shapes[nodes][:, :, elastic], 2, 0)
         error = np.nan_to_num(result.error_estimate[elastic], nan=0.0)
         springs = spring_shares(result.strain_energy, elastic)
-        spread = np.hypot(LINE_NOISE, 0.5 * STIFFNESS_PRIOR * np.sqrt(np.sum(springs**2, axis=0)))
+        spread = np.hypot(LINE_NOISE, 0.5 * DEFAULT_PRIOR * np.sqrt(np.sum(springs**2, axis=0)))
         at_points = everywhere[:, np.arange(len(points)), axes]
         return cls(elastic + 1, hz, spread, at_points, everywhere, axes, _groups(hz, error))
 

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
-from rotorgear.analysis.rig.sensitivity import STEP, beside, springs_of
+from rotorgear.analysis.sensitivity.derivatives import STEP, beside, springs_of
+from rotorgear.analysis.sensitivity.forms import with_shapes
 from rotorgear.errors import AnalysisError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.damped_range import all_damped, damped_up_to
@@ -94,7 +95,7 @@ class ReceptanceModel:
     def slopes(self, x: NDArray[np.float64], here: Receptances) -> NDArray[np.complex128]:
         """dH/dx (p, f, o, i)."""
         numbers = self.model.numbers
-        springs = springs_of(numbers.model, here.system, self.model.speed)
+        springs = springs_of(numbers.model, here.system)
         w = 2.0 * np.pi * self.frequency_hz[:, None, None]
         left = np.transpose(here.q_out, (0, 2, 1))
         found = []
@@ -147,22 +148,18 @@ class ReceptanceModel:
         K = system.stiffness(speed)
         M = system.mass
         top = 2.0 * np.pi * float(self.frequency_hz[-1])
+        nothing = np.zeros((system.n, 0))
         if all_damped(system) and np.all(M.diagonal() > 0.0):
-            return _orthonormal(M, np.eye(system.n))
+            return with_shapes(M, nothing, np.eye(system.n), _SAME)
         D = _damping(system, speed)
         carriers = modes.carriers
-        V = _orthonormal(M, np.hstack([carriers.real, carriers.imag]) if speed else np.real(carriers))
+        V = with_shapes(M, nothing, np.hstack([carriers.real, carriers.imag]) if speed else np.real(carriers), _SAME)
         forces = ports.astype(complex)
         for s in (share * top for share in _SHIFTS):
             solver = splu(sp.csc_array(K + s * D + s**2 * M))
             answers = [solver.solve(forces), solver.solve(forces, trans="T")] if speed else [solver.solve(forces)]
             more = np.hstack([part(answer) for answer in answers for part in (np.real, np.imag) if part(answer).any()])
-            size = _sizes(M, more)
-            for _ in range(2):
-                more = more - V @ (V.T @ (M @ more))
-            fresh = _sizes(M, more) > _SAME * size
-            if fresh.any():
-                V = np.hstack([V, _orthonormal(M, more[:, fresh])])
+            V = with_shapes(M, V, more, _SAME)
         return V
 
     def _reduced(self, system: System, V: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -204,10 +201,9 @@ class ReceptanceModel:
         V = here.V
         step = np.zeros(len(x))
         step[j] = STEP
-        part, _, name = address.rpartition(".")
-        if name == "stiffness" and part in springs:
-            return self._of_spring(x, here, springs[part])
-        above, below = beside(self.model.numbers, x, j, here.system, self.model.plan, self.model.speed)
+        if address in springs:
+            return self._of_spring(x, here, springs[address])
+        above, below = beside(self.model.numbers, x, j, here.system, self.model.speed)
         return (self._reduced(above, V, x + step) - self._reduced(below, V, x - step)) / (2.0 * STEP)
 
     def _of_spring(self, x: NDArray[np.float64], here: Receptances, groups: Sequence) -> NDArray[np.float64]:
@@ -220,21 +216,6 @@ class ReceptanceModel:
         # Damping in proportion to the stiffness has its part in the spring.
         beta = self.model.numbers.model.damping.rayleigh_beta
         return np.array([spring, (above - below) / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
-
-
-def _sizes(M: sp.csc_array, X: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Root of the modal mass of shapes X (n, r)."""
-    return np.sqrt(np.maximum(np.einsum("nr,nr->r", X, M @ X), 1e-300))
-
-
-def _orthonormal(M: sp.csc_array, X: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Shapes of modal mass 1 that span those of X (n, r)."""
-    X = X / _sizes(M, X)
-    for _ in range(2):
-        values, turned = la.eigh(X.T @ (M @ X))
-        kept = values > _SAME * values[-1]
-        X = X @ (turned[:, kept] / np.sqrt(values[kept]))
-    return np.asarray(X)
 
 
 def _stiffness(system: System, speed: float) -> sp.csc_array:

@@ -1,0 +1,311 @@
+"""What a model with free numbers shows beside what was measured: residuals, their noise, and their derivatives.
+
+Shapes have no scale: the residual of measured y and shape phi is y - a phi with the a that fits best, and its derivative loses
+what lies along phi. Shapes of close modes are compared as the plane they span: y less its projection on it. Frequency responses
+follow the pairs of lines and modes (`frf_misfit.py`): they need none.
+
+The most probable numbers are found by loose steps, which find the pairs, then by Gauss-Newton steps that are held back:
+
+    x = S W^T (1 + W W^T)^-1 N^-1 (y - f(x_k) + J x_k),    W = N^-1 J S    (Tarantola 2005, Inverse problem theory, section 3.4)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.rig.frf_misfit import FrfMisfit
+from rotorgear.analysis.rig.likeness import pairs_of
+from rotorgear.analysis.rig.measured import Measured
+from rotorgear.analysis.rig.posterior import Posterior, line_noise
+from rotorgear.analysis.rig.rig_model import CampaignModel, CampaignModes
+from rotorgear.analysis.sensitivity.forms import Shapes
+from rotorgear.errors import ConvergenceError
+from rotorgear.progress import Progress
+
+# Noise of a measured displacement, as a share of the root mean square of its shape.
+SHAPE_NOISE = 0.02
+# Shapes of modes closer than this in ln f turn into each other at the slightest change: their plane is compared, not each.
+CLOSE = 0.03
+# So much further apart are modes still close, and so much more noise is in ln f, where looseness is 1.
+_LOOSE_CLOSE = 0.15
+_LOOSE_FREQUENCY = 0.1
+# How much the noise is enlarged on the way, as a share of a shape's root mean square.
+_LOOSENESS = (0.5, 0.2, 0.07)
+_MOST_SOLUTIONS = 40
+_LOOKS = 2
+# A step that changes the objective by less than this share moves no number by more than a twentieth of what it is known to.
+_AT_REST = 1e-5
+# A misfit of so many times the number of values, and steps that lessen it by less than this share.
+_MISFIT = 2.0
+_CRAWL = 0.01
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A line and its mode; `near` are the modes close to it, itself among them."""
+
+    line: int
+    mode: int
+    near: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The model at x beside the rig.
+
+    Attributes:
+        x: logs of the factors (p,).
+        modes: of the model there.
+        pairs: lines and modes.
+        residual: measured less computed: of each pair ln f, then its shape; then ln H of the frequency responses (n,).
+        noise: standard deviations of the rows (n,).
+        owner: line of each row; -1, -2 ... for the first frequency response, the second ... (n,).
+        looseness: that of the noise.
+        objective: squared residuals in units of the noise, and of x in units of the prior.
+    """
+
+    x: NDArray[np.float64]
+    modes: CampaignModes
+    pairs: tuple[Pair, ...]
+    residual: NDArray[np.float64]
+    noise: NDArray[np.float64]
+    owner: NDArray[np.intp]
+    objective: float
+    looseness: float = 0.0
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A model beside a rig.
+
+    Attributes:
+        model: with its free numbers.
+        given: lines and shapes of all campaigns.
+        owner: campaign of each line (n,).
+        shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
+        tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
+        responses: frequency responses of some campaigns, by number.
+        looseness: what is added to the noise while modes may still be taken for others.
+    """
+
+    model: CampaignModel
+    given: Measured
+    owner: NDArray[np.intp]
+    shape_noise: float
+    tolerance: float
+    responses: Mapping[int, FrfMisfit] = field(default_factory=dict)
+    looseness: float = 0.0
+
+    @cached_property
+    def turning(self) -> frozenset[int]:
+        """Campaigns at a speed: their shapes are complex, and both parts of a misfit count, each with its share of the noise."""
+        return frozenset(number for number, part in enumerate(self.model.parts) if part.speed)
+
+    @cached_property
+    def shapes(self) -> Shapes:
+        """The measured shapes (n, s): turned to be real where the gearbox stood still."""
+        real = self.given.real_shapes
+        if not self.turning or self.given.shapes is None:
+            return real
+        turns = np.isin(self.owner, list(self.turning))
+        return np.where(turns[:, None], self.given.shapes, real)
+
+    def parts(self, line: int, values: Shapes) -> Shapes:
+        """Real values of a line as they are; of a complex shape the real ones, then the imaginary ones."""
+        if self.owner[line] not in self.turning:
+            return np.real(values)
+        return np.concatenate([np.real(values), np.imag(values)])
+
+    def shape_points(self, line: int) -> NDArray[np.intp]:
+        """Points at which the shape of a line is compared; a shape at a single point is all scale."""
+        known = np.flatnonzero(np.isfinite(self.shapes[line]))
+        return known if len(known) > 1 else known[:0]
+
+    def beside(self, x: NDArray[np.float64], modes: CampaignModes, pairs: tuple[Pair, ...]) -> Fit:
+        """Residuals of the model at x."""
+        residual: list[float] = []
+        noise: list[float] = []
+        owner: list[int] = []
+        for pair in pairs:
+            rig = self.given.lines[pair.line]
+            residual.append(float(np.log(rig.frequency_hz / modes.frequency_hz[pair.mode])))
+            noise.append(float(np.hypot(line_noise(rig), _LOOSE_FREQUENCY * self.looseness)))
+            owner.append(pair.line)
+            points = self.shape_points(pair.line)
+            if len(points):
+                y = self.shapes[pair.line, points]
+                off = self.parts(pair.line, _off_subspace(modes.at_points[np.ix_(np.array(pair.near), points)].T, y))
+                residual += list(off)
+                share = np.hypot(self.shape_noise, self.looseness) * np.sqrt(len(points) / len(off))
+                noise += [float(share * np.sqrt(np.mean(np.abs(y) ** 2)))] * len(off)
+                owner += [pair.line] * len(off)
+        parts = [(np.array(residual), np.array(noise), np.array(owner, dtype=np.intp))]
+        first = 0
+        for number, response in self.responses.items():
+            rows, sigmas = response.residual(x, modes.parts[number], self.looseness)
+            owners = -1 - (first + np.arange(len(rows)))
+            parts.append((rows.ravel(), sigmas.ravel(), np.repeat(owners, rows.shape[1])))
+            first += len(rows)
+        r, sigma, whose = (np.concatenate(column) for column in zip(*parts, strict=True))
+        objective = float(np.sum((r / sigma) ** 2) + np.sum((x / self.model.numbers.prior) ** 2))
+        return Fit(x, modes, pairs, r, sigma, whose, objective, self.looseness)
+
+    def linear(self, state: Fit) -> Posterior:
+        """The linear model about a state."""
+        modes = state.modes
+        with_shapes = bool(self.given.points)
+        chosen = sorted({k for pair in state.pairs for k in (pair.near if with_shapes else (pair.mode,))})
+        place = {mode: k for k, mode in enumerate(chosen)}
+        at = np.array(chosen, dtype=np.intp)
+        slopes, shape_slopes = self.model.derivatives(state.x, modes, at, shapes=with_shapes)
+        rows: list[NDArray[np.float64]] = []
+        for pair in state.pairs:
+            rows.append(slopes[place[pair.mode]])
+            points = self.shape_points(pair.line)
+            if len(points):
+                basis = modes.at_points[np.ix_(np.array(pair.near), points)].T
+                share = np.linalg.lstsq(basis, self.shapes[pair.line, points], rcond=None)[0]
+                change = sum(a * shape_slopes[place[k]][points] for a, k in zip(share, pair.near, strict=True))
+                rows += list(self.parts(pair.line, _off_subspace(basis, np.asarray(change))))
+        jacobian = [np.array(rows).reshape(-1, len(state.x))]
+        for number, response in self.responses.items():
+            slopes = response.slopes(state.x, modes.parts[number], state.looseness)
+            jacobian.append(slopes.reshape(-1, len(state.x)))
+        return Posterior(np.concatenate(jacobian), state.noise, self.model.numbers.prior)
+
+    def pairs(self, x: NDArray[np.float64], modes: CampaignModes, known: Posterior | None) -> tuple[Pair, ...]:
+        """Pair lines and modes, by what is known of the numbers so far."""
+        if not self.given.lines:
+            return ()
+        hz = np.array([line.frequency_hz for line in self.given.lines])
+        noise = max(line_noise(line) for line in self.given.lines)
+        spread = np.full(len(modes.eigenvalues), np.hypot(noise, _LOOSE_FREQUENCY * self.looseness))
+        if self.given.points:
+            every = np.arange(len(modes.eigenvalues), dtype=np.intp)
+            slopes, _ = self.model.derivatives(x, modes, every, shapes=False)
+            prior = self.model.numbers.prior
+            before = np.sqrt(np.sum((slopes * prior) ** 2, axis=1)) if known is None else known.spread_of(slopes)
+            spread = np.hypot(spread, before)
+        found: list[tuple[int, int]] = []
+        for number in np.unique(self.owner):
+            lines = np.flatnonzero(self.owner == number)
+            own = np.flatnonzero(modes.campaign == number)
+            pairs = pairs_of(
+                hz[lines],
+                modes.frequency_hz[own],
+                spread[own],
+                self.shapes[lines],
+                modes.at_points[own],
+                self.tolerance,
+            )
+            found += [(int(lines[line]), int(own[mode])) for line, mode in pairs]
+        # The modes that are close to one, itself among them.
+        reach = 2.0 * (CLOSE + _LOOSE_CLOSE * self.looseness)
+        near = np.abs(np.log(modes.eigenvalues[:, None] / modes.eigenvalues)) < reach
+        near &= modes.campaign[:, None] == modes.campaign
+        return tuple(Pair(line, mode, tuple(map(int, np.flatnonzero(near[:, mode])))) for line, mode in found)
+
+
+def _off_subspace(basis: Shapes, y: Shapes) -> Shapes:
+    """What of y (s,) or (s, p) is no combination of the columns of a basis (s, c)."""
+    Q = np.linalg.qr(basis)[0]
+    return np.asarray(y - Q @ (Q.conj().T @ y))
+
+
+def first_fit(misfit: Misfit) -> Fit:
+    """The model with the numbers of the file beside the rig."""
+    x = np.zeros(len(misfit.model.numbers.addresses))
+    modes = misfit.model.modes(x)
+    return misfit.beside(x, modes, misfit.pairs(x, modes, None))
+
+
+def approach(misfit: Misfit, start: Fit, progress: Progress) -> Fit:
+    """One step each against noise that is less and less enlarged; modes are paired anew after each.
+
+    Far from the truth close modes stand in for each other, and full trust in a wrong pair would lead astray.
+    """
+    state = start
+    posterior = None
+    for k, looseness in enumerate(_LOOSENESS):
+        progress(0.1 + 0.1 * k, f"approach {k + 1}")
+        loose = replace(misfit, looseness=looseness)
+        state = loose.beside(state.x, state.modes, loose.pairs(state.x, state.modes, posterior))
+        posterior = loose.linear(state)
+        x = posterior.estimate(state.residual + posterior.jacobian @ state.x)
+        modes = misfit.model.modes(x)
+        state = loose.beside(x, modes, state.pairs)
+    return misfit.beside(x, modes, misfit.pairs(x, modes, posterior))
+
+
+def most_probable(misfit: Misfit, state: Fit, progress: Progress) -> tuple[Fit, Posterior]:
+    """The most probable x and the posterior about it, by steps of Levenberg (1944) and Marquardt (1963).
+
+    With `damping` 0 a step is Gauss-Newton's. Where the objective would grow, it is held back in the metric of the priors.
+    Pairs are looked at again when it rests.
+    """
+    posterior = misfit.linear(state)
+    damping = 0.0
+    looked = 0
+    while misfit.model.solutions < _MOST_SOLUTIONS:
+        progress(
+            0.4 + 0.5 * misfit.model.solutions / _MOST_SOLUTIONS,
+            f"modal solution {misfit.model.solutions + 1}",
+        )
+        # |N^-1 (r - J d)|^2 + |S^-1 (x + d)|^2 + damping |S^-1 d|^2, squared out for d, is a prior about -x / (1 + damping).
+        pull = state.x / (1.0 + damping)
+        held = Posterior(posterior.jacobian, posterior.noise, posterior.prior / np.sqrt(1.0 + damping))
+        step = held.estimate(state.residual + posterior.jacobian @ pull) - pull
+        x = state.x + step
+        modes = misfit.model.modes(x)
+        trial = misfit.beside(x, modes, _followed(state, modes))
+        gain = state.objective - trial.objective
+        level = abs(gain) < _AT_REST * max(1.0, state.objective)
+        if gain < 0.0 and not level:
+            damping = max(10.0 * damping, 1.0)
+            continue
+        rests = level and damping < 1.0
+        state = trial
+        posterior = misfit.linear(state)
+        damping = 0.1 * damping if damping > 0.1 else 0.0
+        crawls = 0.0 <= gain < _CRAWL * state.objective and state.objective > _MISFIT * len(state.residual)
+        if crawls and looked < _LOOKS:
+            # A misfit that steps no longer lessen is a wrong pair, most likely: all pairs are open again.
+            looked += 1
+            damping = 0.0
+            state = approach(misfit, state, progress)
+            posterior = misfit.linear(state)
+        elif rests:
+            pairs = misfit.pairs(state.x, state.modes, posterior)
+            other = misfit.beside(state.x, state.modes, pairs)
+            # Of close modes either may be a line's: as many pairs that fit worse would only be exchanged back.
+            worse = len(pairs) == len(state.pairs) and other.objective >= state.objective
+            if worse or pairs == state.pairs or looked == _LOOKS:
+                return state, posterior
+            looked += 1
+            state = other
+            posterior = misfit.linear(state)
+    apart = state.objective / max(len(state.residual), 1)
+    remedy = (
+        "free fewer numbers, or give smaller priors"
+        if apart < _MISFIT
+        else "look at units, signs, places of sensors and damping by `rotorgear compare`, or free other numbers"
+    )
+    raise ConvergenceError(
+        f"the update did not come to rest within {_MOST_SOLUTIONS} modal solutions, with a misfit of {apart:.2g} times what "
+        f"noise and priors allow: {remedy}"
+    )
+
+
+def _followed(before: Fit, modes: CampaignModes) -> tuple[Pair, ...]:
+    """The pairs of a state with each mode at its new place: the one-to-one assignment of most overlap."""
+    from scipy.optimize import linear_sum_assignment
+
+    old = sorted({k for pair in before.pairs for k in pair.near})
+    _, new = linear_sum_assignment(-before.modes.overlap(modes)[old])
+    now = {k: int(mode) for k, mode in zip(old, new, strict=True)}
+    return tuple(Pair(pair.line, now[pair.mode], tuple(sorted(now[k] for k in pair.near))) for pair in before.pairs)
