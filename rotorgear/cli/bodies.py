@@ -11,8 +11,10 @@ import typer
 
 import rotorgear as rg
 from rotorgear.cli.console import console, progress_bar
+from rotorgear.cli.options import spelling
 from rotorgear.cli.run import Call
 from rotorgear.cli.show import numbers_of_modes, show, write_json
+from rotorgear.cli.verb import arguments_of
 from rotorgear.errors import AnalysisError
 
 # Points that --plot of a sweep draws portraits and spectra of.
@@ -95,6 +97,10 @@ def compare(call: Call) -> None:
         raise AnalysisError("--points belongs to --shapes, --frf or --orders: lines have no place")
     if call.saved and what in ("frf", "orders"):
         raise AnalysisError(f"--{what} needs a model file: a saved result has its own frequencies and speeds")
+    choices, known = call.command.choices, arguments_of(verb)
+    for name in call.command.arguments:
+        if name in choices and name not in ("source", *known) and call.asked(name) is not None:
+            raise AnalysisError(f"{spelling(name)} does not go with {'rig lines' if what == 'rig' else f'--{what}'}")
     if call["plot"] and what != "shapes":
         raise AnalysisError("--plot draws the MAC of --shapes")
     show(call, call.result(verb, **({"rig": call["rig"] or call["lines"]} if what == "rig" else {})))

@@ -139,6 +139,11 @@ def test_an_old_name_of_an_argument_works_and_names_the_new_one() -> None:
         rg.critical(model, stop=100.0, top_speed=100.0)
 
 
+def test_an_option_that_says_nothing_of_what_was_measured_is_refused() -> None:
+    asked = ["compare", "models/jeffcott.toml", "rig.csv", "--modal-damping", "0.01"]
+    assert "--modal-damping does not go with rig lines" in str(CliRunner().invoke(app, asked).exception)
+
+
 def test_a_rig_is_compared_with_a_result_a_model_or_as_before_with_lists() -> None:
     model = rg.load("models/jeffcott.toml")
     rig = [20.0, rg.RigLine(60.0)]

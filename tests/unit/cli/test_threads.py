@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from rotorgear.cli.main import one_blas_thread
+from rotorgear.cli.start import one_blas_thread
 
 NAMES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
