@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
-from rotorgear.analysis.modal.modes import Modes, Wanted
-from rotorgear.analysis.modal.solve import group_notes, solve, with_modal_damping
+from rotorgear.analysis.modal.solve import Modes, Wanted, group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S

@@ -71,7 +71,7 @@ def stiffest_part(system: System, speed: float, dof: int) -> str:
     """Name the element that gives a free dof the most of its stiffness."""
     column = system.dofs.transform[:, [dof]].toarray()[:, 0]
     best = 0.0
-    words = ""
+    most: tuple[ElementGroup, int, int] | None = None
     for group in system.groups_at(speed):
         K = group.matrices.stiffness
         if K is None:
@@ -80,15 +80,14 @@ def stiffest_part(system: System, speed: float, dof: int) -> str:
         k, local = np.unravel_index(np.argmax(share), share.shape)
         if share[k, local] > best:
             best = float(share[k, local])
-            words = _described(system, group, int(k), int(local))
-    return words
-
-
-def _described(system: System, group: ElementGroup, element: int, local: int) -> str:
+            most = group, int(k), int(local)
+    if most is None:
+        return ""
+    group, element, at = most
     kind, _, name = group.part.partition(".")
     if kind != "shafts":
         assert group.matrices.modulus is not None
-        unit = "N/m" if kind == "meshes" or local % 6 < 3 else "N m/rad"
+        unit = "N/m" if kind == "meshes" or at % 6 < 3 else "N m/rad"
         return f"{group.part} has {float(np.max(np.abs(group.matrices.modulus[element]))):.3g} {unit}"
     ends = [int(dof) // 6 for dof in group.dofs[element, [0, 6]]]
     own = next(item for item in system.nodes.elements[name] if [item.left, item.right] == ends)

@@ -8,17 +8,21 @@ modes and a first round of damped ones as its basis; a small one takes all modes
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.modal.damped_problem import DampedProblem, by_strains, damping_noise, relative_noise
+from rotorgear.analysis.modal.problem import Problem
 from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
 from rotorgear.solvers.eigen.eigen import UndampedModes
 from rotorgear.solvers.eigen.gyroscopic import gyroscopic_modes
 from rotorgear.solvers.eigen.local_damping import locally_damped_modes
-from rotorgear.solvers.eigen.quadratic import newton, scaled
+from rotorgear.solvers.eigen.quadratic import corrected, newton, scaled
 from rotorgear.solvers.eigen.ritz import strain_ritz
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped
+from rotorgear.solvers.sparse.entries import magnitudes
+from rotorgear.solvers.sparse.pencil import rounding_noise
 from rotorgear.system.assembly import StrainForms
 
 # Rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do.
@@ -44,7 +48,7 @@ _NEAR = 1e-6
 _ZERO = 1e-9
 
 
-def damped_group(problem: DampedProblem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
+def damped_group(problem: Problem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
     found = _near_undamped(problem, count, below)
     if found is not None:
@@ -73,7 +77,7 @@ def damped_group(problem: DampedProblem, count: int | None, below: float | None)
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
 
 
-def _near_undamped(problem: DampedProblem, count: int | None, below: float | None) -> DampedModes | None:
+def _near_undamped(problem: Problem, count: int | None, below: float | None) -> DampedModes | None:
     """The modes from the undamped ones where the stiffness is symmetric and the assembled matrices are clean; else None."""
     S = problem.strain
     if S is None or problem.K.shape[0] <= _ALL_UP_TO or (count is None and below is None):
@@ -111,7 +115,7 @@ def _near_undamped(problem: DampedProblem, count: int | None, below: float | Non
     return None if found is None else by_strains(problem, found)
 
 
-def _drift_noise(problem: DampedProblem, rigid: np.ndarray) -> float:
+def _drift_noise(problem: Problem, rigid: np.ndarray) -> float:
     """The same for the motions that a damper or a spin gives to bodies which no spring holds: s of R^T D R, of lowest |s|."""
     if not rigid.shape[1]:
         return 0.0
@@ -124,7 +128,7 @@ def _drift_noise(problem: DampedProblem, rigid: np.ndarray) -> float:
     return float(relative_noise(problem, np.full(rigid.shape[1], size[moving].min()), rigid).max())
 
 
-def _undamped(problem: DampedProblem, count: int | None, below: float | None) -> UndampedModes:
+def _undamped(problem: Problem, count: int | None, below: float | None) -> UndampedModes:
     """The rigid modes and enough elastic ones to see which of those asked for suffer from rounding: at least one."""
     if count is None and below is not None:
         found = problem.lowest(None, below)
@@ -139,7 +143,7 @@ def _undamped(problem: DampedProblem, count: int | None, below: float | None) ->
 
 
 def _enriched(
-    problem: DampedProblem, undamped: UndampedModes, noise: np.ndarray, count: int | None, below: float | None
+    problem: Problem, undamped: UndampedModes, noise: np.ndarray, count: int | None, below: float | None
 ) -> np.ndarray:
     """Elastic undamped modes and the damped ones of a first round, which takes the softest modes as rigid: (n, m)."""
     first = undamped.rigid_count
@@ -156,7 +160,7 @@ def _enriched(
 
 
 def _in_coordinates(
-    problem: DampedProblem, rigid: np.ndarray, basis: np.ndarray, count: int | None, below: float | None
+    problem: Problem, rigid: np.ndarray, basis: np.ndarray, count: int | None, below: float | None
 ) -> DampedModes:
     """The damped modes in the coordinates u of q = [R X N] u: rigid-body motions R, elastic modes X, massless dofs N."""
     assert problem.strain is not None
@@ -255,7 +259,7 @@ def _inertial(A: sp.csc_array, whole: np.ndarray, rigid: int) -> np.ndarray:
     return np.asarray(product)
 
 
-def _restored(problem: DampedProblem, whole: np.ndarray, found: DampedModes, scale: float) -> DampedModes:
+def _restored(problem: Problem, whole: np.ndarray, found: DampedModes, scale: float) -> DampedModes:
     """The modes in the coordinates of the dofs, with the residuals that they leave there."""
     V = whole @ found.vectors
     V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
@@ -272,14 +276,40 @@ def _restored(problem: DampedProblem, whole: np.ndarray, found: DampedModes, sca
             V[:, k] = (v if up else np.conj(v)) * quadratic.scale
     V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
     errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
-    return DampedModes(
-        eigenvalues=values,
-        vectors=V,
-        rigid=found.rigid,
-        backward_error=errors,
-        zero_count=found.zero_count,
-        complete=found.complete and whole.shape[1] == problem.K.shape[0],
-        method=found.method,
-        shift=found.shift,
-        factorisations=found.factorisations,
+    complete = found.complete and whole.shape[1] == problem.K.shape[0]
+    return replace(found, eigenvalues=values, vectors=V, backward_error=errors, complete=complete)
+
+
+def by_strains(problem: Problem, found: DampedModes) -> DampedModes:
+    """The modes with eigenvalues from strain energies, which do not carry the rounding of the assembled stiffness."""
+    V = found.vectors
+    forms = problem.forms
+    S = forms.strain @ V
+
+    def form(A: sp.sparray, X: np.ndarray) -> np.ndarray:
+        return np.asarray(np.einsum("ij,ij->j", X.conj(), A @ X))
+
+    noise = relative_noise(problem, np.abs(found.eigenvalues), V / np.sqrt(np.real(form(problem.M, V))))
+    values = corrected(
+        found.eigenvalues,
+        np.where(found.rigid, 0.0, noise),
+        (
+            form(problem.M, V),
+            form(problem.inertial, V) + form(forms.viscosity, S),
+            form(forms.modulus, S) + form(forms.circulation, S),
+        ),
     )
+    return replace(found, eigenvalues=values)
+
+
+def relative_noise(problem: Problem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """Rounding that K q and s C q carry, relative to |s|^2 q^H M q, for |s| = size (m,) and M-normal V (n, m)."""
+    K = magnitudes(problem.K_symmetric)
+    size = np.maximum(size, 1e-150)  # its square is still a number
+    return np.asarray(rounding_noise(K, V) / size**2 + damping_noise(problem, size, V))
+
+
+def damping_noise(problem: Problem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """Rounding that s C q alone carries, (m,)."""
+    C = sp.csc_array(problem.D - problem.inertial)
+    return rounding_noise(magnitudes(C), V) / size if C.nnz else np.zeros(V.shape[1])

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from rotorgear.system.groups import ElementGroup
 from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.system import System
 
@@ -63,7 +61,16 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
             _add(kinetic, group.part, energy)
             _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy
-        for label, energy in _strain_energies(group, local):
+        B = group.matrices.strain
+        D = group.matrices.modulus
+        if B is None or D is None:
+            continue
+        strains = B @ local
+        by_strain = np.einsum("esm,esm->sm", strains, D @ strains)
+        # Of a shaft by motion, of springs under their kind.
+        labels = group.strain_motions or (_SPRING_KINDS[group.part.partition(".")[0]],) * len(by_strain)
+        for label in dict.fromkeys(labels):
+            energy = by_strain[[k for k, name in enumerate(labels) if name == label]].sum(axis=0)
             elastic = np.where(rigid, 0.0, _by_mode(energy, modes))
             _add(strain, group.part, elastic)
             _add(strain_by_motion, label, elastic)
@@ -81,22 +88,6 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
 def _by_mode(energy: np.ndarray, modes: int) -> np.ndarray:
     """Energies (m,) from those of real columns, or of real and imaginary ones (2 m,)."""
     return energy.reshape(-1, modes).sum(axis=0) if modes else energy
-
-
-def _strain_energies(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[str, np.ndarray]]:
-    """Yield twice the strain energy of a group in each real column: of a shaft by motion, of springs under their kind."""
-    B = group.matrices.strain
-    D = group.matrices.modulus
-    if B is None or D is None:
-        return
-    strains = B @ local
-    energy = np.einsum("esm,esm->sm", strains, D @ strains)  # by strain
-    if group.strain_motions:
-        for motion in dict.fromkeys(group.strain_motions):
-            rows = [k for k, name in enumerate(group.strain_motions) if name == motion]
-            yield motion, energy[rows].sum(axis=0)
-    else:
-        yield _SPRING_KINDS[group.part.partition(".")[0]], energy.sum(axis=0)
 
 
 def _add(table: dict[Any, np.ndarray], key: Any, energy: np.ndarray) -> None:

@@ -9,17 +9,28 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
-from rotorgear.analysis.common.notes import gathering
+from rotorgear.analysis.common.notes import gathering, left_out, mode_warnings
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, speed_in_si
-from rotorgear.analysis.modal.conditioning import too_far_apart
-from rotorgear.analysis.modal.enriched_error import enriched_errors
+from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.modal.conditioning import conditioning_warnings, too_far_apart
+from rotorgear.analysis.modal.describe import describe
+from rotorgear.analysis.modal.energies import mode_energies
 from rotorgear.analysis.modal.mode_count import MOST_MODES, check_count
-from rotorgear.analysis.modal.modes import Modes, Wanted
 from rotorgear.analysis.modal.reach import Reach
-from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, errors_of, refined, total_error
-from rotorgear.analysis.modal.result import modal_result
-from rotorgear.analysis.modal.solve import solve
+from rotorgear.analysis.modal.refine import (
+    DEFAULT_ACCURACY,
+    START,
+    all_finer,
+    enriched_errors,
+    errors_of,
+    refined,
+    total_error,
+)
+from rotorgear.analysis.modal.solve import Modes, Wanted, solve
+from rotorgear.analysis.modal.whirl import whirl_of, whirl_words
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.layout.state import State
@@ -27,6 +38,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
+from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
@@ -93,20 +105,74 @@ def modes_about(
 ) -> ModalResult:
     """The modes of a model about a state, for analyses that know it; None: about its equilibrium. Errors are those of `modal`."""
     speed = asked.speed
-    modes = asked.modes
-    fmax = asked.fmax
-    only = asked.only
-    check_request(speed, modes, fmax, asked.elements, asked.accuracy)
-    unknown = set(only) - set(MOTIONS)
+    check_request(speed, asked.modes, asked.fmax, asked.elements, asked.accuracy)
+    unknown = set(asked.only) - set(MOTIONS)
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
+    if asked.modes is None and asked.fmax is None:
+        asked = replace(asked, modes=DEFAULT_MODES)
     clock = Clock()
-    if modes is None and fmax is None:
-        modes = DEFAULT_MODES
+    taken, short = (model, ()) if isinstance(model, System) else serving(model, asked.fmax)
+    while True:
+        system, found, estimate = _on_fine_mesh(taken, asked, state, clock, progress)
+        reduction = reduction_errors(system, found.eigenvalues, found.vectors)
+        if isinstance(taken, System) or asked.fmax is not None or not np.any(reduction > NOTICED):
+            break
+        # How far a number of modes reaches is known now.
+        further, _ = serving(taken, float(np.max(np.abs(found.eigenvalues))) / (2.0 * np.pi))
+        if further is taken:
+            break
+        taken = further
+    progress(0.9, "energies")
+    s = found.eigenvalues
+    q = system.dofs.expand(found.vectors)
+    nodes, displaced = shapes_at_stations(system, q)
+    shapes = _turned(displaced)
+    energies = mode_energies(system, speed or 0.0, q, found.rigid)
+    whirl = whirl_of(system, shapes[: len(system.nodes)], speed or 0.0)
+    description = describe(system, q, energies, found.rigid, (s.imag == 0.0) & ~found.rigid)
+    clock.lap("energies")
+    progress(1.0, "done")
+    return ModalResult(
+        model=model.model if isinstance(model, System) else model,
+        speed=speed,
+        eigenvalues=s,
+        rigid=found.rigid,
+        shapes=shapes,
+        nodes=nodes,
+        error_estimate=estimate + reduction,
+        kinetic_energy=energies.kinetic,
+        strain_energy=energies.strain,
+        kinetic_by_motion=energies.kinetic_by_motion,
+        strain_by_motion=energies.strain_by_motion,
+        whirl=whirl_words(whirl, energies),
+        whirl_by_shaft=whirl.net,
+        description=description,
+        backward_error=found.backward_error,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds=clock.total(),
+        left_out=(*left_out(system, speed), *found.groups, *system.state.notes),
+        warnings=(
+            *mode_warnings(system, asked.modes, s, asked.fmax),
+            *conditioning_warnings(system, speed, s, found.rigid, energies.strain),
+            *short,
+            *casing_warnings(reduction, s),
+        ),
+        method=found.method,
+        point_amplitudes=point_amplitudes(system, nodes, shapes),
+    )
+
+
+def _on_fine_mesh(
+    model: Model | System, asked: ModalRequest, state: State | None, clock: Clock, progress: Progress
+) -> tuple[System, Modes, np.ndarray]:
+    """The system on a mesh that is fine enough, its modes that are asked for, and their estimated relative errors (m,)."""
+    speed = asked.speed
+    limit = None if asked.fmax is None else 2.0 * np.pi * asked.fmax
     fixed = isinstance(model, System) or asked.elements is not None
-    served, short = (model, ()) if isinstance(model, System) else serving(model, fmax)
     plan = Plan(asked.elements) if asked.elements else (Plan() if fixed else START)
-    system = linear_system(served, [speed], plan, state=state)
+    system = linear_system(model, [speed], plan, state=state)
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     if not (fixed or asked.error_estimate):
@@ -114,30 +180,44 @@ def modes_about(
             "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
         )
     target = np.inf if fixed else asked.accuracy or DEFAULT_ACCURACY
-    if not fixed and modes is None and fmax is not None:
-        check_count(system.model, fmax)
+    if not fixed and asked.modes is None and asked.fmax is not None:
+        check_count(system.model, asked.fmax)
     # Finer elements bring the bound nearer, and the motions no nearer to each other.
     apart = too_far_apart(system, speed)
-    reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax, *((0, 1.0) if fixed else ()))
-    if not fixed and speed is not None and not system.has_tables and not system.circulatory(speed).nnz:
-        # Damping and spin hardly change what mesh a mode needs: undamped modes find it at less cost, and it is checked below.
-        # Films whose symmetric part alone is no stable spring have no such modes.
-        system = _refined_undamped(system, reach, only, target)
+    reach = Reach(asked.modes, limit, 0, 1.0) if fixed else Reach(asked.modes, limit)
+    # Damping and spin hardly change what mesh a mode needs: undamped modes find it at less cost, and the mesh is checked with
+    # the others then. Films whose symmetric part alone is no stable spring have no such modes.
+    undamped_first = not fixed and speed is not None and not system.has_tables and not system.circulatory(speed).nnz
+    for _ in range(_ROUNDS if undamped_first else 0):
+        found = solve(system, Wanted(None, *reach.solver_request(), asked.only))
+        if reach.modes is not None and len(found.eigenvalues) < reach.modes:
+            break
+        parts = errors_of(system, None, found.eigenvalues, found.vectors, found.rigid)
+        watched = reach.watched(np.abs(found.eigenvalues), total_error(parts, len(found.eigenvalues)))
+        finer = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
+        if finer is None:
+            break
+        system = system.with_plan(finer)
+    if undamped_first:
         clock.lap("refinement")
     for round_number in range(_ROUNDS):
         progress(min(0.1 + 0.15 * round_number, 0.8), f"solving {system.n} dofs")
-        found = _solved(system, Wanted(speed, *reach.solver_request(), only, asked.pruning), apart)
+        found = _solved(system, Wanted(speed, *reach.solver_request(), asked.only, asked.pruning), apart)
         clock.lap("modes")
-        q = system.dofs.expand(found.vectors)
-        parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if asked.error_estimate else {}
-        count = len(found.eigenvalues)
-        estimate = total_error(parts, count) if asked.error_estimate else np.full(count, np.nan)
+        size = np.abs(found.eigenvalues)
+        estimate = np.full(len(size), np.nan)
+        parts = {}
+        if asked.error_estimate:
+            parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid)
+            estimate = total_error(parts, len(size))
         clock.lap("error estimate")
+        kept = reach.inside(size)
         if fixed:
             if asked.error_estimate:
-                estimate = enriched_errors(system, Wanted(speed, None, None, only, asked.pruning), found, estimate)
-            break
-        size = np.abs(found.eigenvalues)
+                estimate = enriched_errors(
+                    system, Wanted(speed, None, None, asked.only, asked.pruning), found, estimate
+                )
+            return system, found.first(kept), estimate[:kept]
         ended = reach.limit is not None and not found.is_complete  # by the highest frequency, not by the mesh
         if reach.modes is not None and len(size) < reach.modes and parts and not ended:
             # The mesh has fewer modes than asked for: every piece must be finer before any error can be estimated.
@@ -146,52 +226,20 @@ def modes_about(
                     f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: "
                     "ask for fewer (--modes)"
                 )
-            finer: Plan | None = all_finer(system)
+            finer = all_finer(system)
         else:
             watched = reach.watched(size, estimate)
             finer = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
         if finer is not None:
             system = system.with_plan(finer)
         elif reach.is_certain(size, estimate, found.is_complete):
-            break
+            return system, found.first(kept), estimate[:kept]
         else:
             reach = reach.further()
         clock.lap("refinement")
-    else:
-        raise ConvergenceError(
-            f"the accuracy of {target:g} was not reached within {_ROUNDS} refinements; ask for less, or for fewer modes"
-        )
-    reduction = reduction_errors(system, found.eigenvalues, found.vectors)
-    kept = reach.inside(np.abs(found.eigenvalues))
-    given = model.model if isinstance(model, System) else model
-    if isinstance(model, Model) and fmax is None and np.any(reduction[:kept] > NOTICED):
-        # How far a number of modes reaches is known now.
-        further, _ = serving(model, float(np.max(np.abs(found.eigenvalues[:kept]))) / (2.0 * np.pi))
-        if further is not model:
-            again = modes_about(further, replace(asked, modes=modes), state, progress)
-            return replace(again, model=given)
-    progress(0.9, "energies")
-    result = modal_result(
-        system, speed, (modes, fmax), found.first(kept), q[:, :kept], (estimate + reduction)[:kept], clock
+    raise ConvergenceError(
+        f"the accuracy of {target:g} was not reached within {_ROUNDS} refinements; ask for less, or for fewer modes"
     )
-    warnings = (*result.warnings, *short, *casing_warnings(reduction[:kept], found.eigenvalues))
-    progress(1.0, "done")
-    return replace(result, model=given, left_out=(*result.left_out, *system.state.notes), warnings=warnings)
-
-
-def _refined_undamped(system: System, reach: Reach, only: tuple[str, ...], target: float) -> System:
-    """The system on a mesh that is fine enough for its undamped modes at standstill, where these are enough."""
-    for _ in range(_ROUNDS):
-        found = solve(system, Wanted(None, *reach.solver_request(), only))
-        if reach.modes is not None and len(found.eigenvalues) < reach.modes:
-            return system
-        parts = errors_of(system, None, found.eigenvalues, found.vectors, found.rigid)
-        watched = reach.watched(np.abs(found.eigenvalues), total_error(parts, len(found.eigenvalues)))
-        finer = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
-        if finer is None:
-            return system
-        system = system.with_plan(finer)
-    return system
 
 
 def _solved(system: System, wanted: Wanted, apart: str) -> Modes:
@@ -212,3 +260,37 @@ def _solved(system: System, wanted: Wanted, apart: str) -> Modes:
             f"gathers overdamped modes without end at {gathers / (2.0 * np.pi):.4g} Hz; ask for modes below (--fmax, --modes)",
             error.partial,
         ) from error
+
+
+def _turned(shapes: np.ndarray) -> np.ndarray:
+    """Complex shapes, each mode's phase turned so that its largest displacement is real and positive.
+
+    An eigenvector has no phase of its own; without this choice the same mode would look different from run to run.
+    """
+    if shapes.shape[2] == 0:
+        return shapes.astype(complex)
+    peak = _largest(shapes[:, :3])
+    rotation = _largest(shapes[:, 3:])
+    # A mode that only tilts or twists has no displacement to speak of: its largest rotation is turned then.
+    peak = np.where(np.abs(peak) <= 1e-9 * np.abs(rotation), rotation, peak)
+    turn = np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
+    if np.iscomplexobj(shapes):
+        return np.asarray(shapes * turn)
+    turned = np.zeros(shapes.shape, dtype=complex)
+    np.multiply(shapes, turn, out=turned.real)
+    return turned
+
+
+def _largest(shapes: np.ndarray) -> np.ndarray:
+    """The entry of the largest size, the first of such, in each mode (m,) of shapes (p, d, m)."""
+    modes = shapes.shape[2]
+    found = np.zeros(modes, dtype=shapes.dtype)
+    size = np.full(modes, -1.0)
+    for nodes in stretches(len(shapes)):
+        part = shapes[nodes].reshape(-1, modes)
+        sizes = np.abs(part)
+        place = (sizes.argmax(axis=0), np.arange(modes))
+        larger = sizes[place] > size
+        found = np.where(larger, part[place], found)
+        size = np.where(larger, sizes[place], size)
+    return found

@@ -1,4 +1,4 @@
-"""Refines the shaft segmentss until every requested frequency is estimated to be within the wanted accuracy.
+"""Refines the mesh of the shafts until every requested frequency is estimated to be within the wanted accuracy.
 
 Order first (the error falls exponentially), then twice the elements. Only pieces that bring a share of the error are refined:
 a piece that no requested mode bends stays as it is.
@@ -6,8 +6,12 @@ a piece that no requested mode bends stays as it is.
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
+from rotorgear.analysis.modal.solve import Modes, Wanted, solve
+from rotorgear.errors import AnalysisError
 from rotorgear.system.bubble_errors import bubble_errors
 from rotorgear.system.plan import PieceKey, Plan
 from rotorgear.system.system import System
@@ -19,6 +23,13 @@ HIGHEST_ORDER = 10
 _SPLIT_ORDER = 6
 # The estimate is aimed at this share of the wanted accuracy, for its own uncertainty.
 _AIM = 0.5
+# Neighbouring elements begin to act on each other's errors, and close modes to change places, from about here: below, the
+# estimate from each element by itself was within a tenth of the error on all models, above it was off by up to a factor of two.
+ROUGH = 1e-3
+# Fewer elements than this in a piece may hide an error from the next orders, which then shows four orders up only.
+_FEW_ELEMENTS = 4
+_ROUGH_WITH_FEW = 1e-4
+_LARGEST = 2000  # dofs up to which a second solution is worth its time
 
 
 def total_error(parts: dict[PieceKey, np.ndarray], modes: int) -> np.ndarray:
@@ -84,3 +95,38 @@ def _finer(system: System, piece: PieceKey, excess: float) -> tuple[int, int]:
     if order + step <= HIGHEST_ORDER:
         return count, order + step
     return 2 * count, _SPLIT_ORDER
+
+
+def enriched_errors(system: System, wanted: Wanted, found: Modes, estimate: np.ndarray) -> np.ndarray:
+    """Estimated relative errors (m,): rough ones replaced by the difference from a mesh of four orders more.
+
+    Args:
+        system, wanted, found: the coarse mesh, what was asked of it, and its modes.
+        estimate: their estimated relative errors (m,); where it is infinite it stays so.
+    """
+    pieces = Counter((shaft, e.piece) for shaft, elements in system.nodes.elements.items() for e in elements)
+    limit = ROUGH if min(pieces.values(), default=0) >= _FEW_ELEMENTS else _ROUGH_WITH_FEW
+    rough = ~found.rigid & np.isfinite(estimate) & (estimate > limit)
+    if not rough.any() or system.n > _LARGEST:
+        return estimate
+    # Four orders more in every piece catch what an even or odd shape hides from the next ones; else more elements.
+    cut = {}
+    for shaft, elements in system.nodes.elements.items():
+        lumped = system.model.shafts[shaft].mass_matrix == "lumped"
+        for number, count in Counter(element.piece for element in elements).items():
+            order = next(element.order for element in elements if element.piece == number)
+            raised = not lumped and order + 4 <= HIGHEST_ORDER
+            cut[shaft, number] = (count, order + 4) if raised else (4 * count, order)
+    finer = system.with_plan(Plan(system.plan.elements, system.plan.order, cut))
+    asked = Wanted(wanted.speed, len(found.eigenvalues), None, wanted.only, wanted.pruning)
+    try:
+        truth = solve(finer, asked)
+    except AnalysisError:  # the coarse modes stand, with the estimate that they have
+        return estimate
+    count = min(len(truth.eigenvalues), len(estimate))
+    if not np.array_equal(truth.rigid[:count], found.rigid[:count]):
+        return estimate
+    exact = truth.eigenvalues[:count]
+    difference = np.zeros(len(estimate))
+    difference[:count] = np.abs(found.eigenvalues[:count] - exact) / np.where(exact != 0.0, np.abs(exact), 1.0)
+    return np.asarray(np.where(rough & (difference > 0.0), difference, estimate))

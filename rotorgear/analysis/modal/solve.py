@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
-import scipy.sparse as sp
+import scipy.linalg as la
 
-from rotorgear.analysis.modal.modes import Modes, Wanted
-from rotorgear.analysis.modal.rigid_basis import sorted_rigid
-from rotorgear.analysis.modal.undamped import kept_undamped
+from rotorgear.analysis.modal.problem import Problem
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
-from rotorgear.solvers.eigen.shift_invert import shifted_operator
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
-from rotorgear.system.assembly import StrainForms
 from rotorgear.system.components import dof_motions, groups_with_inertia, independent_groups
 from rotorgear.system.nodes import CASING, GEAR_BODY
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 # Backward error above which a damped mode is refused.
@@ -28,63 +21,60 @@ _LARGEST_RESIDUAL = 1e-8
 # square of a frequency must have for a count: rounding lies four decades below.
 _BEYOND = 1.0 + 1e-6
 _RESOLVED = 1e-12
-_LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
 
 
 @dataclass(frozen=True)
-class _Problem:
-    """M, D (None without such terms) and K of one group of dofs, and its strain factor S (None where a spring is indefinite).
+class Wanted:
+    """What a modal analysis is asked for.
 
-    `inertial` is the part alpha M + spin G of D and `forms()` what the rest of D and K are made of, both None without D and
-    circulatory terms. `symmetric` says whether K is, `damped` whether anything takes energy out, `guess` where the first elastic
-    eigenvalue may be, `dofs` names the dofs of a group, all of them where it is empty.
+    Attributes:
+        speed: of the reference shaft in rad/s; None is undamped at standstill.
+        modes: how many modes; limit: all of them up to this |s| in rad/s. None is no such limit.
+        only: motions that a group of dofs must have to be solved; empty for all.
+        pruning: False solves all dofs as one group, for comparison.
+        damped: False leaves out, at a speed, all that takes energy out or brings it in: what is left is gyroscopic.
+        dofs: of which a group must have one to be solved; None: all groups are.
     """
 
-    M: sp.csc_array
-    D: sp.csc_array | None
-    K: sp.csc_array
-    K_symmetric: sp.csc_array
-    S: sp.csr_array | None
-    symmetric: bool
-    damped: bool
-    inertial: sp.csc_array | None = None
-    forms: Callable[[], StrainForms] | None = None
-    guess: float | None = None
-    dofs: bytes = b""
+    speed: float | None
+    modes: int | None
+    limit: float | None
+    only: tuple[str, ...] = ()
+    pruning: bool = True
+    damped: bool = True
+    dofs: frozenset[int] | None = None
 
-    def cut(self, group: np.ndarray) -> _Problem:
-        """The problem of one group of dofs."""
-        if len(group) == self.M.shape[0]:
-            return self
 
-        place = np.full(self.M.shape[0], -1, dtype=self.M.indices.dtype)
-        place[group] = np.arange(len(group))
+@dataclass(frozen=True)
+class Modes:
+    """What the solvers give: eigenvalues s (m,), free shapes (n, m), rigid (m,), backward error (m,), sentences.
 
-        def cut_out(A: sp.csc_array) -> sp.csc_array:
-            # Only dofs of the group stand in the rows of its columns, but for stored zeros.
-            columns = A[:, group]
-            rows = place[columns.indices]
-            if rows.size and rows.min() < 0:
-                return sp.csc_array(columns[group])
-            return sp.csc_array((columns.data, rows, columns.indptr), shape=(len(group), len(group)))
+    `available` is the number of modes that the model has, None where it was not counted; `groups` says how the dofs fell apart.
+    """
 
-        D = None if self.D is None else cut_out(self.D)
-        D = None if D is None or not D.nnz else D
-        K = cut_out(self.K)
-        K_symmetric = K if self.K_symmetric is self.K else cut_out(self.K_symmetric)
-        S = None
-        if self.S is not None:
-            S = sp.csr_array(sp.csc_array(self.S)[:, group])
-            S = sp.csr_array(S[np.diff(S.indptr) > 0])
-        symmetric = self.symmetric or not (K - K_symmetric).nnz
-        damped = self.damped and D is not None and bool((D + D.T).nnz)
-        M = cut_out(self.M)
-        if D is None and symmetric:
-            return _Problem(M, D, K, K_symmetric, S, symmetric, damped, guess=self.guess, dofs=group.tobytes())
-        inertial = None if self.inertial is None else cut_out(self.inertial)
-        whole = self.forms
-        forms = None if whole is None else cache(lambda: whole().cut(group))
-        return _Problem(M, D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess, group.tobytes())
+    eigenvalues: np.ndarray
+    vectors: np.ndarray
+    rigid: np.ndarray
+    backward_error: np.ndarray
+    method: str
+    available: int | None
+    groups: tuple[str, ...] = ()
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether these are all the modes that the discretised model has."""
+        return self.available is not None and len(self.eigenvalues) >= self.available
+
+    def first(self, count: int) -> Modes:
+        """The first modes only."""
+        columns = slice(count)
+        return replace(
+            self,
+            eigenvalues=self.eigenvalues[columns],
+            vectors=self.vectors[:, columns],
+            rigid=self.rigid[columns],
+            backward_error=self.backward_error[columns],
+        )
 
 
 def solve(system: System, wanted: Wanted) -> Modes:
@@ -94,10 +84,9 @@ def solve(system: System, wanted: Wanted) -> Modes:
         AnalysisError: a dof has neither inertia nor stiffness, or no group has a motion that is asked for.
         ConvergenceError: a guard of a solver was not met.
     """
-    whole = _problem(system, wanted.speed) if wanted.damped else _conservative(system, wanted.speed or 0.0)
+    whole = Problem.at(system, wanted.speed, damped=wanted.damped)
     # Groups of dofs that no entry of M, D or K couples are eigenproblems of their own.
-    matrices = [A for A in (whole.K, whole.M, whole.D) if A is not None]
-    groups = independent_groups(matrices) if wanted.pruning else [np.arange(system.n)]
+    groups = independent_groups([whole.K, whole.M, whole.D]) if wanted.pruning else [np.arange(system.n)]
     groups, still = groups_with_inertia(system, groups, whole.D)
     motions = dof_motions(system)
     chosen = [group for group in groups if not wanted.only or set(motions[group]) & set(wanted.only)]
@@ -110,7 +99,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
         for group in chosen:
             problem = whole.cut(group)
             here = replace(wanted, limit=_reach(problem, solved, wanted))
-            solved.append(_solve_group(problem, here, system))
+            solved.append(_solve_group(problem, here))
     except LooseDofError as error:
         # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
         try:
@@ -124,7 +113,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
     return _merged(system, chosen, solved, wanted.modes, (*group_notes(motions, groups, chosen), *still))
 
 
-def _reach(problem: _Problem, solved: Sequence[Modes], wanted: Wanted) -> float | None:
+def _reach(problem: Problem, solved: Sequence[Modes], wanted: Wanted) -> float | None:
     """|s| in rad/s up to which the modes of a next group may be among those asked for; None: there is no such limit.
 
     The groups before it may have as many modes as were asked for already.
@@ -140,135 +129,28 @@ def _reach(problem: _Problem, solved: Sequence[Modes], wanted: Wanted) -> float 
     return reach if wanted.limit is None else min(reach, wanted.limit)
 
 
-def _problem(system: System, speed: float | None) -> _Problem:
-    """M, D, K of a system at a speed in rad/s; without one, undamped at standstill."""
-    at = speed or 0.0
-    circulatory = system.circulatory(at)
-    K_symmetric = system.stiffness(at)
-    K = sp.csc_array(K_symmetric + circulatory) if circulatory.nnz else K_symmetric
-    S = system.strain_factor(at)
-    if S is None and circulatory.nnz:
-        # A film at a small load: the symmetric part of its stiffness is no stable spring, while the whole and its damping may
-        # well be. Undamped modes serve to find rigid motions and the scale of frequencies only.
-        K_symmetric = system.definite_stiffness(at)
-    D = system.velocity_terms(speed)
-    is_plain = D is None and not circulatory.nnz
-    inertial = sp.csc_array(K.shape) if D is None else system.inertial_terms(at)
-
-    @cache
-    def forms() -> StrainForms:
-        whole = system.strain_forms(at)
-        return _without_viscosity(whole) if D is None else whole
-
-    guess = None
-    if system.n >= _LARGE:
-        # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
-        coarse = system.with_plan(Plan(1))
-        guess = shifted_operator(coarse.mass, coarse.stiffness()).elastic if coarse.n else None
-    return _Problem(
-        M=system.mass,
-        D=D,
-        K=K,
-        K_symmetric=K_symmetric,
-        S=S,
-        symmetric=not circulatory.nnz,
-        damped=speed is not None and bool(system.damping(at).nnz),
-        inertial=None if is_plain else inertial,
-        forms=None if is_plain else forms,
-        guess=guess,
-    )
-
-
-def _conservative(system: System, speed: float) -> _Problem:
-    """M, W G and the symmetric K of a system at a speed in rad/s: nothing damps and nothing drives."""
-    K = system.stiffness(speed)
-    G = sp.csc_array(speed * system.gyroscopic)
-    turns = speed != 0.0 and bool(G.nnz)
-
-    @cache
-    def forms() -> StrainForms:
-        whole = _without_viscosity(system.strain_forms(speed))
-        return replace(whole, circulation=0.0 * whole.circulation)
-
-    return _Problem(
-        M=system.mass,
-        D=G if turns else None,
-        K=K,
-        K_symmetric=K,
-        S=system.strain_factor(speed),
-        symmetric=True,
-        damped=False,
-        inertial=G if turns else None,
-        forms=forms if turns else None,
-    )
-
-
-def _without_viscosity(forms: StrainForms) -> StrainForms:
-    """The same strains, and nothing that damps them."""
-    return replace(forms, viscosity=0.0 * forms.viscosity)
-
-
-def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
-    if problem.D is None and problem.symmetric:
-        modes = _lowest(problem, wanted.modes, wanted.limit)
+def _solve_group(problem: Problem, wanted: Wanted) -> Modes:
+    if problem.is_undamped:
+        modes = problem.undamped(wanted.modes, wanted.limit)
         rigid = np.arange(len(modes.eigenvalues)) < modes.rigid_count
         s = 1j * np.where(rigid, 0.0, np.sqrt(modes.eigenvalues))
         highest = np.sqrt(max(modes.sturm_shift, 0.0)) / (2.0 * np.pi)
         method = f"undamped, {modes.method}, Sturm count {modes.sturm_count} of {modes.sturm_expected} below {highest:.6g} Hz"
-        vectors = modes.vectors
-        errors = modes.backward_error
-        available: int | None = modes.available
+        found = Modes(s, modes.vectors, rigid, modes.backward_error, method, modes.available)
     else:
-        s, vectors, rigid, errors, available, method = _damped(problem, wanted, system)
-    zeta = system.model.damping.modal_ratio
+        found = _damped(problem, wanted)
+    zeta = problem.system.model.damping.modal_ratio
     if zeta and wanted.speed is not None and wanted.damped:
-        s = with_modal_damping(s, zeta)
-    return Modes(s, vectors, rigid, errors, method, available)
+        return replace(found, eigenvalues=with_modal_damping(found.eigenvalues, zeta))
+    return found
 
 
-def _lowest(problem: _Problem, modes: int | None, limit: float | None, counted: bool = True) -> UndampedModes:
-    return lowest_modes(
-        problem.M,
-        problem.K_symmetric,
-        count=modes,
-        below=limit,
-        strain=problem.S,
-        guess=problem.guess,
-        counted=counted,
-    )
-
-
-def _damped(
-    problem: _Problem, wanted: Wanted, system: System
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int | None, str]:
-    """Eigenvalues, vectors of modal mass 1, rigid ones, backward errors, number of modes there are, and the method in words."""
+def _damped(problem: Problem, wanted: Wanted) -> Modes:
+    """The modes with damping, gyroscopic moments or circulatory terms; vectors of modal mass 1."""
     # Most models at standstill need none of these solvers.
-    from rotorgear.analysis.modal.damped_problem import DampedProblem
     from rotorgear.analysis.modal.damped_solve import damped_group
 
-    assert problem.forms is not None
-    assert problem.inertial is not None
-
-    def lowest(count: int | None, below: float | None, counted: bool = True) -> UndampedModes:
-        if problem.S is None:  # the stiffness of other springs is made definite, at some speeds
-            return _lowest(problem, count, below, counted)
-        request = (problem.dofs, count, below, counted)
-        return kept_undamped(system, request, lambda: _lowest(problem, count, below, counted))
-
-    modes, coordinates = damped_group(
-        DampedProblem(
-            M=problem.M,
-            D=sp.csc_array(problem.M.shape) if problem.D is None else problem.D,
-            K=problem.K,
-            K_symmetric=problem.K_symmetric,
-            inertial=problem.inertial,
-            strain=problem.S,
-            make_forms=problem.forms,
-            lowest=lowest,
-        ),
-        wanted.modes,
-        wanted.limit,
-    )
+    modes, coordinates = damped_group(problem, wanted.modes, wanted.limit)
     worst = float(modes.backward_error.max(initial=0.0))
     if worst > _LARGEST_RESIDUAL:
         raise ConvergenceError(
@@ -283,7 +165,7 @@ def _damped(
     vectors = modes.vectors / np.where(norm > 0.0, norm, 1.0)
     kind = " ".join(word for word, there in (("damped", problem.damped), ("gyroscopic", bool(wanted.speed))) if there)
     method = f"{kind or 'non-symmetric'} problem{coordinates}, {modes.method}"
-    return s, vectors, modes.rigid, modes.backward_error, len(s) if modes.complete else None, method
+    return Modes(s, vectors, modes.rigid, modes.backward_error, method, len(s) if modes.complete else None)
 
 
 def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
@@ -315,7 +197,7 @@ def _merged(
             vectors[groups[owner[k]], place] = solved[owner[k]].vectors[:, column[k]]
     if np.sum(rigid[order]) > 1:
         # Any combination of rigid motions is one: choose those that a person can read.
-        vectors[:, rigid[order]] = sorted_rigid(system, np.real(vectors[:, rigid[order]]))
+        vectors[:, rigid[order]] = _sorted_rigid(system, np.real(vectors[:, rigid[order]]))
     counts = [part.available for part in solved]
     available = None if any(count is None for count in counts) else sum(count for count in counts if count is not None)
     methods = list(dict.fromkeys(part.method for part in solved))
@@ -338,3 +220,30 @@ def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.n
             f"coupling between {len(chosen)} groups of dofs that do not act on each other, solved apart: {sizes}{more}"
         )
     return tuple(notes)
+
+
+def _sorted_rigid(system: System, R: np.ndarray) -> np.ndarray:
+    """Turn a basis of the rigid-body motions so that motions and shafts which do not move each other stand apart."""
+    everything = system.dofs.expand(R)
+    # A rigid casing is known by its seats, which count as nodes of shafts behind the last one.
+    seats = [
+        everything[system.nodes.of_seat(name, k)]
+        for name in system.model.casings
+        for k in range(len(system.layout.casing(name).seats))
+    ]
+    q = np.concatenate(
+        [everything[: 6 * len(system.nodes)].reshape(len(system.nodes), 6, R.shape[1]), *([seats] if seats else [])]
+    )
+    shafts = {name: k for k, name in enumerate(system.model.shafts)}
+    weight = np.array([1.0 + shafts[name] for name in system.nodes.shaft] + [1.0 + len(shafts)] * len(seats))
+    kinds = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 3.0]) * np.sqrt(2.0)
+    scaled = q * np.sqrt(np.outer(weight, kinds))[:, :, None]
+    flat = scaled.reshape(-1, q.shape[2])
+    plain = q.reshape(-1, q.shape[2])
+    try:
+        turned = R @ la.eigh(flat.T @ flat, plain.T @ plain)[1]
+    except la.LinAlgError:
+        # Inertias of more than 16 decades: motions that differ in the light parts only are one in all digits. Any basis serves.
+        return R
+    norm = np.sqrt(np.einsum("nm,nm->m", turned, system.mass @ turned))
+    return np.asarray(turned / np.where(norm > 0.0, norm, 1.0))

@@ -9,9 +9,8 @@ import numpy as np
 
 from rotorgear.analysis.common.request import FINEST
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
-from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
-from rotorgear.analysis.modal.solve import solve
+from rotorgear.analysis.modal.solve import Wanted, solve
 from rotorgear.model.layout.spring import constant_spring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model

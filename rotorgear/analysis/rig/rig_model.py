@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.modal.modes import Wanted
-from rotorgear.analysis.modal.solve import solve
+from rotorgear.analysis.modal.solve import Wanted, solve
 from rotorgear.analysis.sensitivity.derivatives import changes_of, frequency_slopes, shape_slopes
 from rotorgear.analysis.sensitivity.forms import Shapes
 from rotorgear.analysis.static.state_at import linear_system

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole
-from rotorgear.analysis.modal.modes import Wanted
-from rotorgear.analysis.modal.solve import solve
+from rotorgear.analysis.modal.solve import Wanted, solve
 from rotorgear.analysis.rig.compare import ABOVE_RIG
 from rotorgear.analysis.rig.likeness import mac
 from rotorgear.analysis.rig.rig_model import plan_of

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.modal import solve, undamped
+from rotorgear.analysis.modal import problem
 from rotorgear.system.system import System
 
 MODELS = Path(__file__).resolve().parents[3] / "models"
@@ -26,8 +26,8 @@ def searches(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         found.append(M.shape[0])
         return lowest(M, K, **wanted)
 
-    lowest = solve.lowest_modes
-    monkeypatch.setattr(solve, "lowest_modes", counting)
+    lowest = problem.lowest_modes
+    monkeypatch.setattr(problem, "lowest_modes", counting)
     return found
 
 
@@ -67,11 +67,11 @@ def test_a_stiffness_that_depends_on_speed_keeps_nothing(searches):
 def test_the_modes_go_with_their_system():
     system = System(rg.load(MODELS / "geared_pair.toml"), 2)
     rg.modal(system, speed=SPEEDS[0], modes=6, error_estimate=False)
-    assert system in undamped._kept
-    before = len(undamped._kept)
+    assert system in problem._kept
+    before = len(problem._kept)
     del system
     gc.collect()
-    assert len(undamped._kept) < before
+    assert len(problem._kept) < before
 
 
 def test_a_highest_frequency_below_all_modes_finds_none():
