@@ -16,8 +16,8 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.analysis.accuracy import STUDIES
-from rotorgear.analysis.modal.convergence import REFERENCE
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
+from rotorgear.analysis.studies.meshes import REFERENCE
 
 # Minutes: a hundred studies, each with a reference.
 LONG = True
@@ -225,7 +225,7 @@ def _of_models() -> list[Study]:
 def _of_analyses() -> list[Study]:
     found = []
     for name, analysis, options in CASES:
-        result = STUDIES[analysis].study(rg.load(ROOT / "models" / f"{name}.toml"), **options)
+        result = STUDIES[analysis](rg.load(ROOT / "models" / f"{name}.toml"), **options)
         assert isinstance(result, rg.ConvergenceStudy)
         at = f" at {options['speed']}" if "speed" in options else ""
         found.append(Study(name, analysis, at, result, (math.nan, math.nan)))

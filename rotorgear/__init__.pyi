@@ -63,12 +63,12 @@ from rotorgear.plots.view import view as view
 from rotorgear import plot as plot
 from rotorgear.page.report import report as report
 from rotorgear.analysis.accuracy import accuracy as accuracy
-from rotorgear.analysis.modal.convergence import convergence_study as convergence_study
-from rotorgear.analysis.casing.convergence import casing_convergence_study as casing_convergence_study
-from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study
-from rotorgear.analysis.sweep.convergence import sweep_convergence_study as sweep_convergence_study
-from rotorgear.analysis.orbits.convergence import orbits_convergence_study as orbits_convergence_study
-from rotorgear.analysis.teeth.convergence import mesh_convergence_study as mesh_convergence_study
+from rotorgear.analysis.studies.meshes import convergence_study as convergence_study
+from rotorgear.analysis.studies.casing import casing_convergence_study as casing_convergence_study
+from rotorgear.analysis.studies.motions import transient_convergence_study as transient_convergence_study
+from rotorgear.analysis.studies.motions import sweep_convergence_study as sweep_convergence_study
+from rotorgear.analysis.studies.motions import orbits_convergence_study as orbits_convergence_study
+from rotorgear.analysis.studies.parts import mesh_convergence_study as mesh_convergence_study
 from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
 
 # A force law of your own.

@@ -2,50 +2,45 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from rotorgear.analysis.bearing.convergence import bearing_convergence_study
-from rotorgear.analysis.campbell.convergence import campbell_convergence_study, critical_convergence_study
-from rotorgear.analysis.casing.convergence import casing_convergence_study
-from rotorgear.analysis.modal.convergence import convergence_study
-from rotorgear.analysis.orbits.convergence import orbits_convergence_study
-from rotorgear.analysis.response.convergence import frf_convergence_study, response_convergence_study
-from rotorgear.analysis.static.convergence import static_convergence_study
-from rotorgear.analysis.sweep.convergence import sweep_convergence_study
-from rotorgear.analysis.teeth.convergence import mesh_convergence_study
-from rotorgear.analysis.transient.convergence import transient_convergence_study
+from rotorgear.analysis.studies.casing import casing_convergence_study
+from rotorgear.analysis.studies.meshes import (
+    campbell_convergence_study,
+    convergence_study,
+    critical_convergence_study,
+    frf_convergence_study,
+    response_convergence_study,
+    static_convergence_study,
+)
+from rotorgear.analysis.studies.motions import (
+    orbits_convergence_study,
+    sweep_convergence_study,
+    transient_convergence_study,
+)
+from rotorgear.analysis.studies.parts import bearing_convergence_study, mesh_convergence_study
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy, MeshConvergenceStudy, SweepConvergenceStudy
 
 AnyStudy = ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy
-
-
-@dataclass(frozen=True)
-class _Entry:
-    """The study of an analysis, and what it takes besides the model."""
-
-    study: Callable[..., AnyStudy]
-    options: tuple[str, ...]
-
-
 # An analysis with a study of its own gets a line here; the command and its refusals follow from it.
-STUDIES = {
-    "modal": _Entry(convergence_study, ("speed", "modes", "reference")),
-    "campbell": _Entry(campbell_convergence_study, ("stop", "modes")),
-    "critical": _Entry(critical_convergence_study, ("stop",)),
-    "static": _Entry(static_convergence_study, ("speed",)),
-    "response": _Entry(response_convergence_study, ("fmax", "modal_damping")),
-    "frf": _Entry(frf_convergence_study, ("fmax", "at", "modal_damping")),
-    "mesh": _Entry(mesh_convergence_study, ("mesh", "torque")),
-    "bearing": _Entry(bearing_convergence_study, ("bearing", "speed")),
-    "transient": _Entry(transient_convergence_study, ("speed", "time", "modal_damping")),
-    "sweep": _Entry(sweep_convergence_study, ("speed",)),
-    "orbits": _Entry(orbits_convergence_study, ("speed", "excite")),
-    "casing": _Entry(casing_convergence_study, ("modes", "casing", "coupled", "finest")),
+STUDIES: dict[str, Callable[..., AnyStudy]] = {
+    "modal": convergence_study,
+    "campbell": campbell_convergence_study,
+    "critical": critical_convergence_study,
+    "static": static_convergence_study,
+    "response": response_convergence_study,
+    "frf": frf_convergence_study,
+    "mesh": mesh_convergence_study,
+    "bearing": bearing_convergence_study,
+    "transient": transient_convergence_study,
+    "sweep": sweep_convergence_study,
+    "orbits": orbits_convergence_study,
+    "casing": casing_convergence_study,
 }
 # Verbs that have no discretisation of their own, and where the errors of their numbers stand.
 _ELSEWHERE = {
@@ -117,7 +112,6 @@ def accuracy(
     if analysis not in STUDIES:
         names = list(STUDIES)
         raise AnalysisError(f"--analysis: got '{analysis}', expected {', '.join(names[:-1])} or {names[-1]}")
-    entry = STUDIES[analysis]
     arguments: dict[str, Any] = {
         "speed": speed,
         "stop": stop,
@@ -136,9 +130,10 @@ def accuracy(
         "excite": excite,
     }
     given = {name: value for name, value in arguments.items() if value is not None}
+    taken = {name: inspect.signature(study).parameters for name, study in STUDIES.items()}
     for name in given:
-        if name not in entry.options:
-            homes = [other for other, of in STUDIES.items() if name in of.options]
+        if name not in taken[analysis]:
+            homes = [other for other, parameters in taken.items() if name in parameters]
             spelled = _SPELLED.get(name, name).replace("_", "-")
             raise AnalysisError(f"--{spelled} belongs to --analysis {' or '.join(homes)}, not to {analysis}")
-    return entry.study(model, **given, progress=progress)
+    return STUDIES[analysis](model, **given, progress=progress)

@@ -59,7 +59,22 @@ ROOMS = {
         "rig": {"common", "modal", "response", "sensitivity", "static"},
         "casing": {"common"},
         "standards": {"campbell", "common", "modal", "response", "static"},
-        "": {"bearing", "campbell", "casing", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
+        "studies": {
+            *(
+                "bearing",
+                "campbell",
+                "casing",
+                "common",
+                "modal",
+                "orbits",
+                "response",
+                "static",
+                "sweep",
+                "teeth",
+                "transient",
+            ),
+        },
+        "": {"studies"},
     },
     "gears": {
         "geometry": set(),

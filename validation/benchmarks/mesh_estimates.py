@@ -23,8 +23,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.analysis.teeth.errors import ORDERS, error_parts
-from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, curves_at, solve_helices
-from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
+from rotorgear.analysis.teeth.request import Cycle, MeshRequest, SolvedHelices, curves_at, mesh_request, solve_helices
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair

@@ -28,7 +28,7 @@ from rotorgear.analysis.bearing.state import (
 )
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.static.solve import Equilibrated, LawState
 from rotorgear.analysis.static.state_at import state_at
@@ -127,9 +127,7 @@ def bearing(
         AnalysisError: no such bearing, or no equilibrium.
     """
     address = address_of(model, name)
-    given = speed_in_si(speed)
-    if given is None:
-        given = (model.operation.speed if model.operation else None) or 0.0
+    given = speed_or_operating(speed, model) or 0.0
     own = by_its_law(model, address)
     ratio = float(model.layout.train.ratio(getattr(model, address.partition(".")[0])[address.partition(".")[2]].shaft))
     films = [f"bearings.{one}" for one, bearing in own.bearings.items() if bearing.has_film]

@@ -9,6 +9,7 @@ from typing import overload
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, parse_quantity
 
 # Finest accuracy that can be asked for: below, rounding and the solvers' own errors take over.
@@ -27,6 +28,13 @@ def speed_in_si(given: float | str | None) -> float | None:
         return parse_quantity(given, "speed")
     except QuantityError as error:
         raise AnalysisError(f"speed: got {given!r}, expected {error}") from None
+
+
+def speed_or_operating(given: float | str | None, model: Model) -> float | None:
+    """The speed that is asked for in rad/s, that of operation where none is; None where the model has none either."""
+    if given is not None:
+        return speed_in_si(given)
+    return model.operation.speed if model.operation else None
 
 
 def direction_of(speed: float | None) -> int | None:

@@ -1,7 +1,9 @@
-"""Error against run time of any analysis: a series of settings, each run, timed and judged against a reference.
+"""Error against run time of any analysis. A study is a knob and its values (the settings), the quantity that is compared and what
+judges it, and a reference that stands for the truth.
 
-Times are CPU seconds of this process on one BLAS thread, the median of several runs; the first run, which warms caches up and
-counts memory, is not among them. A time whose quartiles lie far apart is noise, and the row says so.
+Every setting is run and timed. Times are CPU seconds of this process on one BLAS thread, the median of several runs; the first
+run, which warms caches up and counts memory, is not among them. A time whose quartiles lie far apart is noise, and the row
+says so.
 """
 
 from __future__ import annotations
@@ -9,25 +11,23 @@ from __future__ import annotations
 import time
 import tracemalloc
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from rotorgear.errors import RotorgearError
-from rotorgear.progress import Progress
-from rotorgear.results.convergence import Rung
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of
+from rotorgear.results.convergence import ConvergenceStudy, Rung
 from rotorgear.solvers.sparse.factor import single_thread
 
 R = TypeVar("R")
-# Numbers of basic elements in a shaft segment, and accuracies, that studies of a mesh go through.
-ELEMENTS = (1, 2, 4, 8, 16, 32)
-ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-9)
-# Runs that are timed: so many, more while they are short, fewer when one is long.
+# Runs that are timed at least; short ones are repeated up to the largest number, a long one is not repeated.
 REPEAT = 3
 _MOST = 9
 _SHORT = 0.3  # s of all runs together
-_LONG = 2.0  # s of one run, which is not repeated
+_LONG = 2.0  # s of one run
 # Difference of the quartiles over the median above which a time is noise.
 _NOISE = 0.25
 
@@ -65,45 +65,62 @@ class Cost:
         return float((high - low) / middle) if middle else 0.0
 
 
-def mesh_settings(elements: Sequence[int], accuracies: Sequence[float]) -> list[Setting]:
-    """Settings of a study over meshes: basic elements in each segment, then refinement to an accuracy."""
-    by_number = [
-        Setting(f"{n} basic element{'s'[: n != 1]} per segment", "elements", float(n), {"elements": n})
-        for n in elements
-    ]
-    return by_number + [Setting(f"accuracy {a:g}", "accuracy", a, {"accuracy": a}) for a in accuracies]
-
-
 @dataclass(frozen=True)
 class Study(Generic[R]):
-    """How an analysis is studied.
+    """A series of settings of one analysis, and how they are judged.
 
     Attributes:
+        settings: the values of the knob, or of several, one family after the other.
         run: the analysis with the options of a setting.
         judge: what its result is worth.
+        compared: the quantities that are compared, in words.
+        count: how many they are.
+        reference: what they are compared with, in words.
         resolution: relative error below which the reference, or rounding, decides, and no estimate can be judged.
         rising: families whose number divides the step, so that the error falls with its power: the order is measured there.
-        repeat: runs that are timed at least.
         below: what a row says whose error is below the resolution.
     """
 
+    settings: Sequence[Setting]
+    _: KW_ONLY
     run: Callable[[dict[str, Any]], R]
     judge: Callable[[R], Judged]
+    compared: str = ""
+    count: int = 0
+    reference: str = ""
     resolution: float
     rising: tuple[str, ...] = ("elements",)
-    repeat: int = REPEAT
     below: str = "below what the reference resolves"
 
-    def rungs(self, settings: Sequence[Setting], progress: Progress) -> tuple[Rung, ...]:
-        """Run all settings; one that does not come to an end stands as such in the table."""
+    def result(
+        self, analysis: str, model: Model, repeat: int, progress: Progress, also: Study[Any] | None = None
+    ) -> ConvergenceStudy:
+        """Run all settings, and then those of another study whose rows belong to the same table."""
+        half = 0.5 if also else 1.0
+        rungs = self.rungs(repeat, part_of(progress, 0.0, half))
+        if also:
+            rungs += also.rungs(repeat, part_of(progress, half, 1.0))
+        return ConvergenceStudy(
+            model.title or "model",
+            analysis,
+            self.reference,
+            self.count,
+            rungs,
+            compared=self.compared,
+            resolution=self.resolution,
+        )
+
+    def rungs(self, repeat: int, progress: Progress) -> tuple[Rung, ...]:
+        """Run all settings, each timed `repeat` times at least; one that does not converge has a row that says so."""
         found: list[Rung] = []
-        for number, setting in enumerate(settings):
-            progress(number / len(settings), setting.method)
+        for number, setting in enumerate(self.settings):
+            progress(number / len(self.settings), setting.method)
             before = found[-1] if found and found[-1].family == setting.family else None
             try:
-                result, cost = measured(lambda: self.run(setting.options), self.repeat)  # noqa: B023
+                result, cost = measured(lambda: self.run(setting.options), repeat)  # noqa: B023
             except RotorgearError as error:
-                found.append(_failed(setting, str(error)))
+                which = (setting.method, setting.family, setting.number)
+                found.append(Rung(*which, 0, np.nan, np.inf, np.inf, None, notes=(f"not reached: {error}",)))
                 continue
             found.append(self._rung(setting, self.judge(result), cost, before))
         progress(1.0, "done")
@@ -117,6 +134,7 @@ class Study(Generic[R]):
         if before is not None and np.isfinite(error + coarser) and min(error, coarser) > self.resolution:
             # error ~ h^p with the step h ~ 1 / n: p = log(e_1 / e_2) / log(n_2 / n_1)
             order = float(np.log(coarser / error) / np.log(setting.number / before.setting))
+        resolved = np.isfinite(error) and np.isfinite(estimate) and error > self.resolution
         notes = []
         if error <= self.resolution:
             notes.append("exact: error and estimate are 0" if max(error, estimate) == 0.0 else self.below)
@@ -124,7 +142,11 @@ class Study(Generic[R]):
             notes.append("accuracy missed")
         if cost.spread > _NOISE:
             notes.append("time is noise")
-        smallest, largest = self._range(judged)
+        # Quantities that have estimates of their own have effectivities of their own.
+        told = np.zeros(0, bool)
+        if judged.estimate.shape == judged.error.shape:
+            told = np.isfinite(judged.error) & np.isfinite(judged.estimate) & (judged.error > self.resolution)
+        ratio = judged.estimate[told] / judged.error[told] if told.any() else None
         return Rung(
             method=setting.method,
             family=setting.family,
@@ -137,28 +159,11 @@ class Study(Generic[R]):
             spread=cost.spread,
             timed=len(cost.seconds),
             memory=cost.memory,
-            effectivity=effectivity(error, estimate, self.resolution),
-            effectivity_smallest=smallest,
-            effectivity_largest=largest,
+            effectivity=estimate / error if resolved else None,
+            effectivity_smallest=None if ratio is None else float(ratio.min()),
+            effectivity_largest=None if ratio is None else float(ratio.max()),
             notes=tuple(notes),
         )
-
-    def _range(self, judged: Judged) -> tuple[float | None, float | None]:
-        """Smallest and largest effectivity of single quantities that have an estimate of their own."""
-        if judged.estimate.shape != judged.error.shape:
-            return None, None
-        told = np.isfinite(judged.error) & np.isfinite(judged.estimate) & (judged.error > self.resolution)
-        if not told.any():
-            return None, None
-        ratio = judged.estimate[told] / judged.error[told]
-        return float(ratio.min()), float(ratio.max())
-
-
-def effectivity(error: float, estimate: float, resolution: float) -> float | None:
-    """Estimate over error; None where one of them means nothing."""
-    if not (np.isfinite(error) and np.isfinite(estimate)) or error <= resolution:
-        return None
-    return estimate / error
 
 
 def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, Cost]:
@@ -185,17 +190,3 @@ def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, Cost]:
             if seconds[-1] > _LONG:
                 break
     return result, Cost(np.array(seconds or [first]), memory)
-
-
-def _failed(setting: Setting, why: str) -> Rung:
-    return Rung(
-        method=setting.method,
-        family=setting.family,
-        setting=setting.number,
-        dofs=0,
-        seconds=float("nan"),
-        error=float("inf"),
-        estimate=float("inf"),
-        order=None,
-        notes=(f"not reached: {why}",),
-    )

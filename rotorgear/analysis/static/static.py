@@ -14,7 +14,7 @@ from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_in_si
+from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_or_operating
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
@@ -73,9 +73,7 @@ def static(
         ConvergenceError: shafts and loads along the faces don't come to agree.
     """
     start = time.perf_counter()
-    given = speed_in_si(speed)
-    if given is None and model.operation:
-        given = model.operation.speed
+    given = speed_or_operating(speed, model)
     check_request(given, None, None, elements, accuracy)
     if tilt:
         model = _with_tilt(model)

@@ -23,8 +23,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from rotorgear.analysis.teeth.helices import SolvedHelices, curves_at
-from rotorgear.analysis.teeth.request import MeshRequest
+from rotorgear.analysis.teeth.request import MeshRequest, SolvedHelices, curves_at
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize

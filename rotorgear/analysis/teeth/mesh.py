@@ -10,8 +10,7 @@ import numpy as np
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
-from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
-from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
+from rotorgear.analysis.teeth.request import Cycle, MeshRequest, SolvedHelices, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space

@@ -1,21 +1,143 @@
-"""The verb behind `rotorgear mesh-map`: one mesh over torque and misalignment."""
+"""The verb behind `rotorgear mesh-map`: one mesh over torque and misalignment.
+
+What a mesh does at one torque and misalignment, in a few figures: what maps and optimisations ask for again and again.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
-from rotorgear.analysis.teeth.operating_points import mesh_figures, one_kind_of_model, operating_axes, operating_values
-from rotorgear.analysis.teeth.request import mesh_request
+from rotorgear.analysis.teeth.request import Cycle, MeshRequest, mesh_request, solve_helices
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.loaded.face import load_per_width
 from rotorgear.gears.loaded.tooth_contact import contact_problem
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
+from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.mesh_map import MeshMap
+
+ORDERS = 3
+# What operating points differ in, with the dimension of its values.
+AXES = {"torque": "torque", "misalignment": "length"}
+# Places along the face at which the load per width is compared with its mean.
+_PLACES = 32
+# More points are a slip of the keyboard.
+_MOST_POINTS = 10_000
+
+
+@dataclass(frozen=True)
+class MeshFigures:
+    """One operating point.
+
+    Attributes:
+        ste_peak_to_peak: of the transmission error (m), mean of the helices.
+        ste_harmonics: (3,) amplitudes of its first mesh orders (m).
+        largest_pressure: of both helices (Pa).
+        face_load_factor: K_Hbeta, largest load per width over the mean one, mean of the mesh cycle; the larger of both helices.
+        mean_stiffness: transverse, of all helices (N/m).
+        dofs: of the finite elements.
+        warnings: sentences.
+    """
+
+    ste_peak_to_peak: float
+    ste_harmonics: np.ndarray
+    largest_pressure: float
+    face_load_factor: float
+    mean_stiffness: float
+    dofs: int
+    warnings: tuple[str, ...]
+
+
+def mesh_figures(
+    request: MeshRequest, teeth: ToothPair, torque: float, positions: int, progress: Progress = silent
+) -> MeshFigures:
+    """Solve one mesh period.
+
+    Args:
+        request: the mesh, whose flanks are those of the sense of its load.
+        teeth: of one helix, with the flanks and the misalignment to be looked at.
+        torque: on the pinion (N m), of the same sense as that of the request.
+        positions: in the mesh period.
+        progress: told how far it is.
+    """
+    base_force = abs(torque) / request.mesh.pinion.base_radius / request.helices
+    found = solve_helices(request, teeth, base_force, Cycle(positions), progress)
+    normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
+    places = min(_PLACES, found.problem.slices)
+    factors = [
+        float(load_per_width(cycle, teeth.width, places)[1].max()) * teeth.width / normal_force
+        for cycle in found.cycles
+    ]
+    notes = [note for cycle in found.cycles for note in cycle.warnings]
+    return MeshFigures(
+        ste_peak_to_peak=float(np.ptp(found.error)),
+        ste_harmonics=np.abs(found.curve.harmonics(ORDERS)[:, 0]),
+        largest_pressure=float(found.curve.values[:, 3].max()),
+        face_load_factor=max(factors),
+        mean_stiffness=float(found.curve.mean()[1]),
+        dofs=found.problem.unknowns,
+        warnings=tuple(dict.fromkeys((*found.problem.warnings, *notes))),
+    )
+
+
+def operating_values(given: Mapping[str, object], name: str) -> np.ndarray | None:
+    """Values (n,) of an axis in SI from numbers or texts with units; None where it is not given.
+
+    Raises:
+        AnalysisError: no values, or some that are none.
+    """
+    if name not in given:
+        return None
+    values = given[name]
+    listed = values if isinstance(values, list | tuple | np.ndarray) else [values]
+    try:
+        found = np.array([parse_quantity(value, AXES[name]) for value in listed], float)
+    except QuantityError as error:
+        raise AnalysisError(f"over {name}: got {values!r}, expected {error}") from None
+    if not len(found) or not np.isfinite(found).all():
+        raise AnalysisError(f"over {name}: got {values!r}, expected at least one finite value")
+    return found
+
+
+def operating_axes(over: Mapping[str, object], request: MeshRequest) -> tuple[np.ndarray, np.ndarray]:
+    """Torques (t,) in N m and misalignments (m,) in m, rising; what is not given is that of the request.
+
+    Raises:
+        AnalysisError: another axis, torques of both senses or of none, too many points, or no torque at all.
+    """
+    for name in over:
+        if name not in AXES:
+            raise AnalysisError(f"over: there is no '{name}'; a mesh is looked at over {' and '.join(AXES)}.")
+    assert request.teeth is not None
+    torque = operating_values(over, "torque")
+    if torque is None:
+        if request.load is None:
+            raise AnalysisError(f"meshes.{request.name} carries no torque: give over torque, or --torque.")
+        torque = np.array([request.load.pinion_torque_n_m])
+    if not ((torque > 0.0).all() or (torque < 0.0).all()):
+        raise AnalysisError(
+            "over torque: the torques must have one sense, and none of them be zero: the other flanks differ."
+        )
+    misalignment = operating_values(over, "misalignment")
+    if misalignment is None:
+        misalignment = np.array([request.teeth.misalignment])
+    if len(torque) * len(misalignment) > _MOST_POINTS:
+        raise AnalysisError(f"over: {len(torque)} x {len(misalignment)} points are more than {_MOST_POINTS}.")
+    return np.unique(torque), np.unique(misalignment)
+
+
+def one_kind_of_model(teeth: ToothPair, misalignment: np.ndarray) -> ToothPair:
+    """The teeth with one finite-element model for all misalignments: a map must have no seam where one of them is zero."""
+    if np.any(misalignment) and teeth.fe.preset != "preview" and teeth.fe.space is None:
+        return replace(teeth, fe=replace(teeth.fe, space=True))
+    return teeth
 
 
 @recorded

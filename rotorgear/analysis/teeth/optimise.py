@@ -27,7 +27,7 @@ from rotorgear.analysis.teeth.flank_variables import (
     with_values,
 )
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
-from rotorgear.analysis.teeth.operating_points import (
+from rotorgear.analysis.teeth.mesh_map import (
     MeshFigures,
     mesh_figures,
     one_kind_of_model,

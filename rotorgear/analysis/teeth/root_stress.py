@@ -12,8 +12,7 @@ import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.teeth.helices import Cycle, solve_helices
-from rotorgear.analysis.teeth.request import mesh_request
+from rotorgear.analysis.teeth.request import Cycle, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import root_section, tooth_outline
 from rotorgear.gears.loaded.contact_points import patch_loads

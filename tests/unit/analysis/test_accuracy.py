@@ -42,9 +42,9 @@ def test_an_analysis_is_measured_by_its_own_estimate_and_by_the_reference() -> N
         found = exact * (1.0 + np.array([0.5, 1.0]) * h**2)
         return Judged(3, np.abs(found / exact - 1.0), np.array([0.6, 1.1]) * h**2)
 
-    study = Study(lambda options: options["h"], judge, 1e-9, repeat=1)
     settings = [Setting(f"h 1/{n}", "elements", float(n), {"h": 1.0 / n}) for n in (2, 4)]
-    coarse, fine = study.rungs(settings, lambda fraction, step: None)
+    study = Study(settings, run=lambda options: options["h"], judge=judge, resolution=1e-9)
+    coarse, fine = study.rungs(1, lambda fraction, step: None)
     assert fine.order == pytest.approx(2.0)
     assert (coarse.error, coarse.estimate) == pytest.approx((0.25, 0.275))
     assert coarse.effectivity == pytest.approx(1.1)
@@ -55,8 +55,9 @@ def test_a_rung_that_does_not_converge_stands_as_such() -> None:
     def run(options: dict[str, Any]) -> float:
         raise ConvergenceError("no root")
 
-    study = Study(run, lambda result: Judged(1, np.zeros(1), np.zeros(1)), 1e-9)
-    (rung,) = study.rungs([Setting("accuracy 1e-9", "accuracy", 1e-9)], lambda fraction, step: None)
+    settings = [Setting("accuracy 1e-9", "accuracy", 1e-9)]
+    study = Study(settings, run=run, judge=lambda result: Judged(1, np.zeros(1), np.zeros(1)), resolution=1e-9)
+    (rung,) = study.rungs(1, lambda fraction, step: None)
     assert rung.error == float("inf")
     assert rung.notes == ("not reached: no root",)
 
@@ -68,7 +69,7 @@ def test_memory_of_a_run_is_that_of_its_arrays() -> None:
 
 def test_critical_speeds_carry_the_error_of_the_speed_and_not_of_the_frequency() -> None:
     # Gyroscopic moments: the error of the crossing is that of the frequency at a held speed over 1 - d(frequency)/d(speed).
-    study = STUDIES["critical"].study(overhung_disk(), elements=(2, 4), accuracies=(), repeat=0)
+    study = STUDIES["critical"](overhung_disk(), elements=(2, 4), accuracies=(), repeat=0)
     within(study, 0.8, 1.25)
     falls_with_order(study, 1.5)
     last = rg.critical(overhung_disk(), elements=2).speeds[-1]
@@ -95,7 +96,7 @@ def test_a_free_rotation_of_a_fine_mesh_is_no_critical_speed() -> None:
 
 @pytest.mark.long
 def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> None:
-    study = STUDIES["campbell"].study(overhung_disk(), modes=6, **SHORT)
+    study = STUDIES["campbell"](overhung_disk(), modes=6, **SHORT)
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.5)
 
@@ -103,20 +104,20 @@ def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> Non
 @pytest.mark.long
 @pytest.mark.parametrize("analysis", ["response", "frf"])
 def test_amplitudes_are_held_to_those_of_a_mesh_of_high_order(analysis: str) -> None:
-    study = STUDIES[analysis].study(overhung_disk(), modal_damping=0.01, **SHORT)
+    study = STUDIES[analysis](overhung_disk(), modal_damping=0.01, **SHORT)
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.5)
     assert study.rungs[-1].error <= 1e-3
 
 
 def test_a_model_in_torsion_alone_has_its_response_between_rotations() -> None:
-    study = STUDIES["frf"].study(rg.load("models/backlash_pair.toml"), **SHORT)
+    study = STUDIES["frf"](rg.load("models/backlash_pair.toml"), **SHORT)
     assert study.rungs[0].dofs == 2
     assert study.rungs[0].error == 0.0
 
 
 def test_statics_of_the_basic_element_are_exact() -> None:
-    study = STUDIES["static"].study(overhung_disk(), **SHORT)
+    study = STUDIES["static"](overhung_disk(), **SHORT)
     assert max(rung.error for rung in study.rungs) < 1e-11
     assert all("rounding only" in rung.notes for rung in study.rungs)
 

@@ -13,8 +13,7 @@ import scipy.sparse.linalg as spl
 import rotorgear as rg
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.teeth.errors import error_parts
-from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
-from rotorgear.analysis.teeth.request import mesh_request
+from rotorgear.analysis.teeth.request import Cycle, SolvedHelices, mesh_request, solve_helices
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize

@@ -30,7 +30,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.convergence import ConvergenceStudy, Rung
+from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.solvers.sparse.large import factor_positive
 from rotorgear.system.assembly import assemble
 from rotorgear.system.system import flow_system
@@ -129,7 +129,7 @@ MODES = 8
 FINEST = 300_000
 # Fixed-interface modes of the rungs.
 FIXED = (5, 10, 20, 40)
-# Splitting an element in eight makes so many times as many unknowns, about.
+# Splitting an element in eight multiplies the unknowns by about as much.
 _EIGHT = 8.0
 # What Lanczos leaves of the frequencies of a whole mesh.
 _RESOLVED = 1e-9
@@ -182,28 +182,18 @@ def casing_convergence_study(
             f"casings.{name}: its mesh has {fe.dofs} unknowns, and one split in eight to compare with has more than "
             f"{finest}. Study a coarser mesh of the same body, or raise finest."
         )
-    kept = _fixed_limits(fe, fixed)
-    if coupled:
-        rungs, reference = _of_gearbox(model, name, modes, finer, kept, repeat, progress)
-        compared = "frequencies of the gearbox"
-    else:
-        rungs, reference = _of_casing(fe, modes, finer, kept, repeat, progress)
-        compared = "frequencies of the casing"
-    words, resolution = reference
-    return ConvergenceStudy(
-        model.title or "model", "casing", words, modes, rungs, compared=compared, resolution=resolution
-    )
+    fixed_modes = [
+        Setting(f"{n} fixed modes", "fixed modes", float(n), {"modes_to": limit})
+        for n, limit in _fixed_limits(fe, fixed)
+    ]
+    studies = _of_gearbox(model, name, modes, finer, progress) if coupled else _of_casing(fe, modes, finer, progress)
+    meshes, reductions = studies
+    also = replace(reductions, settings=fixed_modes)
+    return meshes.result("casing", model, repeat, part_of(progress, 0.4, 1.0), also)
 
 
-def _of_casing(
-    fe: FiniteElementBody,
-    count: int,
-    finer: int,
-    kept: list[tuple[int, float]],
-    repeat: int,
-    progress: Progress,
-) -> tuple[tuple[Rung, ...], tuple[str, float]]:
-    """Rungs of a casing by itself, and what the meshes are compared with."""
+def _of_casing(fe: FiniteElementBody, count: int, finer: int, progress: Progress) -> tuple[Study[Any], Study[Any]]:
+    """Studies of a casing by itself: of its meshes, and of its reductions, whose settings are those of any casing."""
     settings = fe.settings
 
     def solved(body: FiniteElementBody) -> tuple[FiniteElementBody, MeshModes]:
@@ -224,61 +214,66 @@ def _of_casing(
         estimate = np.full(count, np.nan) if linear else _relative(body, modes)
         return Judged(body.dofs, np.abs(modes.frequency / truth - 1.0), estimate)
 
-    meshes = Study(run, judge, resolution, repeat=repeat)
     # Joins and mounts are on nodes in the middle of edges too.
     plain = not settings.joins and not settings.mounts
     order = [Setting("linear elements", "order", 1.0, {"splits": 0, "linear": True})] if plain else []
-    rungs = meshes.rungs([*order, *_splits(finer)], part_of(progress, 0.3, 0.7))
+    meshes = Study(
+        [*order, *(Setting(words, "elements", 2.0**k, {"splits": k}) for k, words in _splits(finer))],
+        run=run,
+        judge=judge,
+        compared="frequencies of the casing",
+        count=count,
+        reference=words,
+        resolution=resolution,
+    )
     whole = solved(fe)[1].frequency
 
     def reduced(options: dict[str, Any]) -> Judged:
         body, _ = reduce(fe, options["modes_to"])
         frequency, shapes = body.modes()
-        own = np.flatnonzero(np.arange(body.size) >= (0 if body.held else 6))[:count]
-        stated = [body.eigenvalue_error((2.0 * np.pi * frequency[k]) ** 2, shapes[:, k]) or 0.0 for k in own]
-        return Judged(body.size, np.abs(frequency[own] / whole - 1.0), 0.5 * np.array(stated))
+        elastic = np.flatnonzero(np.arange(body.size) >= (0 if body.held else 6))[:count]
+        stated = [body.eigenvalue_error((2.0 * np.pi * frequency[k]) ** 2, shapes[:, k]) or 0.0 for k in elastic]
+        return Judged(body.size, np.abs(frequency[elastic] / whole - 1.0), 0.5 * np.array(stated))
 
-    reductions = Study(reduced, _itself, _RESOLVED, rising=(), repeat=repeat)
-    return rungs + reductions.rungs(_fixed(kept), part_of(progress, 0.7, 1.0)), (words, resolution)
+    return meshes, Study([], run=reduced, judge=lambda found: found, resolution=_RESOLVED, rising=())
 
 
-def _of_gearbox(
-    model: Model,
-    name: str,
-    count: int,
-    finer: int,
-    kept: list[tuple[int, float]],
-    repeat: int,
-    progress: Progress,
-) -> tuple[tuple[Rung, ...], tuple[str, float]]:
-    """Rungs of a gearbox with its casing, and what the meshes are compared with."""
-    at = f"casings.{name}"
-    own = casing_settings(model, name)
+def _of_gearbox(model: Model, name: str, count: int, finer: int, progress: Progress) -> tuple[Study[Any], Study[Any]]:
+    """Studies of a gearbox with its casing: of the casing's meshes, and of its reductions."""
+    settings = casing_settings(model, name)
     whole = whole_frequencies(model, name, count)
     # Reductions of the meshes to compare are so good that what differs is the mesh.
-    limit = max(4.0 * float(whole[-1]), own.modes_to or 0.0)
+    limit = max(4.0 * float(whole[-1]), settings.modes_to or 0.0)
 
     def run(options: dict[str, Any]) -> CoupledModes:
-        return reduced_modes(model.with_({f"{at}.{key}": value for key, value in options.items()}), name, count)
+        return reduced_modes(
+            model.with_({f"casings.{name}.{key}": value for key, value in options.items()}), name, count
+        )
+
+    def refined(k: int) -> dict[str, Any]:
+        return {"splits": settings.splits + k, "modes_to": limit}
 
     progress(0.0, "reference")
-    finest = run({"splits": own.splits + finer, "modes_to": limit})
+    finest = run(refined(finer))
     truth, words, resolution = _reference(finest.frequency, finest.mesh_error + finest.reduction_error, finest.dofs)
-
-    def judge(found: CoupledModes) -> Judged:
-        return Judged(found.dofs, np.abs(found.frequency / truth - 1.0), found.mesh_error + found.reduction_error)
-
-    settings = [
-        replace(one, options={"splits": own.splits + one.options["splits"], "modes_to": limit})
-        for one in _splits(finer)
-    ]
-    rungs = Study(run, judge, resolution, repeat=repeat).rungs(settings, part_of(progress, 0.4, 0.7))
-
-    def reduced(found: CoupledModes) -> Judged:
-        return Judged(found.dofs, np.abs(found.frequency / whole - 1.0), found.reduction_error)
-
-    reductions = Study(run, reduced, _RESOLVED, rising=(), repeat=repeat)
-    return rungs + reductions.rungs(_fixed(kept), part_of(progress, 0.7, 1.0)), (words, resolution)
+    meshes = Study(
+        [Setting(words, "elements", 2.0**k, refined(k)) for k, words in _splits(finer)],
+        run=run,
+        judge=lambda found: Judged(
+            found.dofs, np.abs(found.frequency / truth - 1.0), found.mesh_error + found.reduction_error
+        ),
+        compared="frequencies of the gearbox",
+        count=count,
+        reference=words,
+        resolution=resolution,
+    )
+    return meshes, Study(
+        [],
+        run=run,
+        judge=lambda found: Judged(found.dofs, np.abs(found.frequency / whole - 1.0), found.reduction_error),
+        resolution=_RESOLVED,
+        rising=(),
+    )
 
 
 def _reference(frequency: np.ndarray, error: np.ndarray, dofs: int) -> tuple[np.ndarray, str, float]:
@@ -291,14 +286,10 @@ def _reference(frequency: np.ndarray, error: np.ndarray, dofs: int) -> tuple[np.
     return frequency * (1.0 - error), words, _LEFT * largest
 
 
-def _splits(finer: int) -> list[Setting]:
-    """Meshes coarser than the reference."""
+def _splits(finer: int) -> list[tuple[int, str]]:
+    """Meshes coarser than the reference: how often each element is split in eight, and what the row says."""
     names = ("the file's mesh", "elements split once", "split twice", "split three times")
-    return [Setting(names[k], "elements", float(2**k), {"splits": k}) for k in range(min(finer, len(names)))]
-
-
-def _fixed(kept: list[tuple[int, float]]) -> list[Setting]:
-    return [Setting(f"{n} fixed modes", "fixed modes", float(n), {"modes_to": limit}) for n, limit in kept]
+    return list(enumerate(names))[:finer]
 
 
 def _fixed_limits(fe: FiniteElementBody, fixed: tuple[int, ...]) -> list[tuple[int, float]]:
@@ -323,7 +314,3 @@ def _linear(fe: FiniteElementBody) -> FiniteElementBody:
 
 def _relative(fe: FiniteElementBody, modes: MeshModes) -> np.ndarray:
     return np.asarray(0.5 * eigenvalue_errors(fe, modes.eigenvalues, modes.shapes) / modes.eigenvalues)
-
-
-def _itself(found: Judged) -> Judged:
-    return found

@@ -1,0 +1,1 @@
+"""Convergence studies: each analysis over a series of its discretisations, against a reference."""

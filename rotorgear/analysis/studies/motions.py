@@ -1,0 +1,373 @@
+"""Studies of motions: steps, methods and modes of a transient, steps and length of a point of a sweep, and harmonics and instants
+of a periodic motion."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.common.discretise import plan_in_time
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
+from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
+from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
+from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, equations_of, scale_of
+from rotorgear.analysis.orbits.places import told_of
+from rotorgear.analysis.orbits.refined import change
+from rotorgear.analysis.orbits.start import run_periods
+from rotorgear.analysis.sweep.sweep import sweep
+from rotorgear.analysis.transient.transient import transient
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.convergence import ConvergenceStudy, SweepConvergenceStudy, SweepRung
+from rotorgear.results.sweep import SweepResult
+from rotorgear.results.transient import TransientResult
+from rotorgear.solvers.periodic.arclength import at_value
+from rotorgear.solvers.periodic.balance import Grid
+from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
+from rotorgear.solvers.periodic.shooting import ShootingOrbits
+from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.system.system import flow_system
+
+_ROUNDING = 1e-9
+
+# Of a transient: methods, shares of all modes, steps of the reference in a period of the fastest mesh.
+_METHODS = ("newmark", "generalised-alpha", "exponential")
+_SHARES = (0.25, 0.5)
+_REFERENCE_STEPS = 5120
+_RECORDS = 40
+_PERIODS = 8
+
+
+@recorded
+def transient_convergence_study(
+    model: Model,
+    *,
+    speed: float | str | None = None,
+    time: float | str | None = None,
+    modal_damping: float | None = None,
+    steps: Sequence[int] = (40, 80, 160, 320, 640),
+    accuracies: Sequence[float] = (1e-2, 1e-3, 1e-4),
+    repeat: int = 1,
+    progress: Progress = silent,
+) -> ConvergenceStudy:
+    """Run a transient from its equilibrium over a series of steps, methods and numbers of modes, and to accuracies.
+
+    Error and estimate are those of the statistics that a transient states an error for: mean, rms, largest and smallest of every
+    contact force, loss and coast, transmission error and approach peak to peak, each relative to its own size, and rms of every
+    channel, relative to the largest of its kind. The reference is the exponential method with all modes
+    and 5120 steps in a period of the fastest mesh, another method than Newmark's family; it is compared with Newmark's method at
+    as many steps, and errors below their difference are not judged.
+
+    Args:
+        model, speed, modal_damping: as for `transient`. Damping by modes leaves only the exponential method.
+        time: duration in s or as a text; 8 periods of the slowest mesh where not given.
+        steps: numbers of steps in a period of the fastest mesh, multiples of 40.
+        accuracies: accuracies that the analysis chooses its step for itself.
+        repeat: runs of each rung that are timed at least.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a model without meshes, or without excitation.
+    """
+    if not model.meshes:
+        raise AnalysisError("the convergence study of a transient compares contact forces: the model has no mesh")
+    system = flow_system(model, plan_in_time())
+    fixed: dict[str, Any] = {"speed": speed, "discard": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
+    if time is None:
+        # Any transient knows its mesh frequencies: the shortest one, without modal damping, which Newmark can't take.
+        bare = fixed | {"modal_damping": 0.0, "time": 1e-4}
+        short = transient(system, method="newmark", steps=_RECORDS, error_estimate=False, **bare)
+        time = _PERIODS / min(short.mesh_frequency.values())
+    fixed["time"] = time
+    fine: dict[str, Any] = {"steps": _REFERENCE_STEPS, "error_estimate": False, **fixed}
+    damped = model.damping.modal_ratio if modal_damping is None else modal_damping
+    progress(0.0, "reference")
+    truth = transient(system, method="exponential", **fine)
+    if truth.mesh_force.std(axis=0).max() <= 1e-9 * np.abs(truth.mesh_force).max():
+        raise AnalysisError("nothing moves: give a transmission error, a stiffness variation or an unbalance")
+    known = np.isfinite(truth.quantity_scale) & (truth.quantity_scale > 0.0)
+
+    def errors(found: TransientResult) -> np.ndarray:
+        difference = np.abs(found.quantity_value[known] - truth.quantity_value[known])
+        return np.asarray(difference / truth.quantity_scale[known])
+
+    words = f"the exponential method with all modes and {_REFERENCE_STEPS} steps in a mesh period"
+    resolution = _ROUNDING
+    if not damped:
+        progress(0.1, "reference by another method")
+        other = transient(system, method="newmark", **fine)
+        # Newmark's method is the worse of the two by far: their difference is more than the error of the reference.
+        resolution = max(0.1 * float(errors(other).max(initial=0.0)), _ROUNDING)
+        words += f", {10.0 * resolution:.0e} from Newmark's method with as many"
+    plans: list[tuple[str, dict[str, Any]]] = [
+        (name, {"method": name}) for name in _METHODS if not damped or name == "exponential"
+    ]
+    reduced = [int(share * truth.dofs) for share in _SHARES]
+    plans += [(f"{n} modes", {"method": "exponential", "modes": n}) for n in reduced if n > 20]
+    settings = [
+        Setting(f"{name}, {count} steps", name, float(count), {**options, "steps": count})
+        for name, options in plans
+        for count in steps
+    ]
+    study = Study(
+        settings + [Setting(f"accuracy {a:g}", "accuracy", a, {"accuracy": a}) for a in accuracies],
+        run=lambda options: transient(system, **options, **fixed),
+        judge=lambda found: Judged(found.dofs, errors(found), np.array([found.error_estimate])),
+        compared="statistics",
+        count=int(known.sum()),
+        reference=words,
+        resolution=resolution,
+        # With modes missing the error does not fall with the step: there is no order to measure.
+        rising=_METHODS,
+    )
+    return study.result("transient", model, repeat, part_of(progress, 0.2, 1.0))
+
+
+# Of a sweep: least common periods that are discarded; the spread of the initial states, far enough apart for chaos to forget and
+# near enough to stay with one motion; steps of the reference over the most steps.
+_DISCARD = 300
+_SPREAD = 1e-3
+_FINER_STEPS = 4
+# Shares of the operating speed that are tried for a point with one motion, periods that show it, and how near all states end.
+_SPEED_SHARES = (1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.3, 0.6, 0.5)
+_TRIED = 30
+_ALIKE = 1e-3
+
+
+@recorded
+def sweep_convergence_study(
+    model: Model,
+    *,
+    speed: float | str | None = None,
+    steps: Sequence[int] = (50, 100, 200, 400),
+    counts: Sequence[int] = (50, 200, 800),
+    starts: int = 32,
+    progress: Progress = silent,
+) -> SweepConvergenceStudy:
+    """Run one point with several steps and lengths, each from many states near the static one, side by side.
+
+    The scatter between the runs from different states is a check of the standard error that a single run states: where one motion
+    attracts them all, both agree.
+
+    Args:
+        model: a small model.
+        speed: in rad/s or as a text; where not given the operating speed, or one near it at which a single motion attracts all
+            states.
+        steps: in a period of the fastest mesh.
+        counts: least common periods that count.
+        starts: states, at least 2.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: fewer than two states, or a model that sweeps don't take.
+    """
+    if starts < 2:
+        raise AnalysisError(f"starts: got {starts}, expected 2 or more, whose scatter is compared")
+    given = speed if speed is not None else speed_or_operating(None, model)
+    if given is None:
+        raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
+    notes: list[str] = []
+    if speed is None:
+        progress(0.0, "a point with one motion")
+        given, notes = _one_motion(model, float(given), starts)
+
+    def run(n: int, count: int) -> SweepResult:
+        at = {"operation.speed": [given]}
+        return sweep(model, at, initial_conditions=starts, throw=_SPREAD, steps=n, discard=_DISCARD, sample=count)
+
+    def sizes(runs: SweepResult) -> np.ndarray:
+        """Peak to peak and dynamic factor of the contact that moves most, (2, states)."""
+        worst = int(np.argmax(runs.peak_to_peak[0].mean(axis=0)))
+        return np.array([runs.peak_to_peak[0, :, worst], runs.dynamic_factor[0, :, worst]])
+
+    plans = [(n, max(counts)) for n in steps] + [(max(steps) // 2, count) for count in counts[:-1]]
+    progress(0.1, "reference")
+    truth = sizes(run(_FINER_STEPS * max(steps), max(counts))).mean(axis=1)
+    rungs = []
+    for number, (n, count) in enumerate(plans):
+        progress(0.2 + 0.8 * number / len(plans), f"{n} steps, {count} periods")
+        begun = clock.process_time()
+        runs = run(n, count)
+        seconds = clock.process_time() - begun
+        exponents = runs.lyapunov[0, :, 0]
+        mean = sizes(runs).mean(axis=1)
+        scatter = sizes(runs).std(axis=1, ddof=1)
+        rungs.append(
+            SweepRung(
+                n,
+                count,
+                seconds / starts,
+                float(exponents.mean()),
+                float(exponents.std(ddof=1) if np.ptp(exponents) else 0.0),
+                float(np.median(runs.lyapunov_error[0, :, 0])),
+                float(mean[0]),
+                float(scatter[0]),
+                float(mean[1]),
+                float(scatter[1]),
+                tuple(sorted(set(runs.motion))),
+                error=float(np.max(np.abs(mean / truth - 1.0))),
+            )
+        )
+    progress(1.0, "done")
+    return SweepConvergenceStudy(
+        model.title or "model",
+        starts,
+        tuple(rungs),
+        speed=speed_in_si(given),
+        reference=f"{_FINER_STEPS * max(steps)} steps and {max(counts)} periods, the mean over the states",
+        warnings=tuple(notes),
+    )
+
+
+def _one_motion(model: Model, operating: float, starts: int) -> tuple[float, list[str]]:
+    """The speed nearest to the operating one, of a few, at which all states end on one motion, and what to say of that.
+
+    Several motions at one point, each with its own values, show no error of steps or length.
+    """
+    speeds = [share * operating for share in _SPEED_SHARES]
+    at = {"operation.speed": speeds}
+    runs = sweep(model, at, initial_conditions=starts, throw=_SPREAD, discard=_DISCARD, sample=_TRIED)
+    for k, speed in enumerate(speeds):
+        # Contacts that hardly move have a peak to peak of rounding, which says nothing.
+        sizes = runs.peak_to_peak[k]
+        kinds = {runs.motion_at(k, r) for r in range(starts)}
+        if len(kinds) == 1 and np.ptp(sizes, axis=0).max() <= _ALIKE * sizes.max():
+            if k == 0:
+                return speed, []
+            rpm = [value * RPM_PER_RAD_S for value in (operating, speed)]
+            return speed, [
+                f"several motions coexist at {rpm[0]:.6g} rpm; this is {rpm[1]:.6g} rpm, where all states meet one"
+            ]
+    return operating, [
+        "several motions coexist at this point: their values differ more than steps make them; give a speed"
+    ]
+
+
+# Of a periodic motion: the reference has this many times the most harmonics, as long as its equations are no more than the limit.
+_FINER_HARMONICS = 3
+_MOST_UNKNOWNS = 2500
+# A branch needs a range: the motion is the one at its begin.
+_RANGE = 1.01
+_STEPS = 8000
+
+
+@recorded
+def orbits_convergence_study(
+    model: Model,
+    *,
+    speed: float | str | None = None,
+    excite: str | None = None,
+    harmonics: Sequence[int] = (5, 10, 20, 40, 80),
+    densities: Sequence[int] = (6, 8, 16, 32, 64),
+    repeat: int = REPEAT,
+    progress: Progress = silent,
+) -> ConvergenceStudy:
+    """Solve for one periodic motion with series of harmonics and of instants, by harmonic balance.
+
+    Errors and estimates are those of the displacements of every mesh contact (without meshes, of those across bearings, nonlinear
+    elements and at unbalances): the largest difference of their coefficients over the largest harmonic of that displacement; the
+    estimate is the change with twice the harmonics and instants, as `orbits` states it.
+    Small systems are compared with shooting, another method. Larger ones are compared with harmonic balance of more harmonics; a
+    transient that starts on that motion tells how near it comes back after one period.
+
+    All begin at the motion of the reference, as a branch begins each point near the one before. The time is that of the motion
+    and its multipliers, without the estimate, which a branch makes at three points.
+
+    Args:
+        model, excite: as for `orbits`.
+        speed: of the input shaft, in rad/s or as a text; the operating speed where not given.
+        harmonics: numbers of harmonics, each with 16 instants a harmonic.
+        densities: instants for each of 30 harmonics, 5 or more.
+        repeat: runs of each rung that are timed at least.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: no speed, nothing that tells motions apart, fewer than 5 instants a harmonic, or no periodic motions.
+        ConvergenceError: the static state does not lead to a motion at this speed.
+    """
+    given = speed_or_operating(speed, model)
+    if not given:
+        raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
+    if min(densities, default=INSTANTS) < 5:
+        raise AnalysisError(f"densities: got {min(densities)}, expected 5 instants a harmonic or more")
+    family = SystemFamily(model, [range_of(model, SPEED, [given, _RANGE * given])], excite, None)
+    order = family.order
+    told = told_of(family)
+    columns = told.columns
+    plant = family.plant(0.0)
+    scale = scale_of(plant)
+
+    def solved(n: int, instants: int, begin: np.ndarray | None) -> tuple[HarmonicOrbits, np.ndarray]:
+        """The motion of n harmonics, found from that of given coefficients (harmonics + 1, m), or from the static state."""
+        equations = HarmonicOrbits(family.plant, Grid(n, instants, order), scale)
+        if begin is None:
+            return equations, at_value(equations, equations.start(0.0), 0.0).y
+        c = np.zeros((n + 1, begin.shape[1]), complex)
+        kept = min(len(begin), n + 1)
+        c[:kept] = begin[:kept]
+        return equations, at_value(equations, equations.unknowns(c), 0.0).y
+
+    with single_thread(0):
+        progress(0.0, "reference")
+        finest = min(_FINER_HARMONICS * max(harmonics), (_MOST_UNKNOWNS // plant.m - 1) // 2)
+        usual, y = solved(HARMONICS, INSTANTS * HARMONICS, None)
+        half, y = solved(finest // 2, INSTANTS * (finest // 2), usual.coefficients(y))
+        coarser = half.coefficients(y)
+        best, y = solved(finest, INSTANTS * finest, coarser)
+        truth = best.coefficients(y)
+        motion = best.state(y, 0.0)
+        other, method = equations_of("auto", family, best.grid, scale)
+        if isinstance(other, ShootingOrbits):
+            node = at_value(other, other.from_motion(*motion, plant), 0.0)
+            balance = truth
+            truth = other.cycle(node.y, 0.0).displacement
+            gap = float(change(balance, truth, columns).max())
+            # Shooting is the better of the two by far: their difference is more than its own error.
+            resolution = max(0.1 * gap, _ROUNDING)
+            words = f"{method}, {gap:.0e} from harmonic balance with {finest} harmonics"
+        else:
+            # From order 2 on the error of the finer one is less than a third of the last change.
+            resolution = max(float(change(coarser, truth, columns).max()) / 3.0, _ROUNDING)
+            _, d = run_periods(family.system([0.0]), order, 1, *motion, _STEPS)
+            seen = d[:, columns]
+            missed = np.abs(seen[-1] - (plant.B.T @ motion[0])[columns]) / np.ptp(seen, axis=0)
+            words = (
+                f"harmonic balance with {finest} harmonics; a transient that starts there comes back to "
+                f"{missed.max():.0e} of its peak to peak after a period"
+            )
+
+    def run(options: dict[str, Any]) -> tuple[HarmonicOrbits, np.ndarray]:
+        equations, y = solved(options["harmonics"], options["instants"], truth)
+        equations.multipliers(y, 0.0)
+        return equations, y
+
+    def judge(found: tuple[HarmonicOrbits, np.ndarray]) -> Judged:
+        equations, y = found
+        c = equations.coefficients(y)
+        finer = equations.finer()
+        better = finer.coefficients(at_value(finer, equations.lifted(y, finer), 0.0).y)
+        return Judged(equations.size, change(c, truth, columns), change(c, better, columns))
+
+    plans = [("harmonics", h, h, INSTANTS * h) for h in harmonics if 2 * h <= finest]
+    plans += [("instants", n, HARMONICS, HARMONICS * n) for n in densities if finest >= 2 * HARMONICS]
+    compared = "contacts" if told.contacts.column.size else "bearings, elements and unbalances"
+    study = Study(
+        [
+            Setting(f"{h} harmonics, {instants} instants", knob, value, {"harmonics": h, "instants": instants})
+            for knob, value, h, instants in plans
+        ],
+        run=run,
+        judge=judge,
+        compared=f"displacements of the {compared}",
+        count=columns.size,
+        reference=words,
+        resolution=resolution,
+        rising=("harmonics", "instants"),
+    )
+    return study.result("orbits", model, repeat, part_of(progress, 0.3, 1.0))
