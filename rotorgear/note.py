@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-# On a screen, a sentence names so many of the parts that it holds for; of more, two and how many there are.
+# On a screen, a sentence names so many of the parts that it holds for; of more, one of each kind and how many there are.
 NAMED = 3
 
 
@@ -40,24 +40,33 @@ def as_notes(texts: Iterable[str]) -> tuple[Note, ...]:
     return tuple(dict.fromkeys(text if isinstance(text, Note) else Note("", text) for text in texts))
 
 
-def sentences(notes: Iterable[Note], named: int | None = None) -> list[str]:
+def sentences(notes: Iterable[str], named: int | None = None) -> list[str]:
     """One sentence for each cause, in the order in which the causes come first; it names all parts, or at most some of them."""
     causes: dict[tuple[bool, str, str], list[tuple[str, str]]] = {}
-    for note in notes:
+    for note in as_notes(notes):
         causes.setdefault((bool(note.part), note.what, note.why), []).append((note.part, note.value))
     return [_sentence(where, what, why, named) for (_, what, why), where in causes.items()]
 
 
 def _sentence(where: list[tuple[str, str]], what: str, why: str, named: int | None) -> str:
     """Parts with their values, what and why; a value that neighbours share stands behind the last of them."""
-    shown = where if named is None or len(where) <= named else where[:2]
-    parts = []
-    for k, (part, value) in enumerate(shown):
-        shared = k + 1 < len(shown) and shown[k + 1][1] == value
-        parts.append(" ".join(filter(None, (part, f"({value})" if value and not shared else ""))))
     if not where[0][0]:  # of no single part
-        return ": ".join(filter(None, (" ".join(filter(None, (what, *parts))), why)))
-    if len(shown) < len(where):
-        parts.append(f"{len(where) - len(shown)} more")
-    names = " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
+        size = f"({where[0][1]})" if where[0][1] else ""
+        return ": ".join(filter(None, (" ".join(filter(None, (what, size))), why)))
+    # Keys of one kind stand together: of many backlashes and many unbalances, one each is named.
+    kinds: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    for part, value in where:
+        table, _, rest = part.partition(".")
+        kinds.setdefault((table, rest.partition(".")[2]), []).append((part, value))
+    many = named is not None and len(where) > named
+    parts = []
+    for entries in kinds.values():
+        shown = entries[:1] if many and len(entries) > 2 else entries
+        for k, (part, value) in enumerate(shown):
+            shared = k + 1 < len(shown) and shown[k + 1][1] == value
+            parts.append(f"{part} ({value})" if value and not shared else part)
+        if len(shown) < len(entries):
+            parts[-1] += f" and {len(entries) - len(shown)} more"
+    last = parts.pop()
+    names = f"{', '.join(parts)}{', ' if ' and ' in last else ' and '}{last}" if parts else last
     return f"{names}: {'; '.join(filter(None, (what, why)))}"

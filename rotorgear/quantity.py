@@ -234,6 +234,23 @@ def millimetres(length: float) -> str:
     return f"{1e3 * length + 0.0:.6g} mm"
 
 
+# Units in which an engineer reads a small or a turning quantity: up to which size in SI, times, unit.
+_READ_IN = {
+    "length": ((1e-3, 1e6, "um"), (1.0, 1e3, "mm")),
+    "angle": ((math.inf, 180.0 / math.pi, "deg"),),
+    "speed": ((math.inf, RPM_PER_RAD_S, "rpm"),),
+    "unbalance": ((1.0, 1e6, "g mm"),),
+}
+
+
+def in_words(value: float, dimension: str) -> str:
+    """Write a value in SI as an engineer reads it: 4e-5 of a length is "40 um"."""
+    for limit, times, unit in _READ_IN.get(dimension, ()):
+        if abs(value) < limit:
+            return f"{value * times:.4g} {unit}"
+    return f"{value:.4g} {DIMENSIONS[dimension].unit.replace('*', ' ')}".rstrip()
+
+
 def nearest(name: str, valid: list[str]) -> str:
     """Return the valid name that is closest to `name`, or "" where none is close."""
     import difflib

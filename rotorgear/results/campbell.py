@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
-from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 
 
@@ -86,7 +86,7 @@ def _turned(values: np.ndarray) -> np.ndarray:
     return values.T
 
 
-class CampbellResult(ModelResult, kind="campbell"):
+class CampbellResult(AboutEquilibrium, kind="campbell"):
     """b branches of modes over k speeds; values are NaN where a branch does not oscillate, or is out of reach.
 
     The displacements of a branch at the p nodes and stations are `basis @ coordinates`; see `shapes`.

@@ -6,6 +6,7 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
@@ -53,7 +54,7 @@ def _columns_of_speeds() -> tuple[Written, ...]:
     return tuple(column(name) for name in CriticalSpeed.declarations if name != "speed")
 
 
-class CriticalResult(ModelResult, kind="critical"):
+class CriticalResult(AboutEquilibrium, kind="critical"):
     """c critical speeds, ascending; shapes have modal mass 1."""
 
     damped: bool = of("whether damping and circulatory terms took part")

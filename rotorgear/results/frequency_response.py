@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import Piece
-from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Written, of
 
 # What the receptance is multiplied with: a power of i w.
@@ -58,7 +58,7 @@ def peak_between(x: np.ndarray, size: np.ndarray, power: int) -> Peak | None:
     return Peak(w / (2.0 * np.pi), float(w**power / np.sqrt(least)), resolved)
 
 
-class FrequencyResponse(ModelResult, kind="frf"):
+class FrequencyResponse(AboutEquilibrium, kind="frf"):
     """Response of o places to unit forces (or moments) at i places, at f frequencies; Re(x e^{+iwt})."""
 
     speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")

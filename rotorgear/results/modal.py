@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.results.result import ModelResult
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.schema import Record, Written, derived, of
 
 # The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
@@ -63,7 +63,7 @@ class Piece(Record):
 NODE_COUNT = Written("nodes", lambda result, nodes: len(nodes.shaft), axes=(), label="number of nodes")
 
 
-class ModalResult(ModelResult, kind="modal"):
+class ModalResult(AboutEquilibrium, kind="modal"):
     """m modes of a model, lowest natural frequency first.
 
     Of each conjugate pair of eigenvalues s one is kept; s is real for overdamped and 0 for rigid-body modes. Shapes are those

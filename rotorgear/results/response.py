@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
-from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 
 
@@ -93,7 +93,7 @@ def _by_casing(key: str) -> Written:
     )
 
 
-class ResponseResult(ModelResult, kind="response"):
+class ResponseResult(AboutEquilibrium, kind="response"):
     """Linear response of a model at s speeds to o orders, complex amplitudes of Re(x e^{+iwt}) about the static forces."""
 
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm")

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rotorgear.drawing import picture_of
-from rotorgear.note import Note, as_notes, sentences
+from rotorgear.note import as_notes, sentences
 from rotorgear.results.schema import Record, Written, derived, of
 from rotorgear.version import VERSION
 
@@ -61,7 +61,7 @@ class Result(Record):
         default_factory=dict,
         kw_only=True,
     )
-    left_out: tuple[Note, ...] = of(
+    left_out: tuple[str, ...] = of(
         "sentences",
         "",
         "left_out_note",
@@ -70,7 +70,7 @@ class Result(Record):
         default=(),
         kw_only=True,
     )
-    warnings: tuple[Note, ...] = of(
+    warnings: tuple[str, ...] = of(
         "sentences",
         "",
         "warning",
@@ -102,7 +102,7 @@ class Result(Record):
     def facts(self) -> tuple[Fact, ...]:
         """Each of them by itself, of one part."""
         both = (("left out", self.left_out), ("warning", self.warnings))
-        return tuple(Fact(about, n.part, n.what, n.why, n.value) for about, notes in both for n in notes)
+        return tuple(Fact(about, n.part, n.what, n.why, n.value) for about, notes in both for n in as_notes(notes))
 
     def __init_subclass__(cls, *, kind: str = "", analysis: str = "") -> None:
         super().__init_subclass__()
@@ -125,13 +125,21 @@ class Result(Record):
         head = {"title": values.pop("title")} if "title" in values else {}
         return {"analysis": self.analysis_word, **head, **values}
 
-    def table(self, **options: Any) -> RenderableType:
-        """What the command prints, as one rich renderable; the options are those of the command that choose tables."""
+    def table(self, *, laws: bool = False, **options: Any) -> RenderableType:
+        """What the command prints, as one rich renderable; the options are those of the command that choose tables.
+
+        `laws` puts the operating points of bearings below it, of a result that is linear about an equilibrium.
+        """
         # A table knows its result, so the result finds its table by name: that of its own room and file, below tables/.
         place = type(self).__module__.removeprefix(f"{__package__}.")
         module = import_module(f".tables.{place}", __package__)
         table: RenderableType = getattr(module, f"{self.kind}_table")(self, **options)
-        return table
+        if not laws:
+            return table
+        from rich.console import Group
+
+        points = import_module(".tables.common", __package__).operating_points
+        return Group(table, points(getattr(self, "laws", ())))
 
     def plot(self, on: Any = None, **options: Any) -> Any:
         """Draw this result; `rotorgear.plot` has the picture of its kind, with the options, and others.

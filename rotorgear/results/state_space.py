@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import Piece
-from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import of
 
 
-class StateSpace(ModelResult, kind="state_space"):
+class StateSpace(AboutEquilibrium, kind="state_space"):
     """M x'' + D x' + K x = B u,  y = C x  with s coordinates x, forces u and displacements y.
 
     Whole, x are the free displacements; reduced, they are coordinates of modes and of static shapes. D = C + W G holds damping

@@ -6,12 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable
-from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
-
-# Of the largest component of a force, below which another one is not told.
-_NEGLIGIBLE = 1e-6
 
 
 class Share(Record):
@@ -85,40 +82,6 @@ class MeshFace(Record):
         return self.shaft_misalignment_m + self.given_misalignment_m
 
 
-class LawRow(Record):
-    """A bearing or nonlinear element in equilibrium, by its force law."""
-
-    part: str = of("bearing or nonlinear element")
-    force: np.ndarray = of(
-        "force of the shaft on it", "N and N m", "component", note=" along its displacements", json="force"
-    )
-    displacement: np.ndarray = of("displacement of the shaft against it", "m and rad", "component")
-    stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
-    damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
-    averaged: bool = of("whether these are means over a pitch of its rolling elements")
-
-    @property
-    def sentence(self) -> str:
-        """Its state in words: "bearings.front: 15.11 um, 99.2 N/um at 1000 N", with the stiffness along the force, F.KF/F^2."""
-        across = slice(0, min(2, len(self.force)))
-        F = self.force[across]
-        moved = 1e6 * float(np.linalg.norm(self.displacement[across]))
-        size = float(np.linalg.norm(F))
-        whole = float(np.abs(self.force).max(initial=0.0))
-        if not whole:
-            return f"{self.part}: carries nothing at {moved:.4g} um"
-        words = []
-        if size > _NEGLIGIBLE * whole:
-            along = float(F @ self.stiffness[across, across] @ F) / size**2
-            words.append(f"{moved:.4g} um, {1e-6 * along:.4g} N/um at {size:.4g} N")
-        if len(self.force) >= 3 and abs(self.force[2]) > _NEGLIGIBLE * whole:
-            stiffness = 1e-6 * float(self.stiffness[2, 2])
-            pushed = 1e6 * float(self.displacement[2])
-            words.append(f"{pushed:.4g} um, {stiffness:.4g} N/um at {self.force[2]:.4g} N along z")
-        mean = ", mean over a pitch of its elements" if self.averaged else ""
-        return f"{self.part}: {' and '.join(words)}{mean}"
-
-
 def by_mesh(key: str, *axes: str) -> Written:
     """A key under which the values of contacts stand by mesh; `axes` are those behind the contact's."""
 
@@ -148,7 +111,7 @@ def _forces(name: str, kind: str, on: str = "the shaft") -> tuple[Written, Writt
     )
 
 
-class StaticResult(ModelResult, kind="static"):
+class StaticResult(AboutEquilibrium, kind="static"):
     """Static equilibrium of a model with p nodes and c contacts (helices of meshes, in the order of the file).
 
     `force_derivative` and `share_derivative` are the changes for a unit of each parameter; for a stiffness the unit is 100 %.
@@ -225,15 +188,6 @@ class StaticResult(ModelResult, kind="static"):
         record=MeshFace,
         default=(),
         kw_only=True,
-    )
-    laws: tuple[LawRow, ...] = of(
-        "state of each force law",
-        "",
-        "law",
-        record=LawRow,
-        default=(),
-        kw_only=True,
-        note=" of bearings and nonlinear elements",
     )
     passes: int = of(
         "passes until shafts and loads along the faces agreed",

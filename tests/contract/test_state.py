@@ -184,7 +184,9 @@ def test_a_system_says_what_its_model_says_of_laws_with_a_stiffness_beside_them(
         }
     )
     said = rg.modal(rg.System(model, 1), modes=4).left_out
-    assert any("nonlinear_elements.guard: the stiffness given beside it is taken" in note for note in said)
+    assert any(
+        "nonlinear_elements.guard.parameters: the stiffness given beside the law is taken" in note for note in said
+    )
 
 
 def test_old_names_of_the_state_are_read_with_a_warning() -> None:

@@ -58,7 +58,7 @@ def pattern(path: str) -> re.Pattern[str]:
 
 
 # What a result has only where there is something to say, in any result and in those inside of it.
-SOMETIMES = re.compile(r"(.+\.)?(left_out|warnings|facts)\[\].*")
+SOMETIMES = re.compile(r"(.+\.)?(left_out|warnings|facts|laws)\[\].*")
 
 
 def differences(data: dict[str, Any], listed: set[str]) -> tuple[list[str], list[str]]:

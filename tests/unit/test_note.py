@@ -31,7 +31,7 @@ def test_parts_of_one_cause_share_a_sentence() -> None:
 
 def test_a_screen_names_few_of_many_parts_and_a_file_all() -> None:
     notes = [Note(f"bearings.b{k}", "worn") for k in range(NAMED + 2)]
-    assert sentences(notes, NAMED) == [f"bearings.b0, bearings.b1 and {NAMED} more: worn"]
+    assert sentences(notes, NAMED) == [f"bearings.b0 and {NAMED + 1} more: worn"]
     (whole,) = sentences(notes)
     assert all(note.part in whole for note in notes)
 

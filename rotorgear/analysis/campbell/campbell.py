@@ -20,7 +20,7 @@ from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, hi
 from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
-from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
@@ -33,6 +33,8 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
+from rotorgear.results.laws import about as about_state
+from rotorgear.results.laws import law_rows
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.system import System
 
@@ -133,7 +135,7 @@ def campbell(
     return replace(
         result,
         model=parts,
-        left_out=(*result.left_out, *about.state.notes, *(note for note in (begun, beyond) if note)),
+        left_out=(*result.left_out, *(note for note in (begun, beyond) if note)),
         warnings=(*result.warnings, *few, *_reduction_warnings(system, found, chains), *([short] if short else [])),
         status=short or "success",
     )
@@ -325,10 +327,12 @@ def _result(
         dofs=system.n,
         discretisation=pieces(system),
         seconds=clock.total(),
+        laws=law_rows(system.state.operating),
         left_out=_left_out(system, found, grid, operating),
         warnings=_warnings(system, found, tracks, onsets),
         method=f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a "
-        f"check: off by at most {bound:.0e}; {len(grid)} speeds, {halvings} steps halved to follow the modes",
+        f"check: off by at most {bound:.0e}; {len(grid)} speeds, {halvings} steps halved to follow the modes"
+        + about_state(system.state),
     )
     progress(1.0, "done")
     return result
@@ -375,7 +379,7 @@ def _place_of(speed: float, grid: np.ndarray) -> int | None:
 
 
 def _left_out(system: System, found: SpeedModes, grid: np.ndarray, operating: float | None) -> tuple[str, ...]:
-    notes = list(left_out(system, float(grid[-1])))
+    notes: list[str] = [*left_out(system, "modes", float(grid[-1]))]
     rigid = found.snapshots[0].rigid.shape[1]
     if rigid:
         notes.append(f"{rigid} rigid-body mode{'s'[: rigid != 1]} at 0 Hz")

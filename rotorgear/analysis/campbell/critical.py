@@ -17,7 +17,7 @@ from rotorgear.analysis.campbell.speeds import highest_speed
 from rotorgear.analysis.common.casings import serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
-from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import FINEST, missed
@@ -31,6 +31,8 @@ from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.critical import CriticalResult, CriticalSpeed
+from rotorgear.results.laws import about as about_state
+from rotorgear.results.laws import law_rows
 from rotorgear.solvers.eigen.synchronous import LEAST_SHARE, Affine, Synchronous, synchronous_speeds
 from rotorgear.solvers.sparse.pencil import count_below
 from rotorgear.system.rigid_motions import rigid_motions
@@ -131,7 +133,7 @@ def critical(
     return replace(
         result,
         model=parts,
-        left_out=(*result.left_out, *about.state.notes, *([begun] if begun else [])),
+        left_out=(*result.left_out, *([begun] if begun else [])),
         warnings=(
             *result.warnings,
             *few,
@@ -275,10 +277,6 @@ def _result(
             )
         )
     clock.lap("energies")
-    notes = list(left_out(system, top if damped else None))
-    if not damped:
-        notes = [note for note in notes if not note.startswith(("gyroscopic", "damping"))]
-        notes.append("damping and circulatory terms: an undamped analysis")
     return CriticalResult(
         model=system.model,
         damped=damped,
@@ -291,8 +289,10 @@ def _result(
         dofs=system.n,
         discretisation=pieces(system),
         seconds=clock.total(),
-        left_out=tuple(notes),
+        laws=law_rows(system.state.operating),
+        left_out=left_out(system, "modes", top, undamped=not damped),
         warnings=tuple(system.nodes.merged),
         method="eigenproblem in the speed, "
-        + ("damped, root of Im s = p W" if damped else "undamped, counted by pivot signs"),
+        + ("damped, root of Im s = p W" if damped else "undamped, counted by pivot signs")
+        + about_state(system.state),
     )

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.model_warnings import model_warnings
-from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
@@ -68,7 +68,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         nodes=len(system.nodes),
         dofs=system.n,
         mesh=f"{elements or 1} basic element{'s'[: (elements or 1) != 1]} per shaft segment, before any refinement",
-        left_out=left_out(system, speed),
+        left_out=left_out(system, "modes", speed),
         warnings=(*system.nodes.merged, *model_warnings(system)),
     )
 

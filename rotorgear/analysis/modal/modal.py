@@ -9,7 +9,8 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
-from rotorgear.analysis.common.notes import gathering, left_out, mode_warnings
+from rotorgear.analysis.common.left_out import left_out
+from rotorgear.analysis.common.notes import gathering, mode_warnings
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
@@ -37,6 +38,8 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
+from rotorgear.results.laws import about as about_state
+from rotorgear.results.laws import law_rows
 from rotorgear.results.modal import ModalResult
 from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.plan import Plan
@@ -152,14 +155,15 @@ def modes_about(
         dofs=system.n,
         discretisation=pieces(system),
         seconds=clock.total(),
-        left_out=(*left_out(system, speed), *found.groups, *system.state.notes),
+        laws=law_rows(system.state.operating),
+        left_out=(*left_out(system, "modes", speed), *found.groups),
         warnings=(
             *mode_warnings(system, asked.modes, s, asked.fmax),
             *conditioning_warnings(system, speed, s, found.rigid, energies.strain),
             *short,
             *casing_warnings(reduction, s),
         ),
-        method=found.method,
+        method=found.method + about_state(system.state),
         point_amplitudes=point_amplitudes(system, nodes, shapes),
     )
 

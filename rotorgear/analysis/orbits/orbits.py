@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
-from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed
 from rotorgear.analysis.orbits.curves import Curve, special_curves
@@ -145,7 +145,7 @@ def orbits(
         method=why,
         status=short or "success",
         left_out=(
-            *left_out(family.local.system, family.plant(0.0).speed, rolls=True),
+            *left_out(family.local.system, "time", family.plant(0.0).speed),
             *transient_left_out(family.local),
             *mean_torsion_notes(family.local.system, family.plant(0.0).speed),
             *family.notes,

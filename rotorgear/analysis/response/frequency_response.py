@@ -12,10 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.common.casings import serving
-from rotorgear.analysis.common.gear_bodies import body_notes
-from rotorgear.analysis.common.load_notes import load_notes
-from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
-from rotorgear.analysis.common.notes import rolling_notes
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
@@ -31,6 +28,8 @@ from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
+from rotorgear.results.laws import about as about_state
+from rotorgear.results.laws import law_rows
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.bubble_errors import ForcedChanges
@@ -137,13 +136,10 @@ def frf(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
+        laws=law_rows(system.state.operating),
         left_out=(
             *first.notes,
-            *state.notes,
-            *body_notes(system),
-            *rolling_notes(model, rolls=False),
-            *load_notes(system, "frf"),
-            *mesh_stiffness_left_out(system),
+            *left_out(system, "frf", turns),
             *undamped_above(limit, zeta),
         ),
         warnings=(
@@ -152,7 +148,7 @@ def frf(
             *([short] if short else []),
         ),
         status=short or "success",
-        method="direct sparse LU at every frequency",
+        method="direct sparse LU at every frequency" + about_state(system.state),
     )
 
 

@@ -9,10 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.casings import serving
-from rotorgear.analysis.common.gear_bodies import body_notes
-from rotorgear.analysis.common.load_notes import load_notes
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
-from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
@@ -30,6 +28,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
+from rotorgear.results.laws import about as about_state
+from rotorgear.results.laws import law_rows
 from rotorgear.results.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
@@ -174,17 +174,15 @@ def response(
         discretisation=pieces(system),
         largest=largest,
         seconds={"total": time.perf_counter() - clock},
+        laws=law_rows(system.state.operating),
         left_out=(
             *left,
             *undamped_above(damped_up_to(system, highest), zeta),
             *weak,
             *setup.notes,
             *_between_nodes(setup),
-            *state.notes,
             *([begun] if begun else []),
-            *body_notes(system),
-            *rolling_notes(model, rolls=False),
-            *load_notes(system, "response"),
+            *left_out(system, "response", speed),
         ),
         warnings=(
             *few,
@@ -193,7 +191,7 @@ def response(
             *([short] if short else []),
         ),
         status=short or "success",
-        method=f"{run.method} ({how}: {why})",
+        method=f"{run.method} ({how}: {why}){about_state(system.state)}",
     )
 
 

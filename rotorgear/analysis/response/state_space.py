@@ -17,10 +17,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.analysis.common.gear_bodies import body_notes
-from rotorgear.analysis.common.load_notes import load_notes
-from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
-from rotorgear.analysis.common.notes import rolling_notes
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, missed, speed_in_si
@@ -32,7 +29,10 @@ from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
+from rotorgear.results.laws import about as about_state
+from rotorgear.results.laws import law_rows
 from rotorgear.results.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general, single_thread
@@ -164,29 +164,27 @@ def state_space(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
+        laws=law_rows(system.state.operating),
         left_out=(
             *notes,
-            *body_notes(system),
-            *rolling_notes(model, rolls=False),
-            *load_notes(system, "frf"),
-            *mesh_stiffness_left_out(system),
+            *left_out(system, "frf", turns),
             *undamped_above(damped_up_to(system, limit), zeta),
             *_apart(system, reached),
         ),
         warnings=(*(() if damped else (_UNDAMPED,)), *unmoved, *((short,) if short else ())),
         status=short or "success",
-        method="all degrees of freedom" if full else "modes and static shapes",
+        method=("all degrees of freedom" if full else "modes and static shapes") + about_state(system.state),
     )
 
 
 def frf_system(
     model: Model, turns: float, fmax: float, elements: int | None, accuracy: float | None = None
-) -> tuple[System, tuple[str, ...]]:
+) -> tuple[System, tuple[Note, ...]]:
     """The system about its equilibrium at a speed in rad/s, meshed as `frf` meshes it up to a frequency in Hz; and notes."""
     state, first = about_mean(model, [turns or None], turns)
     plan = plan_up_to(model, at_speed(state, turns), MARGIN * fmax, elements, accuracy)
     system = linear_system(model, [turns], plan, state=first.with_tangents(state))
-    return system, (*first.notes, *state.notes)
+    return system, first.notes
 
 
 def _groups(system: System, turns: float) -> np.ndarray:

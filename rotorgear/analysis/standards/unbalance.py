@@ -59,7 +59,7 @@ def plant_up_to(
     system = linear_system(model, [speed], plan, state=first.with_tangents(state))
     zeta = model.damping.modal_ratio
     damping = (*damped_modes(system, damped_up_to(system, frequency), speed), zeta) if zeta else None
-    return Plant(system, contact_lines(system), damping), (*first.notes, *state.notes)
+    return Plant(system, contact_lines(system), damping), first.notes
 
 
 def antinodes(system: System, shaft: str, nodes: NodeTable, shape: np.ndarray) -> Antinodes:

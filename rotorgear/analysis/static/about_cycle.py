@@ -14,6 +14,7 @@ from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import MeshForce, State
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.system.system import flow_system
 
 # A helix that carries less than this share of the force of the torque flow is as good as open, as between two shafts that are
@@ -52,13 +53,13 @@ def about_cycle(model: Model, speeds: Sequence[float | None], state: State) -> S
     try:
         equilibrium, joint = over_cycle(equilibrate(flow_system(model).with_state(flow), speed), speed)
     except AnalysisError as error:
-        where = ", ".join(f"meshes.{name}" for name in teeth)
-        reason = str(error).rstrip(".")
-        why = (
-            f"{where}: the mean state of the loaded teeth over the mesh cycle, for which there is no solution ({reason}); the "
-            "tangent at the force of the torque flow is taken"
+        reason = (
+            f"there is no solution ({str(error).rstrip('.')}); the tangent at the force of the torque flow is taken"
         )
-        return replace(state, notes=(*state.notes, why))
+        lost = (
+            Note(f"meshes.{name}", "the mean state of its loaded teeth over the mesh cycle", reason) for name in teeth
+        )
+        return replace(state, notes=(*state.notes, *lost))
     if joint is None:
         return state
     carried = [abs(force.normal_force) for force in flow.forces]

@@ -155,19 +155,12 @@ def along_faces(model: Model, speeds: Sequence[float | None], state: State) -> S
         return model.states[key]
     settled = equilibrate_along_faces(flow_system(model).with_state(state.of_kind("static")), speed)
     faces = settled.equilibrium.system.state.faces
-    notes = [
-        f"meshes.{name}: the load moves along the face; it is linear about the static equilibrium with its shafts, misaligned by "
-        + " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in faces[name])
-        + " over the face"
-        for name in tilted
-        if name in faces
-    ]
     found = replace(
         torque_flow(model.layout, state.direction, faces),
         tangents=state.tangents,
         films=state.films,
         mapped_at=state.mapped_at,
-        notes=(*state.notes, *notes),
+        notes=state.notes,
     )
     if not state.tangents:
         model.states[key] = found

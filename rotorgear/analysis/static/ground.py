@@ -15,6 +15,7 @@ import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate, without_torsion_to_ground
 from rotorgear.errors import AnalysisError
+from rotorgear.note import Note
 from rotorgear.system.assembly import assemble
 from rotorgear.system.local import LocalModel
 from rotorgear.system.system import System
@@ -39,21 +40,16 @@ def springs_about_mean(found: LocalModel, speed: float) -> LocalModel:
     return replace(found, local=replace(found.local, load=load))
 
 
-def mean_torsion_notes(system: System, speed: float) -> tuple[str, ...]:
-    """A sentence on the torsional springs to ground, where they carry no mean torque."""
-    return torsion_sentence(()) if (rest := _mean(system, speed)) is None else torsion_sentence(rest.notes)
+def mean_torsion_notes(system: System, speed: float) -> tuple[Note, ...]:
+    """What the torsional springs to ground do not carry, where there is a mean twist that they act about."""
+    rest = _mean(system, speed)
+    return () if rest is None else about_mean_twist(rest.notes)
 
 
-def torsion_sentence(parts: tuple[str, ...]) -> tuple[str, ...]:
-    """A sentence on parts that statics says, "part: why", it leaves the torsion to ground of out."""
-    names = ", ".join(part.partition(":")[0] for part in parts)
-    return (
-        (
-            f"mean torque in the torsional stiffness to ground of {names}: the loads hold it, and it acts about the mean twist",
-        )
-        if parts
-        else ()
-    )
+def about_mean_twist(notes: tuple[Note, ...]) -> tuple[Note, ...]:
+    """What statics says it leaves out of springs to ground, as responses and motions in time do."""
+    why = "the loads hold it, and the stiffness acts about the mean twist"
+    return tuple(Note(note.part, "mean torque in the torsional stiffness to ground", why) for note in notes)
 
 
 def _mean(system: System, speed: float) -> Equilibrated | None:

@@ -11,13 +11,14 @@ from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.static.along_faces import along_faces
 from rotorgear.analysis.static.cycle import over_cycle
-from rotorgear.analysis.static.ground import torsion_sentence
+from rotorgear.analysis.static.ground import about_mean_twist
 from rotorgear.analysis.static.joint_state import JointState
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.system import System, flow_system
 
@@ -26,19 +27,20 @@ from rotorgear.system.system import System, flow_system
 class Setup:
     """A system about its mean state, with its contacts, and their mean forces.
 
-    `joint` is the state of the loaded teeth over their cycles, None without such teeth; `notes` are sentences on what is
-    left out.
+    `joint` is the state of the loaded teeth over their cycles, None without such teeth; `notes` say what is left
+    out.
     """
 
     system: System
     lines: ContactLines
     mean_force: np.ndarray
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     joint: JointState | None = None
 
     def with_tangents(self, state: State) -> State:
         """The mean state for small motions about it, with the tangents of laws of another state."""
-        return replace(self.system.state.of_kind("dynamic"), tangents=state.tangents)
+        of = self.system.state.of_kind("dynamic")
+        return replace(of, tangents=state.tangents, operating=state.operating, notes=state.notes)
 
 
 def about_mean(model: Model, speeds: Sequence[float | None], at: float) -> tuple[State, Setup]:
@@ -73,11 +75,10 @@ def mean_state(system: System, speed: float) -> Setup:
     if not system.state.forces or not (system.state.applied or index or weight or system.layout.loaded_from_outside):
         lines = contact_lines(system)
         meshes = system.model.meshes.items()
-        varied = [name for name, m in meshes if m.stiffness_variation or not isinstance(m.stiffness, int | float)]
-        notes = (
-            (f"stiffness variation of {', '.join(varied)}: no torque, so no mean force that it acts on",)
-            if varied
-            else ()
+        notes = tuple(
+            Note(f"meshes.{name}", "stiffness variation", "no torque, so no mean force that it acts on")
+            for name, m in meshes
+            if m.stiffness_variation or not isinstance(m.stiffness, int | float)
         )
         return Setup(system, lines, np.zeros(len(lines.states)), notes)
     equilibrium, joint = over_cycle(equilibrate(system, speed), speed)
@@ -92,17 +93,15 @@ def mean_state(system: System, speed: float) -> Setup:
         settled,
         contact_lines(settled),
         equilibrium.force,
-        (*torsion_sentence(equilibrium.notes), *_apart(joint), *unlike_teeth_left_out(settled)),
+        (*about_mean_twist(equilibrium.notes), *_apart(joint), *unlike_teeth_left_out(settled)),
         joint,
     )
 
 
-def _apart(joint: JointState | None) -> tuple[str, ...]:
+def _apart(joint: JointState | None) -> tuple[Note, ...]:
     """A sentence where the cycles of several mesh frequencies are taken one at a time."""
     if joint is None or len(joint.cycles) < 2:
         return ()
     names = "; ".join(", ".join(cycle.meshes) for cycle in joint.cycles)
-    return (
-        f"what the cycles of meshes {names} do to each other: each is taken for itself, with the loaded teeth of the others on "
-        "the mean of their curves",
-    )
+    why = "each is taken for itself, with the loaded teeth of the others on the mean of their curves"
+    return (Note("", f"what the cycles of meshes {names} do to each other", why),)

@@ -15,6 +15,7 @@ import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated
 from rotorgear.errors import AnalysisError
+from rotorgear.note import Note
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Sensitivity:
     name: tuple[str, ...]
     unit: tuple[str, ...]
     force: np.ndarray
-    left_out: tuple[str, ...] = ()
+    left_out: tuple[Note, ...] = ()
 
 
 def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
@@ -80,7 +81,7 @@ def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
             dropped.append(names[k])
     dq = np.array(columns).T if columns else np.zeros((len(equilibrium.q), 0))
     force = (active[:, None] * (lines.vectors.T @ dq)).T + np.array(directs)[kept]
-    left = (f"no derivative by {', '.join(dropped)}: it would set the free motions going",) if dropped else ()
+    left = tuple(Note(name, "the derivative by it", "it would set the free motions going") for name in dropped)
     return Sensitivity(tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left)
 
 

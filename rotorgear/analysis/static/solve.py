@@ -6,7 +6,7 @@ instead, and the torque flow is turned there. That is repeated until every conta
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -18,7 +18,9 @@ import scipy.sparse as sp
 from rotorgear.analysis.static.film_heat import in_heat_balance
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.state import OperatingPoint
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.note import Note
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.sparse.newton import EVALUATIONS, settle
 from rotorgear.solvers.sparse.nullspace import StaticSolver, UnbalancedLoadError
@@ -52,6 +54,22 @@ class LawState:
     averaged: bool = False
 
 
+def operating_points(states: Iterable[LawState], speed: float) -> tuple[OperatingPoint, ...]:
+    """Where an equilibrium at a speed of the reference shaft in rad/s found each law."""
+    return tuple(
+        OperatingPoint(
+            part=state.part.part,
+            speed=speed,
+            force=state.force,
+            displacement=state.d,
+            stiffness=state.stiffness,
+            damping=state.damping,
+            averaged=bool(state.part.law.cycle()) and state.averaged,
+        )
+        for state in states
+    )
+
+
 @dataclass(frozen=True)
 class Equilibrated:
     """A solved system: q (n,), forces of the c contacts (0 where open), and what derivatives need.
@@ -69,7 +87,7 @@ class Equilibrated:
     q: np.ndarray
     force: np.ndarray
     moment: np.ndarray
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     laws: tuple[LawState, ...] = ()
 
 
@@ -263,7 +281,9 @@ def outer_loads(system: System) -> np.ndarray:
     return loads
 
 
-def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tuple[list[ElementGroup], tuple[str, ...]]:
+def without_torsion_to_ground(
+    system: System, groups: list[ElementGroup]
+) -> tuple[list[ElementGroup], tuple[Note, ...]]:
     """Leave torsional springs between turning shafts and the ground out: what turns can't wind them up.
 
     They stand for machines that turn as well, whose torque is among the loads. Where a support holds a shaft of the same
@@ -290,7 +310,8 @@ def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tup
         cut[:, twist, :] = 0.0
         cut[:, :, twist] = 0.0
         kept.append(replace(group, matrices=replace(group.matrices, modulus=cut)))
-        notes.append(f"{group.part}: its torsional stiffness to ground; the shaft turns, and the loads hold its torque")
+        why = "the shaft turns, and the loads hold the torque"
+        notes.append(Note(group.part, "torsional stiffness to ground", why))
     return kept, tuple(notes)
 
 

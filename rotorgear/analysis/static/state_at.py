@@ -20,7 +20,6 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.supports import Bearing, NonlinearElement
-from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 
@@ -40,7 +39,7 @@ def state_at(
     beside: State | None = None,
     springs: Mapping[str, Spring] | None = None,
 ) -> State:
-    """Return the state about the static equilibrium, found once; `notes` has a sentence on each part that is linear about it.
+    """Return the state about the static equilibrium, found once; `operating` has the laws that are linear about it.
 
     Of a model without parts that an equilibrium decides about it is that of the torque flow.
 
@@ -94,7 +93,7 @@ def linear_system(
         return model
     # Its own flanks and forces stay where the equilibrium says nothing of the meshes.
     if not (found.faces or found.cycle):
-        found = replace(model.state, tangents=found.tangents, notes=found.notes)
+        found = replace(model.state, tangents=found.tangents, operating=found.operating, notes=found.notes)
     return model.with_state(found)
 
 
@@ -105,11 +104,6 @@ def sense_of(speeds: Sequence[float | None]) -> int:
 
 def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: Sequence[LawState]) -> State:
     """The state about the equilibrium, from that of the torque flow."""
-    notes = [
-        f"the law of nonlinear_elements.{name}: the stiffness given beside it is taken"
-        for name, element in model.nonlinear_elements.items()
-        if element.is_given
-    ]
     laws = {f"bearings.{name}": bearing for name, bearing in model.bearings.items() if not bearing.is_linear} | {
         f"nonlinear_elements.{name}": element
         for name, element in model.nonlinear_elements.items()
@@ -125,14 +119,12 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
         from rotorgear.analysis.static.about_cycle import about_cycle
 
         state = about_cycle(model, speeds, state)
-    notes += state.notes
     if not wanted:
-        return replace(state, notes=tuple(notes)) if notes else state
-    from rotorgear.analysis.static.law_states import law_rows
-    from rotorgear.analysis.static.solve import equilibrate
+        return state
+    from rotorgear.analysis.static.solve import equilibrate, operating_points
 
-    operating = state.direction * abs((model.operation.speed if model.operation else None) or 0.0)
-    at = sorted({operating if speed is None else float(speed) for speed in speeds}, key=abs)
+    running = state.direction * abs((model.operation.speed if model.operation else None) or 0.0)
+    at = sorted({running if speed is None else float(speed) for speed in speeds}, key=abs)
     system = flow_system(model).with_state(state.of_kind("static"))
     # Each begins where the one before stands.
     found: list[dict[str, LawState]] = []
@@ -140,12 +132,12 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
         near = equilibrate(system, speed, near=near).laws
         found.append({law.part.part: law for law in near})
     tangents = {part: _tangent(model, part, laws[part], at, [laws[part] for laws in found]) for part in wanted}
-    where = " to ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in dict.fromkeys((at[0], at[-1])))
-    notes.append(f"what is not linear of {', '.join(wanted)}: linearised about the static equilibrium at {where} rpm")
-    for speed, there in {at[0]: found[0], at[-1]: found[-1]}.items():
-        turning = f" at {speed * RPM_PER_RAD_S:.6g} rpm" if len(at) > 1 else ""
-        notes += [f"{row.sentence}{turning}" for row in law_rows(there[part] for part in wanted)]
-    return replace(state, tangents={**state.tangents, **tangents}, notes=tuple(notes))
+    # Each once where there is one speed, in the order of the speeds.
+    ends = {at[0]: found[0], at[-1]: found[-1]}
+    operating = [
+        point for speed, there in ends.items() for point in operating_points((there[part] for part in wanted), speed)
+    ]
+    return replace(state, tangents={**state.tangents, **tangents}, operating=tuple(operating))
 
 
 def _tangent(

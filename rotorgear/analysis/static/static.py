@@ -8,9 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.gear_bodies import body_notes
-from rotorgear.analysis.common.load_notes import load_notes
-from rotorgear.analysis.common.notes import rolling_notes
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
@@ -27,15 +25,16 @@ from rotorgear.analysis.static.forces import (
     seat_forces,
     support_forces,
 )
-from rotorgear.analysis.static.law_states import law_rows
 from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
-from rotorgear.analysis.static.solve import Equilibrated, equilibrate
+from rotorgear.analysis.static.solve import Equilibrated, equilibrate, operating_points
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.laws import law_rows
 from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
@@ -201,9 +200,9 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         dofs=system.n,
         seconds={"total": time.perf_counter() - start},
         faces=faces,
-        laws=law_rows(equilibrium.laws),
+        laws=law_rows(operating_points(equilibrium.laws, speed or 0.0)),
         passes=found.passes,
-        left_out=(*_left_out(equilibrium), *_unfelt(faces), *change.left_out),
+        left_out=(*left_out(system, "static", speed), *equilibrium.notes, *_unfelt(faces), *change.left_out),
         warnings=(*system.nodes.merged, *_warnings(equilibrium), *_face_warnings(found, faces)),
         method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
@@ -239,19 +238,18 @@ def _face_rows(found: AlongFaces) -> tuple[MeshFace, ...]:
     return tuple(rows)
 
 
-def _unfelt(faces: tuple[MeshFace, ...]) -> list[str]:
+def _unfelt(faces: tuple[MeshFace, ...]) -> list[Note]:
+    what = "misalignment over the face by the shafts"
+    why = "the teeth do not feel it; set tilt = true"
     return [
-        f"meshes.{row.mesh}: the misalignment of {1e6 * row.shaft_misalignment_m:+.3g} um over the face by the shafts is not fed "
-        "back to the teeth; tilt = true does it"
-        for row in faces
-        if not row.fed_back
+        Note(f"meshes.{r.mesh}", what, why, f"{1e6 * r.shaft_misalignment_m:+.3g} um") for r in faces if not r.fed_back
     ]
 
 
-def _face_warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[str]:
+def _face_warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[Note]:
     """What the contacts say, and where shafts misalign teeth that don't feel it."""
     notes = [
-        f"meshes.{name}: {note}"
+        Note(f"meshes.{name}", note)
         for name, face in zip(found.equilibrium.lines.names, found.faces, strict=True)
         if face is not None
         for note in face.warnings
@@ -264,10 +262,9 @@ def _face_warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[str]:
         width = found.equilibrium.system.layout.mesh(row.mesh).width
         factor = uniform_line(stiffness[row.mesh], width, force[row.mesh], row.misalignment_m).load_factor
         if factor > _NOTICED:
-            notes.append(
-                f"meshes.{row.mesh}: its shafts misalign the flanks by {1e6 * row.shaft_misalignment_m:+.3g} um over the face, "
-                f"which its teeth do not feel: the face load factor may be up to {factor:.2g}; give tilt = true"
-            )
+            what = "the shafts misalign the flanks over the face, which the teeth do not feel"
+            size = f"{1e6 * row.shaft_misalignment_m:+.3g} um, face load factor up to {factor:.2g}"
+            notes.append(Note(f"meshes.{row.mesh}", what, "set tilt = true", size))
     return list(dict.fromkeys(notes))
 
 
@@ -276,31 +273,8 @@ def phases_in_pitches(load: State) -> dict[str, float]:
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
 
 
-def _left_out(equilibrium: Equilibrated) -> tuple[str, ...]:
-    model = equilibrium.system.model
-    notes = list(equilibrium.notes)
-    absent = [motion for motion in ("bending", "axial", "torsion") if not model.has(motion)]
-    if absent:
-        notes.append(f"{' and '.join(absent)}: not among the motions of the model")
-    gravity = model.operation.gravity if model.operation else None
-    if not (gravity and any(gravity)):
-        notes.append("weight: no gravity given under [operation]")
-    else:
-        notes += [
-            f"casings.{name}: its weight, which its file does not give"
-            for name in model.casings
-            if np.any(np.isnan(equilibrium.system.layout.casing(name).inertia_force[:, :3]))
-        ]
-    return (
-        *notes,
-        *body_notes(equilibrium.system),
-        *rolling_notes(model, rolls=False),
-        *load_notes(equilibrium.system, "static"),
-    )
-
-
-def _warnings(equilibrium: Equilibrated) -> list[str]:
-    notes = []
+def _warnings(equilibrium: Equilibrated) -> list[Note]:
+    notes: list[Note] = []
     flow = {
         (force.contact.mesh, force.contact.helix): force.torque_sense
         for force in equilibrium.system.model.torque_flow(equilibrium.system.direction).forces
@@ -310,12 +284,12 @@ def _warnings(equilibrium: Equilibrated) -> list[str]:
         two = equilibrium.lines.names.count(contact.mesh) == 2
         which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if two else "")
         if not closed:
-            notes.append(f"{which} carries nothing: its flanks stand apart under these loads and index errors")
+            notes.append(Note(which, "carries nothing", "its flanks stand apart under these loads and index errors"))
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
-            notes.append(f"{which} carries on the other flank than the torque flow in torsion says")
+            notes.append(Note(which, "carries on the other flank than the torque flow in torsion says"))
     open_loops = [loop for loop in equilibrium.system.layout.assembly.loops if not loop.gear and abs(loop.rest) > 1e-6]
+    what = "closes a loop that can't be put together with the clockings given"
+    why = "leave out the clocking of one of its gears and it closes the loop"
     return notes + [
-        f"meshes.{loop.mesh} closes a loop that can't be put together: {loop.rest:+.4f} pitches are missing with the clockings "
-        "given; leave out the clocking of one of its gears and it closes the loop"
-        for loop in open_loops
+        Note(f"meshes.{loop.mesh}", what, why, f"{loop.rest:+.4f} pitches are missing") for loop in open_loops
     ]

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
 from rotorgear.analysis.static.settled_films import state_in_time
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
@@ -138,7 +138,7 @@ class PointMaker:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
         built = replace(built, local=_with_approaches(built))
-        notes = (*left_out(system, speed, rolls=True), *transient_left_out(built), *mean_torsion_notes(system, speed))
+        notes = (*left_out(system, "time", speed), *transient_left_out(built), *mean_torsion_notes(system, speed))
         self.left_out.append(notes)
         for part in built.parts:
             if why := part.law.unsettled():

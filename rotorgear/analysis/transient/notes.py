@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.note import Note, as_notes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, unbalanced
@@ -20,68 +24,50 @@ _UNSETTLED = 0.1
 _DRIFT = 0.01
 
 
-def transient_left_out(local: LocalModel) -> tuple[str, ...]:
-    """What the model does not need, and what the laws of its meshes leave out."""
+def transient_left_out(local: LocalModel) -> tuple[Note, ...]:
+    """What motions over time do not take of the teeth: by the laws of the meshes, and by what the file does not give."""
     system = local.system
-    meshes = system.model.meshes
     law_of = {part.part: part.law for part in reversed(local.parts) if part.is_mesh}
-    notes = [f"{part}: {text}" for part, law in law_of.items() for text in law.left_out()]
-    open_ended = [name for name, mesh in meshes.items() if mesh.backlash is None]
-    never = [name for name in open_ended if not law_of[f"meshes.{name}"].can_part]
-    if never:
-        notes.append(f"contact loss in {', '.join(never)}: no backlash is given, so their teeth never part")
-    loose = [name for name in open_ended if name not in never]
-    if loose:
-        notes.append(f"coast flanks of {', '.join(loose)}: no backlash is given, so nothing stops teeth that part")
-    rubbing = [name for name, mesh in meshes.items() if mesh.rubs]
-    if rubbing:
-        notes.append(f"what friction in {', '.join(rubbing)} takes of the torques: they balance as without it")
-    still = [name for name in meshes if _excites_nothing(local, name)]
-    if still:
-        notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
-    for name, helices in system.state.curves.items():
-        curve = helices[0]
-        if law_of[f"meshes.{name}"].known_up_to < np.inf:
-            continue
-        if not np.ptp(curve.transverse):
-            notes.append(f"meshes.{name}: ripple of the stiffness, which '{curve.model}' does not know")
-        elif curve.load:
-            notes.append(
-                f"meshes.{name}: what changes with the load; '{curve.model}' gives the stiffness over the mesh cycle at "
-                f"F_bt = {curve.load:.4g} N, and no transmission error without a load"
+    notes = [Note(part, text) for part, law in law_of.items() for text in law.left_out()]
+    for name, mesh in system.model.meshes.items():
+        address = f"meshes.{name}"
+        law = law_of[address]
+        if mesh.backlash is None:
+            what, then = (
+                ("coast flanks", "nothing stops teeth that part") if law.can_part else ("contact loss", "no teeth part")
             )
-    for name, mesh in meshes.items():
-        if mesh.stiffness == "tooth_fe" and not mesh.tilt:
-            notes.append(
-                f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
-            )
+            notes.append(Note(address, what, f"no backlash is given, so {then}"))
+        if mesh.rubs:
+            notes.append(Note(address, "what friction takes of the torques", "they balance as without it"))
+        if _excites_nothing(local, name):
+            notes.append(Note(address, "excitation", "neither transmission error nor stiffness variation is given"))
+        curve = system.state.curves[name][0] if name in system.state.curves else None
+        if curve and law.known_up_to == np.inf:
+            if not np.ptp(curve.transverse):
+                notes.append(Note(address, f"ripple of the stiffness, which '{curve.model}' does not know"))
+            elif curve.load:
+                why = f"'{curve.model}' gives the stiffness over the cycle at this load, and no transmission error without one"
+                notes.append(Note(address, "what changes with the load", why, f"F_bt = {curve.load:.4g} N"))
+        if name in system.state.faces:
+            notes += _along_face(address, mesh, follows=law.components == 2)
     for state in system.state.forces:
-        name = state.contact.mesh
-        along = law_of[f"meshes.{name}"].components == 2
+        along = law_of[f"meshes.{state.contact.mesh}"].components == 2
         of_teeth = system.state.face_map(state) if along else system.state.contact_map(state)
-        notes += [text for text in map_errors([(name, of_teeth)]) if text not in notes]
-    notes += unlike_teeth_left_out(system)
-    tilted = list(system.state.faces)
-    follow = [name for name in tilted if law_of[f"meshes.{name}"].components == 2]
-    stay = [name for name in tilted if name not in follow]
-    if stay:
-        notes.append(
-            f"how the load moves along the face of {', '.join(stay)} in time: the teeth stand askew as in the static "
-            "equilibrium, and resist a tilt by the tangent about it, even where they part"
-        )
-    damped = [name for name in follow if meshes[name].damping or meshes[name].damping_ratio]
-    if damped:
-        notes.append(
-            f"how the damping against a tilt of {', '.join(damped)} changes with what carries: it is that of the mean state, "
-            "also where teeth part"
-        )
-    behind = [name for name in tilted if meshes[name].backlash is not None]
-    if behind:
-        notes.append(
-            f"how the tilt of the coast flanks of {', '.join(behind)} changes in time: they stand askew as in the static "
-            "equilibrium"
-        )
-    return tuple(notes)
+        notes += map_errors([(state.contact.mesh, of_teeth)])
+    return as_notes([*notes, *unlike_teeth_left_out(system)])
+
+
+def _along_face(address: str, mesh: Mesh, *, follows: bool) -> Iterator[Note]:
+    """What of the tilt of a mesh stays as in the static equilibrium; `follows`: whether its law knows the tilt."""
+    askew = "the teeth are misaligned as in the static equilibrium"
+    if not follows:
+        why = f"{askew}, and resist a tilt by the tangent about it, even where they part"
+        yield Note(address, "how the load moves along the face in time", why)
+    elif mesh.damping or mesh.damping_ratio:
+        why = "it is that of the mean state, also where teeth part"
+        yield Note(address, "how the damping against a tilt changes with what carries", why)
+    if mesh.backlash is not None:
+        yield Note(address, "how the tilt of the coast flanks changes in time", askew)
 
 
 def _excites_nothing(local: LocalModel, name: str) -> bool:

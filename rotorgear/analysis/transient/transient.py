@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
@@ -217,7 +217,7 @@ def _result(
         motion=shapes,
         status=found.status,
         left_out=(
-            *left_out(system, task.largest, rolls=True),
+            *left_out(system, "time", task.largest),
             *transient_left_out(task.local),
             *mean_torsion_notes(task.local.system, task.largest),
         ),

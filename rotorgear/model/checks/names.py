@@ -13,6 +13,7 @@ from rotorgear.model.parts.problems import address as address_of
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import LIBRARY
 from rotorgear.model.parts.tables import Tables
+from rotorgear.note import Note
 from rotorgear.quantity import nearest
 
 PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
@@ -246,9 +247,10 @@ def unknown_materials(model: Tables, broken: Broken) -> Iterator[Problem]:
             yield unknown(address, material, valid, "a material")
 
 
-def estimated(layout: Layout) -> Iterator[str]:
-    """Yield a sentence on every bearing whose rolling elements follow from its boundary dimensions."""
+def estimated(layout: Layout) -> Iterator[Note]:
+    """Yield a fact on every bearing whose rolling elements follow from its boundary dimensions."""
     for name, bearing in layout.model.bearings.items():
         for kind, geometry in bearing.geometries.items():
-            if geometry.estimate:
-                yield f"bearings.{name}.{kind}: {geometry.estimate}"
+            what, why, value = geometry.estimate
+            if what:
+                yield Note(f"bearings.{name}.{kind}", what, why, value)

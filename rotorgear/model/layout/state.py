@@ -25,6 +25,7 @@ from rotorgear.model.layout.assembly import ToothNumbers, tooth_numbers
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
 from rotorgear.model.layout.spring import Spring, given_spring
+from rotorgear.note import Note
 
 if TYPE_CHECKING:
     import numpy as np
@@ -124,6 +125,26 @@ class FilmState:
     inlet: float | None
 
 
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """Where the force law of a part stands in an equilibrium.
+
+    Attributes:
+        part: its address. speed: of the reference shaft (rad/s).
+        force: of the shaft on it (k,), along its displacements. displacement: (k,).
+        stiffness: tangent (k, k). damping: (k, k).
+        averaged: whether these are means over a pitch of rolling elements.
+    """
+
+    part: str
+    speed: float
+    force: np.ndarray
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    averaged: bool
+
+
 @dataclass(frozen=True, eq=False)  # what it holds are arrays: two states are the same one or not
 class State:
     """The state that an analysis is about, for one sense of rotation.
@@ -153,7 +174,8 @@ class State:
         films: address -> film that keeps its temperature and its inlet.
         mapped_at: mesh -> misalignments (m), falling, of the face map of each helix, where states next to each other share one,
             as long as they lie among these.
-        notes: sentences on what was taken as linear about it.
+        operating: where the laws stand that `tangents` are of, at the lowest and the highest speed.
+        notes: what of the model is not in it.
     """
 
     layout: Layout
@@ -168,7 +190,8 @@ class State:
     tangents: Mapping[str, Spring] = field(default_factory=dict)
     films: Mapping[str, FilmState] = field(default_factory=dict)
     mapped_at: Misalignments = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    operating: tuple[OperatingPoint, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     @property
     def is_flow(self) -> bool:

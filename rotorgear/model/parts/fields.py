@@ -8,7 +8,7 @@ from __future__ import annotations
 import numbers
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
     AfterValidator,
@@ -28,6 +28,7 @@ from rotorgear.errors import ModelError
 from rotorgear.model.parts.old_names import KEYS, current_key, with_current_names
 from rotorgear.model.parts.problems import from_validation
 from rotorgear.quantity import DIMENSIONS, LARGEST, QuantityError, parse_quantity
+from rotorgear.quantity import in_words as quantity_in_words
 
 MOTIONS = ("bending", "axial", "torsion")
 DOF_NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "torsion")
@@ -102,6 +103,34 @@ class Part(BaseModel):
 
     def __hash__(self) -> int:
         return hash((type(self), *(getattr(self, name) for name in type(self).model_fields)))
+
+
+def in_words(part: Part, key: str) -> str:
+    """The value of a field with its unit; of a table in it the first quantity, of a list the first few entries."""
+    return _words(getattr(part, key), _unit_of(type(part).model_fields[key]))
+
+
+def _words(value: Any, unit: Unit | None) -> str:
+    if isinstance(value, Part):
+        fields = type(value).model_fields
+        given = (key for key in fields if isinstance(getattr(value, key), float) and _unit_of(fields[key]))
+        return next((in_words(value, key) for key in given), "")
+    if isinstance(value, tuple | dict):
+        entries = list(value.values()) if isinstance(value, dict) else list(value)
+        shown = ", ".join(filter(None, (_words(entry, unit) for entry in entries[:_SHORT])))
+        return shown + (f" and {len(entries) - _SHORT} more" if len(entries) > _SHORT else "")
+    if isinstance(value, float) and unit:
+        return quantity_in_words(value, unit.dimension)
+    return str(value)
+
+
+def _unit_of(about: Any) -> Unit | None:
+    """The unit in the type of a field, however deep it stands."""
+    for item in (*getattr(about, "metadata", ()), *get_args(getattr(about, "annotation", about))):
+        found = item if isinstance(item, Unit) else _unit_of(item) if get_args(item) else None
+        if found:
+            return found
+    return None
 
 
 def refuse(text: str) -> PydanticCustomError:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from rotorgear.note import NAMED, sentences
+from rotorgear.quantity import RPM_PER_RAD_S
 
 if TYPE_CHECKING:
+    from rotorgear.results.laws import LawRow
     from rotorgear.results.result import Result
 
 # Heading of a column, the side it stands on, and what it says of a row.
@@ -79,3 +81,27 @@ def notes_of(result: Result) -> list[str]:
         *(f"left out: {text}" for text in sentences(result.left_out, named=NAMED)),
         *(f"Warning: {text}" for text in sentences(result.warnings, named=NAMED)),
     ]
+
+
+def operating_points(rows: Sequence[LawRow]) -> Any:
+    """Force, deflection and stiffness of each across the shaft, in the direction of the force, and along z.
+
+    "mean" stands behind those that are averaged over a pitch of rolling elements.
+    """
+    out = table("operating point", "rpm", "F N", "moves um", "N/um", "Fz N", "z um", "z N/um")
+    for row in rows:
+        # What is rounding of the largest component is shown as none.
+        least = 1e-6 * max(map(abs, row.force), default=0.0)
+        across = (row.load, 1e6 * row.deflection, 1e-6 * row.along_load) if row.load > least else None
+        along = None
+        if len(row.force) >= 3 and abs(row.force[2]) > least:
+            along = (row.force[2], 1e6 * row.displacement[2], 1e-6 * row.stiffness[2, 2])
+        numbers = [f"{x:.4g}" for x in across or ()] or ["-", f"{1e6 * row.deflection:.4g}", "-"]
+        speed = "-" if row.speed is None else f"{row.speed * RPM_PER_RAD_S:.6g}"
+        out.add_row(
+            row.part + (", mean" if row.averaged else ""),
+            speed,
+            *numbers,
+            *([f"{x:.4g}" for x in along] if along else "---"),
+        )
+    return out

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import error_words, heading, lines, notes_of, table
+from rotorgear.results.tables.common import error_words, heading, lines, notes_of, operating_points, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -64,6 +64,8 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         parts += ["", _supports(result)]
     if result.casing_seat_force:
         parts += ["", _on_casings(result)]
+    if result.laws:
+        parts += ["", operating_points(result.laws)]
     moves = table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
     for place, value in result.place_displacement.items():
         moves.add_row(
@@ -75,7 +77,6 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         "tilts and twist in urad; L and R: helix at the smaller and the larger z",
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         *_along(result),
-        *(row.sentence for row in result.laws),
         *(
             f"ground on casing {name}: {_triple(load[:3])} N, {_triple(load[3:])} N m about the origin"
             for name, load in result.casing_force.items()

@@ -71,9 +71,9 @@ class BearingGeometry(Part):
         return None
 
     @property
-    def estimate(self) -> str:
-        """What of it is an estimate, as a sentence; or ""."""
-        return ""
+    def estimate(self) -> tuple[str, str, str]:
+        """What of it is an estimate, why, and the size; texts that are empty where nothing is."""
+        return "", "", ""
 
 
 # Usual: radial clearance over radius of a film; viscosity in Pa s; temperature of an inlet in K; density of oils in kg/m^3.

@@ -103,15 +103,15 @@ class RollingElements(BearingGeometry):
         return self.clearance or None
 
     @property
-    def estimate(self) -> str:
+    def estimate(self) -> tuple[str, str, str]:
         """Where its elements follow from its boundary dimensions."""
         known = inner_geometry(self.designation or "")
         if known is None or not known.estimated:
-            return ""
+            return "", "", ""
         return (
-            f"{self.elements} elements of {1e3 * self.element_diameter:.4g} mm on {1e3 * self.pitch_diameter:.4g} mm in a "
-            f"{self.designation} are {known.source}, because no maker prints them: stiffness and loads are an order of size; "
-            "give elements and diameters where you know them"
+            "elements estimated, since no maker prints them: stiffness and loads are an order of size",
+            "give elements and diameters where you know them",
+            f"{self.designation}: {self.elements} of {1e3 * self.element_diameter:.4g} mm on {1e3 * self.pitch_diameter:.4g} mm",
         )
 
     def law(self, ratio: float, sense: float, linear: Sequence[float]) -> ForceLaw:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, unlike_teeth_left_out
+from rotorgear.analysis.common.left_out import left_out
+from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.analysis.response.orders import orders_of
 from rotorgear.analysis.static import about_cycle
 from rotorgear.analysis.static.along_faces import along_faces
@@ -66,7 +67,7 @@ def law_of(local: LocalModel, mesh: str = "pair") -> Any:
 
 
 def test_the_mean_tangent_that_is_named_is_the_stiffness_of_modes() -> None:
-    said = sentence(rg.modal(loaded(), modes=2, elements=1), "the mean tangent of its loaded teeth over the mesh cycle")
+    said = sentence(rg.modal(loaded(), modes=2, elements=1), "ripple of loaded teeth; the mean tangent is taken")
     share, taken = numbers(said)[:2]
     curve = system_of(loaded()).state.curves["pair"][0].about_load  # of the teeth themselves, whose map is written here
     assert share == pytest.approx(100.0 * np.ptp(curve.transverse) / curve.mean, rel=0.02)
@@ -81,7 +82,7 @@ def test_without_a_state_over_the_cycle_the_tangent_at_the_torque_flow_is_taken(
 
     monkeypatch.setattr(about_cycle, "over_cycle", fails)
     found = rg.modal(loaded(), modes=8, elements=1, error_estimate=False)
-    assert says(found, "for which there is no solution (no luck); the tangent at the force of the torque flow is taken")
+    assert says(found, "there is no solution (no luck); the tangent at the force of the torque flow is taken")
     (force,) = loaded().torque_flow(1).forces
     assert found.eigenvalues == pytest.approx(modes(pair({"stiffness": force.contact.stiffness}.items())), rel=1e-9)
 
@@ -89,8 +90,9 @@ def test_without_a_state_over_the_cycle_the_tangent_at_the_torque_flow_is_taken(
 def test_teeth_without_tilt_do_not_feel_the_tilt_of_their_gears() -> None:
     """A gear that tilts in the plane of action, about the middle of its face, moves no flank: K of the mesh times it is 0."""
     system = system_of(loaded())
-    assert says(mesh_stiffness_left_out(system), "its teeth do not feel without tilt = true")
-    assert says(transient_left_out(local_of(loaded())), "its teeth do not feel without tilt = true")
+    assert all(
+        says(left_out(system, kind, 150.0), "tilt along the face; set tilt = true") for kind in ("modes", "time")
+    )
 
     def resists(model: rg.Model) -> float:
         of = system_of(model)
@@ -232,7 +234,7 @@ def test_the_mesh_of_shafts_is_made_for_the_larger_orders_as_is_said(monkeypatch
 def test_statics_without_tilt_do_not_feed_the_misalignment_back() -> None:
     soft = loaded(bearings__b__stiffness={"radial": "2e7 N/m", "axial": "5e7 N/m"})
     found = rg.static(soft, elements=1)
-    said = sentence(found, "is not fed back to the teeth")
+    said = sentence(found, "the teeth do not feel it; set tilt = true")
     assert found.mesh_deflection == pytest.approx(rg.static(loaded(), elements=1).mesh_deflection, rel=1e-6)
     # The misalignment that is said is the tilt of the two shafts against each other in the plane of action, over the face.
     pinion, wheel = (found.place_displacement[f"gears.{name}"] for name in ("pinion", "wheel"))
@@ -244,7 +246,7 @@ def test_statics_without_tilt_do_not_feed_the_misalignment_back() -> None:
 def test_teeth_that_nothing_stops_behind_carry_nothing_there() -> None:
     local = local_of(loaded())
     assert says(
-        transient_left_out(local), "coast flanks of pair: no backlash is given, so nothing stops teeth that part"
+        transient_left_out(local), "meshes.pair: coast flanks; no backlash is given, so nothing stops teeth that part"
     )
     assert law_of(local).can_part
     assert law_of(local).evaluate(-1.0).force[0] == 0.0
@@ -254,17 +256,19 @@ def test_teeth_that_nothing_stops_behind_carry_nothing_there() -> None:
 
 def test_teeth_that_never_part_pull() -> None:
     local = local_of(pair())
-    assert says(transient_left_out(local), "contact loss in pair: no backlash is given, so their teeth never part")
+    assert says(transient_left_out(local), "meshes.pair: contact loss; no backlash is given, so no teeth part")
     assert law_of(local).evaluate(-1e-6).force[0] == pytest.approx(-K * 1e-6, rel=1e-9)
 
 
 def test_a_mesh_that_excites_nothing_is_the_same_at_all_angles() -> None:
     local = local_of(pair())
-    assert says(transient_left_out(local), "excitation by pair: neither transmission error nor stiffness variation")
+    assert says(
+        transient_left_out(local), "meshes.pair: excitation; neither transmission error nor stiffness variation"
+    )
     values = [law_of(local).evaluate(5e-6, angle=angle).force[0] for angle in np.linspace(0.0, 0.3, 7)]
     assert np.ptp(values) == 0.0
-    assert not says(transient_left_out(local_of(spur_pair())), "excitation by")
-    assert not says(transient_left_out(local_of(loaded())), "excitation by")
+    assert not says(transient_left_out(local_of(spur_pair())), "excitation; neither")
+    assert not says(transient_left_out(local_of(loaded())), "excitation; neither")
 
 
 @pytest.mark.parametrize("name", ["iso", "potential_energy"])
@@ -326,9 +330,11 @@ def test_meshes_that_stand_askew_resist_a_tilt_by_their_tangent_also_where_they_
     local, plain = (local_of(model) for model in (tilting(backlash=1e-4), pair({"backlash": 1e-4}.items())))
     said = transient_left_out(local)
     assert says(
-        said, "how the load moves along the face of pair in time", "resist a tilt by the tangent about it, even where"
+        said,
+        "meshes.pair: how the load moves along the face in time",
+        "resist a tilt by the tangent about it, even where",
     )
-    assert says(said, "how the tilt of the coast flanks of pair changes in time")
+    assert says(said, "meshes.pair: how the tilt of the coast flanks changes in time")
     assert not says(transient_left_out(plain), "tilt")
     assert law_of(local).components == 1
     tilt = local.system.dofs.transform.T.tocsr()[:, [6 * local.system.nodes.at("one", 0.06) + 3]]

@@ -36,7 +36,7 @@ def test_torques_balance_as_without_friction() -> None:
         for mu in (0.0, 0.1)
     )
     run = rg.transient(rough, time=1e-3, elements=1, error_estimate=False)
-    assert says(run, "what friction in pair takes of the torques: they balance as without it")
+    assert says(run, "meshes.pair: what friction takes of the torques; they balance as without it")
     assert rg.check(rough).to_dict()["torques"] == rg.check(smooth).to_dict()["torques"]
 
 
@@ -48,7 +48,7 @@ def test_without_torque_varying_stiffness_excites_nothing() -> None:
         answer(pair(mesh, operation__torque=None, **UNBALANCED))
         for mesh in ((), {"stiffness_variation": [{"harmonic": 1, "amplitude": 0.1}]}.items())
     )
-    assert says(varies, "stiffness variation of pair: no torque, so no mean force that it acts on")
+    assert says(varies, "meshes.pair: stiffness variation; no torque, so no mean force that it acts on")
     assert (still.orders, varies.orders) == (("shaft two 1x",), ("shaft two 1x", "mesh pair 1x"))
     assert varies.bearing_force[0] == pytest.approx(still.bearing_force[0], rel=1e-12)
     assert not varies.bearing_force[1].any()
@@ -95,9 +95,9 @@ def test_torques_that_change_with_speed_or_step_do_so_in_time_only() -> None:
         return answer(spur_pair(operation__torque=None, operation__output_shaft=None, loads=loads))
 
     plain, bent, step = run(), run(speed_power=2.0), run(step_at="0.1 s", step_to=0.5)
-    assert says(bent, "loads.on_two: how its torque changes with the speed, which transients take")
+    assert says(bent, "loads.on_two.speed_power (2): only motions over time take it")
     assert bent.mesh_force == pytest.approx(plain.mesh_force, rel=1e-12)
-    assert says(step, "loads.on_two: its step in time, which transients take")
+    assert says(step, "loads.on_two.step_to (0.5): only motions over time take it")
     assert step.mesh_force == pytest.approx(plain.mesh_force, rel=1e-12)
 
 
@@ -106,7 +106,7 @@ def test_springs_to_ground_carry_no_mean_torque_in_a_response() -> None:
         return answer(spur_pair(supports={"brake": {"shaft": "two", "at": "0 mm", "stiffness": {"torsion": k}}}))
 
     soft, stiff = held(1e3), held(1e6)
-    assert says(soft, "mean torque in the torsional stiffness to ground of supports.brake")
+    assert says(soft, "supports.brake: mean torque in the torsional stiffness to ground")
     assert stiff.mean_force == pytest.approx(soft.mean_force, rel=1e-9)
     assert not np.allclose(stiff.mesh_force, soft.mesh_force, rtol=1e-3)
 

@@ -26,7 +26,7 @@ def test_a_ball_bearing_under_a_ball_has_the_deflection_of_the_standard():
     assert moved == pytest.approx(15.1101e-6, rel=1e-4)
     assert result.laws[0].stiffness[0, 0] == pytest.approx(1.5 * 1000.0 / moved, rel=1e-6)
     assert not result.laws[0].averaged
-    assert "bearings.front: 15.11 um, 99.27 N/um at 1000 N" in " ".join(str(result).split())
+    assert "bearings.front 0 1000 15.11 99.27" in " ".join(str(result).split())
 
 
 def test_a_roller_bearing_has_the_deflection_of_its_line_contacts():
@@ -61,10 +61,18 @@ def test_a_pure_moment_tilts_a_ball_bearing_as_the_sum_over_its_balls_says():
 
 def test_linear_analyses_print_the_state_that_they_are_about():
     model = rotor(BALLS, '["0 N", "1 kN", "0 N"]', "3000 rpm")
-    said = [note for note in rg.modal(model).left_out if note.startswith("bearings.front: 15.19 um, ")]
-    assert len(said) == 1
-    assert said[0].endswith(" N/um at 1000 N, mean over a pitch of its elements")
-    assert rg.static(model).laws[0].averaged
+    found = rg.modal(model)
+    (law,) = found.laws
+    assert law == rg.static(model).laws[0]
+    assert law.averaged
+    assert law.part == "bearings.front"
+    assert law.deflection == pytest.approx(15.19e-6, abs=5e-9)
+    assert law.load == pytest.approx(1000.0, rel=1e-9)
+    assert "linear about the static equilibrium at 3000 rpm" in found.method
+    assert not any("bearings.front" in note for note in found.left_out)  # nothing of it is left out
+    assert "15.19" in found.text(laws=True)
+    assert "15.19" not in found.text()
+    assert [row["part"] for row in found.rows("laws")] == ["bearings.front"]
 
 
 def test_an_angular_contact_bearing_has_the_state_of_the_handbook():

@@ -65,7 +65,7 @@ def test_unlike_teeth_whose_place_is_not_known_are_named() -> None:
     assert not list(unlike_teeth_left_out(System(model)))
     given = System(model.with_("meshes.bc.phase", "10 deg"))
     (said,) = unlike_teeth_left_out(given)
-    assert said.startswith("which teeth of gears.b are in meshes.ab and meshes.bc")
+    assert said.startswith("gears.b: which of its teeth are in meshes.ab and meshes.bc")
     stiffnesses = {f"meshes.{name}.stiffness": 1e8 for name in model.meshes}
     assert not list(unlike_teeth_left_out(System(given.model.with_(stiffnesses))))
 

@@ -47,5 +47,5 @@ def test_a_sweep_prints_what_it_leaves_out() -> None:
     swept = rg.sweep(
         spur_pair(motions=["torsion"]), {"operation.speed": ["1500 rpm"]}, discard=2, sample=2, exponents=0, elements=1
     )
-    assert any("their teeth never part" in note for note in swept.left_out)
-    assert "left out: contact loss in pair" in " ".join(swept.text().split())
+    assert any("no teeth part" in note for note in swept.left_out)
+    assert "left out: meshes.pair: contact loss" in " ".join(swept.text().split())

@@ -1,0 +1,326 @@
+"""What a model file holds and an analysis does not take, part by part, with the reason and the size.
+
+Keys that a whole kind of analysis never takes stand in one table (`_NOT_TAKEN`); what depends on the state or on other keys of
+the part follows it. What an analysis leaves out by its own method it says itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Literal
+
+import numpy as np
+
+from rotorgear.analysis.common.gear_bodies import body_notes
+from rotorgear.model.layout.external_loads import ExternalLoad
+from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import in_words
+from rotorgear.model.parts.load import COMPONENTS
+from rotorgear.model.parts.supports import element_law
+from rotorgear.note import Note
+from rotorgear.system.system import System
+
+# "modes" are modal, campbell and critical; "frf" is state space too; "time" are transients, sweeps and orbits.
+Analysis = Literal["modes", "frf", "static", "response", "time"]
+
+_LINEAR = "modes frf response"
+_ALL = f"{_LINEAR} static time"
+_FREE = "free vibrations have no excitation"
+_UNIT = "a frequency response is that to unit forces"
+_SMALL = "vibrations are small, and teeth that carry go on doing so"
+_IN_TIME = "only motions over time take it"
+_DAMPS = "deflections at rest have no damping"
+_SHEET = "only the gear sheet takes it"
+_UNDAMPED = "the analysis is undamped (a --speed, even of 0, takes damping in)"
+_FLANKS = "only stiffness = 'tooth_fe' looks at the shape of the flanks"
+# Table, keys, analyses that do not take them, and why. Nothing behind a table is the whole part.
+_NOT_TAKEN = (
+    ("meshes", "backlash regularisation_depth", _LINEAR, _SMALL),
+    ("meshes", "backlash regularisation_depth", "static", "statics looks at the flanks that the loads press together"),
+    ("meshes", "transmission_error corner_impact", "modes", _FREE),
+    ("meshes", "transmission_error corner_impact", "frf", _UNIT),
+    (
+        "meshes",
+        "transmission_error corner_impact",
+        "static",
+        "statics takes the mean over the mesh cycle, which is zero",
+    ),
+    ("meshes", "stiffness_variation", "modes frf static", "the mean stiffness over the mesh cycle is taken"),
+    ("meshes", "friction_coefficient lubricant_viscosity", f"{_LINEAR} static", _IN_TIME),
+    ("meshes", "damping damping_ratio", "static", _DAMPS),
+    ("meshes", "damping damping_ratio", "undamped", _UNDAMPED),
+    ("meshes", "application_factor centre_distance_allowance", _ALL, _SHEET),
+    ("gears", "accuracy_grade ball_diameter upper_thickness_allowance lower_thickness_allowance", _ALL, _SHEET),
+    ("gears", "body.damping_ratio", "static", _DAMPS),
+    ("gears", "body.damping_ratio", "undamped", _UNDAMPED),
+    ("unbalances", "", "modes", _FREE),
+    ("unbalances", "", "frf", _UNIT),
+    ("unbalances", "", "static", "what turns with its shaft has no constant part"),
+    ("loads", "ripple", "modes", _FREE),
+    ("loads", "ripple", "frf", _UNIT),
+    ("loads", "ripple", "static", "statics takes the mean"),
+    ("loads", "speed_power step_to", f"{_LINEAR} static", _IN_TIME),
+    *(
+        (table, keys, analyses, why)
+        for analyses, why in (("static", _DAMPS), ("undamped", _UNDAMPED))
+        for table, keys in (
+            ("damping", "rayleigh_alpha rayleigh_beta modal_ratio"),
+            ("shafts", "internal_damping"),
+            ("bearings", "damping pedestal.damping"),
+            ("supports", "damping"),
+            ("couplings", "damping"),
+            ("nonlinear_elements", "damping"),
+            ("casings", "damping_ratio"),
+        )
+    ),
+    ("scatter", "", _ALL, "only rotorgear scatter takes it"),
+)
+# What only loaded teeth see of a gear.
+_OF_FLANKS = (
+    "tip_relief",
+    "flank.root_relief",
+    "flank.crowning",
+    "flank.profile_crowning",
+    "flank.profile_slope",
+    "flank.end_relief",
+    "flank.helix_slope",
+    "flank.bias",
+    "flank.topography",
+    "flank.pitch_errors",
+)
+# The motion that each component of a load works on.
+_MOTION = ("bending", "bending", "axial", "bending", "bending", "torsion")
+
+
+def left_out(system: System, analysis: Analysis, speed: float | None, *, undamped: bool = False) -> tuple[Note, ...]:
+    """What of its model an analysis at a speed in rad/s leaves out; None of the speed is an undamped one at standstill."""
+    model = system.model
+    undamped = undamped or speed is None
+    kinds = {analysis, "undamped"} if undamped and analysis == "modes" else {analysis}
+    return (
+        *_dofs(system),
+        *_matrices(system, analysis, speed, undamped=undamped),
+        *(note for row in _NOT_TAKEN if kinds & set(row[2].split()) for note in _given(model, row)),
+        *_flanks(model, analysis),
+        *_beside_laws(model, analysis),
+        *_mean_load(system, analysis, speed),
+        *(note for load in system.layout.external_loads for note in _of_load(system, load, analysis)),
+        *_beta(system, analysis, speed),
+        *(mesh_stiffness(system) if analysis in ("modes", "frf") else ()),
+        *body_notes(system),
+        *system.state.notes,
+    )
+
+
+def _given(model: Model, row: tuple[str, str, str, str]) -> Iterator[Note]:
+    """A fact for each key of a row that the file gives another value than the default."""
+    table, keys, _, why = row
+    parts = getattr(model, table)
+    for name, part in parts.items() if isinstance(parts, dict) else [("", parts)]:
+        address = f"{table}.{name}" if name else table
+        if not keys:
+            yield Note(address, "", why, in_words(part, "magnitude") if table == "unbalances" else "")
+        for key in keys.split():
+            if value := given_value(part, key):
+                yield Note(f"{address}.{key}", "", why, value)
+
+
+def given_value(part: Any, key: str) -> str:
+    """The value of a key, or of one in a table of the part, in words; "" of one that has its default."""
+    *owners, last = key.split(".")
+    for owner in owners:
+        part = getattr(part, owner)
+        if part is None:
+            return ""
+    default = type(part).model_fields[last].get_default(call_default_factory=True)
+    return in_words(part, last) if getattr(part, last) != default else ""
+
+
+def _dofs(system: System) -> Iterator[Note]:
+    """What was not built: motions that the model does not have, and dofs that are held."""
+    held = system.dofs.held
+    absent = [motion for motion in ("bending", "axial", "torsion") if not system.model.has(motion)]
+    if absent:
+        yield Note("", " and ".join(absent), "not among the motions of the model", f"{held['motions']} dofs")
+    for how, count in (
+        ("held fixed by supports", held["supports"]),
+        ("tied by rigid sections", held["rigid sections"]),
+    ):
+        if count:
+            yield Note("", f"{count} dofs {how}")
+
+
+def _matrices(system: System, analysis: Analysis, speed: float | None, *, undamped: bool) -> Iterator[Note]:
+    """Gyroscopic terms, and what damps beyond the keys of the file."""
+    if analysis == "static":
+        gravity = system.model.operation.gravity if system.model.operation else None
+        if not (gravity and any(gravity)):
+            yield Note("", "weight", "no gravity given under [operation]")
+        for name in system.model.casings if gravity and any(gravity) else ():
+            if np.any(np.isnan(system.layout.casing(name).inertia_force[:, :3])):
+                yield Note(f"casings.{name}", "weight", "the file of the casing does not give it")
+        return
+    if not system.gyroscopic.nnz:
+        yield Note("", "gyroscopic matrix", "nothing that turns can tilt")
+    elif not speed:
+        yield Note("", "gyroscopic matrix", "standstill")
+    if undamped:
+        for address, spring in system.state.springs.items():
+            if address in system.state.tangents and np.any(spring.damping):
+                yield Note(address, "damping of the law", _UNDAMPED)
+        return
+    if not np.any(system.damping(speed or 0.0).data) and not system.model.damping.modal_ratio:
+        # The law of a nonlinear element is in no matrix until it is linearised: a film damps all the same.
+        laws = [
+            f"nonlinear_elements.{name}"
+            for name, element in system.model.nonlinear_elements.items()
+            if not element.is_given
+            and f"nonlinear_elements.{name}" not in system.state.tangents
+            and element_law(element, 1.0).uses_velocity
+        ]
+        yield Note("", "damping matrix", f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps")
+
+
+def _flanks(model: Model, analysis: Analysis) -> Iterator[Note]:
+    """The shape of flanks, where no mesh of a gear has loaded teeth, and misalignments that nothing feels."""
+    loaded = {gear for m in model.meshes.values() if m.stiffness == "tooth_fe" for gear in (m.pinion, m.gear)}
+    for name, gear in model.gears.items():
+        for key in _OF_FLANKS if name not in loaded else ():
+            if value := given_value(gear, key):
+                yield Note(f"gears.{name}.{key}", "", _FLANKS, value)
+    for name, mesh in model.meshes.items():
+        if mesh.misalignment and mesh.stiffness != "tooth_fe" and not mesh.tilt:
+            why = "only teeth with tilt = true or stiffness = 'tooth_fe' feel it"
+            yield Note(f"meshes.{name}.misalignment", "", why, in_words(mesh, "misalignment"))
+        if mesh.stiffness == "tooth_fe" and not mesh.tilt and analysis != "static":  # statics knows how large it is
+            yield Note(f"meshes.{name}", "tilt along the face", "set tilt = true")
+
+
+def _beside_laws(model: Model, analysis: Analysis) -> Iterator[Note]:
+    """Which of two descriptions of a part counts, for the two need not agree."""
+    for name, bearing in model.bearings.items():
+        if bearing.rolling is not None and bearing.stiffness is not None:
+            if analysis == "time":
+                why = "the rolling elements carry; statics and linear analyses take the stiffness"
+                yield Note(f"bearings.{name}.stiffness", "", why, in_words(bearing, "stiffness"))
+            else:
+                why = "the stiffness carries; transients and sweeps take the rolling elements"
+                yield Note(f"bearings.{name}.rolling", "", why)
+    for name, element in model.nonlinear_elements.items():
+        if element.is_given:
+            taken = analysis in ("static", "time")
+            key = "stiffness" if element.stiffness is not None else "table"
+            address = f"nonlinear_elements.{name}"
+            if taken:
+                yield Note(f"{address}.{key}", "", "the law acts; linear analyses take what is given beside it")
+            else:
+                yield Note(f"{address}.parameters", "", f"the {key} given beside the law is taken")
+
+
+def _mean_load(system: System, analysis: Analysis, speed: float | None) -> Iterator[Note]:
+    """The operating point, where nothing of an analysis depends on it."""
+    model = system.model
+    operation = model.operation
+    if operation is None:
+        return
+    turning = any(bearing.table or not bearing.is_linear for bearing in model.bearings.values())
+    turning = turning or bool(model.nonlinear_elements or system.layout.elastic_bodies)
+    if analysis == "static" and operation.speed and not turning:
+        why = "of the speed only its sense matters at rest, which chooses the flanks that work"
+        yield Note("operation.speed", "", why, in_words(operation, "speed"))
+    if analysis not in ("modes", "frf"):
+        return
+    state = system.state
+    if operation.speed and not speed and not is_about_equilibrium(system):
+        yield Note("operation.speed", "", "the shafts stand still", in_words(operation, "speed"))
+    if operation.gravity and any(operation.gravity) and not is_about_equilibrium(system):
+        yield Note("operation.gravity", "", "nothing here depends on the mean load", in_words(operation, "gravity"))
+    if state.curves or is_about_equilibrium(system):
+        return
+    only = "of the mean load only its sense matters here, which chooses the flanks that work"
+    for key in ("power", "torque"):
+        if getattr(operation, key) is not None:
+            yield Note(f"operation.{key}", "", only, in_words(operation, key))
+        for name, load in model.loads.items():
+            if load.kind is not None and getattr(load, key) is not None:
+                yield Note(f"loads.{name}.{key}", "", only, in_words(load, key))
+
+
+def is_about_equilibrium(system: System) -> bool:
+    """Whether a linear analysis depends on the mean load beyond the flanks that work: laws, faces or loaded teeth."""
+    state = system.state
+    return bool(state.tangents or state.faces or state.cycle)
+
+
+def _of_load(system: System, load: ExternalLoad, analysis: Analysis) -> Iterator[Note]:
+    """What an analysis does not take of a force or moment."""
+    size = _size(load)
+    given = (load.constant != 0.0) | (load.amplitude != 0.0)
+    if load.history is not None:
+        given |= np.isin(COMPONENTS, load.history.components)
+    lost = [name for k, name in enumerate(COMPONENTS) if given[k] and not system.model.has(_MOTION[k])]
+    if lost:
+        words = ", ".join(lost).replace("_", " ")
+        yield Note(load.address, words, "whose motion is not among those of the model", size)
+    if analysis in ("modes", "frf"):
+        acts = is_about_equilibrium(system) and not load.amplitude.any()
+        if load.history is not None or not acts:
+            what = "what varies of the history" if acts else ""
+            yield Note(load.address, what, _FREE if analysis == "modes" else _UNIT, size)
+    elif analysis == "static" and load.amplitude.any():
+        yield Note(load.address, "", "a harmonic load has no constant part", size)
+    elif analysis == "static" and load.history is not None:
+        taken = "the mean over a turn acts" if load.history.over == "angle" else "the values at time 0 act"
+        yield Note(load.address, "what varies of the history", taken, size)
+    elif analysis == "response" and load.history is not None and load.history.over == "time":
+        yield Note(load.address, "history over time", "only the values at time 0 act, on the mean state", size)
+
+
+def _size(load: ExternalLoad) -> str:
+    whole = load.constant + load.amplitude
+    if load.history is not None:
+        values = np.array(load.history.values)
+        return f"{values.min():.4g} to {values.max():.4g}" if values.size else ""
+    force, moment = (float(np.linalg.norm(part)) for part in (whole[:3], whole[3:]))
+    return ", ".join(f"{x:.4g} {unit}" for x, unit in ((force, "N"), (moment, "N m")) if x)
+
+
+def _beta(system: System, analysis: Analysis, speed: float | None) -> Iterator[Note]:
+    """On which stiffness the damping beta K of the model does not act, where there is such."""
+    if analysis == "static" or speed is None or not system.model.damping.rayleigh_beta:
+        return
+    if system.circulatory(speed).nnz:
+        what = "beta K of circulatory and cross-coupled stiffness"
+        yield Note("damping.rayleigh_beta", what, "rayleigh_beta acts on the symmetric part of K")
+    if analysis == "time":
+        laws = [f"nonlinear_elements.{name}" for name in system.model.nonlinear_elements]
+        laws += [f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law]
+        for part in laws:
+            why = "rayleigh_beta acts on the tangent in linear analyses; in time the law says what damps"
+            yield Note(part, "beta K", why)
+
+
+def mesh_stiffness(system: System) -> Iterator[Note]:
+    """What the mean stiffness over the mesh cycle leaves out of each mesh whose stiffness is a model's or a list."""
+    for name, mesh in system.model.meshes.items():
+        address = f"meshes.{name}"
+        if isinstance(mesh.stiffness, tuple):
+            mean = sum(mesh.stiffness) / len(mesh.stiffness)
+            share = (max(mesh.stiffness) - min(mesh.stiffness)) / mean
+            value = f"{100.0 * share:.3g} % of {mean:.4g} N/m"
+            yield Note(address, "ripple of the given stiffness", "the mean is taken", value)
+        elif curve := system.state.whole_curve(name):
+            about = curve.about_load
+            forces = system.state.of_mesh(name)
+            taken = sum(force.contact.stiffness for force in forces)
+            share = float(np.ptp(about.transverse)) / about.mean
+            helices = "" if about.helices == 1 else " of both helices"
+            if about.model == "tooth_fe" and all(force.start is not None for force in forces):
+                value = f"{100.0 * share:.3g} % of {taken:.4g} N/m{helices}"
+                yield Note(address, "ripple of loaded teeth", "the mean tangent is taken", value)
+                continue
+            load = "without a load" if not about.load else f"at F_bt = {about.load:.4g} N"
+            value = f"{100.0 * share:.3g} % of " if share else ""
+            value += f"{taken:.4g} N/m, {about.definition}, {load}{helices}"
+            what = f"ripple of '{about.model}'" if share else f"ripple, which '{about.model}' does not know"
+            yield Note(address, what, f"the mean stiffness of '{about.model}' along the flank normal is taken", value)
