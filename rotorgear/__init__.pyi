@@ -8,7 +8,7 @@ from rotorgear.model.load import loads as loads
 from rotorgear.model.load import schema as schema
 from rotorgear.rexs.import_rexs import import_rexs as import_rexs
 from rotorgear.model.shipped import models as models
-from rotorgear.export.new_model import new as new
+from rotorgear.export.model_files import new as new
 from rotorgear.model.model import Model as Model
 from rotorgear.model.parts.operation import Operation as Operation
 from rotorgear.model.parts.load import Load as Load
@@ -103,17 +103,17 @@ from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
 from rotorgear.export.uff import write_uff as write_uff
-from rotorgear.export.state_space import write_state_space as write_state_space
+from rotorgear.export.matrices import write_state_space as write_state_space
 from rotorgear.export.matrices import write_matrices as write_matrices
 from rotorgear.export.matrices import read_matrices as read_matrices
-from rotorgear.export.rexs_model import write_model_file as write_model_file
-from rotorgear.export.sensor_table import write_sensors as write_sensors
-from rotorgear.export.updated_model import write_updated_model as write_updated_model
-from rotorgear.export.optimised_model import write_optimised_model as write_optimised_model
-from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
+from rotorgear.export.model_files import write_model_file as write_model_file
+from rotorgear.export.tables import write_sensors as write_sensors
+from rotorgear.export.model_files import write_updated_model as write_updated_model
+from rotorgear.export.model_files import write_optimised_model as write_optimised_model
+from rotorgear.export.vtk_parts import write_casing_vtk as write_casing_vtk
 from rotorgear.export.vtk import write_vtk as write_vtk
-from rotorgear.export.vtk_motion import write_motion as write_motion
-from rotorgear.export.vtk_deflection import write_deflections as write_deflections
+from rotorgear.export.vtk_results import write_motion as write_motion
+from rotorgear.export.vtk_results import write_deflections as write_deflections
 
 # The results.
 from rotorgear.results.modal import ModalResult as ModalResult

@@ -108,7 +108,7 @@ def compare(call: Call) -> None:
 
 def export(call: Call) -> None:
     """The linear system as files of other programs."""
-    from rotorgear.export.state_space import require_matrix_name
+    from rotorgear.export.matrices import require_matrix_name
 
     state_space, matrices, uff = call["state_space"], call["matrices"], call["uff"]
     if not (state_space or matrices or uff):

@@ -61,7 +61,7 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
         modes = None if call["shapes"] is None else _shapes(call, result)
         typer.echo(f"wrote {rg.write_uff(result, call['uff'], modes=modes)}")
     if call["csv"]:
-        from rotorgear.export.csv_file import write_csv
+        from rotorgear.export.tables import write_csv
 
         typer.echo(f"wrote {write_csv(_rows_of_a_map(result), call['csv'])}")
     if call["output"]:
@@ -80,7 +80,7 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
 def write_json(call: Call, data: dict[str, Any]) -> None:
     """Write plain values where a file was asked for."""
     if call["json"]:
-        from rotorgear.export.json_file import write_json as write
+        from rotorgear.export.files import write_json as write
 
         write(data, call["json"])
 
@@ -134,7 +134,7 @@ def _write_vtk(call: Call, result: Any, folder: Path) -> None:
                 hint = _of_modes(result, modes)
                 paths = rg.write_vtk(result, folder, modes=modes, progress=progress)
             case "campbell":
-                from rotorgear.export.vtk_branch import write_branch
+                from rotorgear.export.vtk_results import write_branch
 
                 hint = f" for branch {call['branch']}; --branch chooses another"
                 paths = write_branch(result, folder, call["branch"] - 1, progress=progress)
@@ -153,7 +153,7 @@ def _write_vtk(call: Call, result: Any, folder: Path) -> None:
 def _write_teeth(call: Call, result: Any, folder: Path, progress: Progress) -> list[Path]:
     """Write both tooth meshes at one position of a mesh cycle."""
     from rotorgear.analysis.teeth.tooth_field import tooth_fields
-    from rotorgear.export.tooth_vtk import write_tooth_vtk
+    from rotorgear.export.vtk_parts import write_tooth_vtk
 
     asked = {"torque": call["torque"], "preset": result.preset, "body": call["body"], "at": call["at"]}
     return write_tooth_vtk(tooth_fields(call.source, result.mesh, **asked, progress=progress), folder)

@@ -22,7 +22,6 @@ from scipy.spatial import cKDTree
 
 from rotorgear.elements.shaft import cowper
 from rotorgear.model.model import Model
-from rotorgear.model.parts.shaft import Section
 from rotorgear.results.modal import NodeTable, body_name
 
 
@@ -165,16 +164,14 @@ class Skeleton:
             return np.zeros(max(len(places) - 1, 0))
         ends = part.start + np.cumsum([section.length for section in part.sections])
         which = np.minimum(np.searchsorted(ends, 0.5 * (places[:-1] + places[1:])), len(part.sections) - 1)
-        return np.array(
-            [self._phi(shaft, part.sections[k], length) for k, length in zip(which, np.diff(places), strict=True)]
-        )
-
-    def _phi(self, shaft: str, section: Section, length: float) -> float:
-        """Phi of a piece of a section; a cone counts with its mean diameters."""
-        outer, bore, outer_end, bore_end = section.stiffness_diameters()
-        outer = 0.5 * (outer + outer_end)
-        bore = 0.5 * (bore + bore_end)
-        material = self.model.material_of(shaft, section)
-        kappa = section.shear_coefficient or float(cowper(material.nu, bore / outer))
-        # E/G (12 / kappa L^2) I/A with I/A = (d_o^2 + d_i^2)/16
-        return 12.0 * material.youngs_modulus * (outer**2 + bore**2) / (16.0 * kappa * material.g * length**2)
+        phi = []
+        for k, length in zip(which, np.diff(places), strict=True):
+            section = part.sections[k]
+            outer, bore, outer_end, bore_end = section.stiffness_diameters()
+            outer = 0.5 * (outer + outer_end)  # a cone counts with its mean diameters
+            bore = 0.5 * (bore + bore_end)
+            material = self.model.material_of(shaft, section)
+            kappa = section.shear_coefficient or float(cowper(material.nu, bore / outer))
+            # E/G (12 / kappa L^2) I/A with I/A = (d_o^2 + d_i^2)/16
+            phi.append(12.0 * material.youngs_modulus * (outer**2 + bore**2) / (16.0 * kappa * material.g * length**2))
+        return np.array(phi)

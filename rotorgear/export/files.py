@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from rotorgear.errors import RotorgearError
 
@@ -94,3 +96,17 @@ def reason_of(error: Exception) -> str:
     number = getattr(error, "errno", None)
     text = os.strerror(number) if number else str(error).splitlines()[0]
     return text[:1].lower() + text[1:]
+
+
+def write_json(data: dict[str, Any], path: str | Path) -> None:
+    """Write plain values to a JSON file.
+
+    Raises:
+        RotorgearError: a value is not finite or no plain one; the file can't be written (WriteError).
+    """
+    try:
+        text = json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False)
+    except (ValueError, TypeError) as error:
+        raise RotorgearError(f"{path} can't be written as JSON: {error}") from None
+    with replacing(path) as scratch:
+        scratch.write_text(text + "\n", encoding="utf-8")

@@ -102,7 +102,20 @@ def read(path: str | Path) -> Any:
             # A field that came later has its default in an older file; the version stands in every file.
             old = {"rotorgear_version": str(file.attrs["rotorgear_version"])}
             stored = {name: get_value(file[name]) for name in stored_fields(cls) if name in file}
-            _require_fields(path, cls, stored)
+            lacking = [
+                one.name
+                for one in fields(cls)
+                if one.init
+                and one.default is MISSING
+                and one.default_factory is MISSING
+                and one.name not in stored
+                and one.name in stored_fields(cls)
+            ]
+            if lacking:
+                raise ReadError(
+                    path,
+                    f"it is damaged, or from a rotorgear that did not compute {', '.join(lacking)}; run the analysis again",
+                )
             result = cls(**old | stored)
         except ModelError as error:
             raise ReadError(path, f"its model does not pass the checks of rotorgear {VERSION}\n{error}") from None
@@ -114,24 +127,6 @@ def read(path: str | Path) -> Any:
                 path, "it is damaged: its values are not those that rotorgear wrote; run the analysis again"
             )
         return result
-
-
-def _require_fields(path: Path, cls: type[Any], stored: dict[str, Any]) -> None:
-    """ReadError for a file that lacks what every such result holds today."""
-    lacking = [
-        one.name
-        for one in fields(cls)
-        if one.init
-        and one.default is MISSING
-        and one.default_factory is MISSING
-        and one.name not in stored
-        and one.name in stored_fields(cls)
-    ]
-    if lacking:
-        raise ReadError(
-            path,
-            f"it is damaged, or from a rotorgear that did not compute {', '.join(lacking)}; run the analysis again",
-        )
 
 
 def _import_h5py() -> ModuleType:

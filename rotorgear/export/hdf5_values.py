@@ -59,17 +59,14 @@ def digest_of(file: Any) -> str:
         if item.shape is not None and item.nbytes > size:
             raise ValueError(f"{name} says that it has {item.size:.3g} values, more than the file has bytes")
         value = item[()] if item.shape is not None else None
-        plain = isinstance(value, np.ndarray) and value.dtype != object
         digest.update(f"{item.dtype} {item.shape}".encode())
-        digest.update(np.ascontiguousarray(value).tobytes() if plain else repr(_listed(value)).encode())
+        if isinstance(value, np.ndarray) and value.dtype != object:
+            digest.update(np.ascontiguousarray(value).tobytes())
+        else:  # texts of an array in full; numpy shortens long ones
+            digest.update(repr(value.tolist() if isinstance(value, np.ndarray | np.generic) else value).encode())
 
     file.visititems(add)
     return digest.hexdigest()
-
-
-def _listed(value: Any) -> Any:
-    """Texts of an array in full; numpy shortens long ones."""
-    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 _OF_A_NOTE = ("part", "what", "why", "value")

@@ -1,14 +1,124 @@
-"""Where the shafts are shown: at their positions; those without one beside their mates in mesh, in line with what they are
-coupled to, or else side by side."""
+"""How large the parts are shown, and where: sizes that the model gives or plausible ones, and the axes of the shafts.
+
+A disk with mass m and polar inertia J is shown as a solid cylinder, D = sqrt(8 J/m), w = 4 m/(pi rho D^2); one without mass as a
+cylinder of width D/5, D^5 = 160 J/(pi rho). A lumped gear is shown with its pitch cylinder r = r_b/cos a. Shafts stand at their
+positions; those without one beside their mates in mesh, in line with what they are coupled to, or else side by side.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.export.sizes import BodySize, bodies_on, pitch_radius, shaft_diameter
 from rotorgear.model.model import Model
+
+# A shaft without sections has no diameter: parts that need one take this share of its largest body, or this many m.
+NOMINAL_SHARE = 0.2
+NOMINAL_DIAMETER = 0.02
+# A lumped gear without a width is shown this wide, relative to its pitch radius.
+LUMPED_WIDTH = 0.3
+
+
+@dataclass(frozen=True)
+class BodySize:
+    """A cylinder about a shaft: outer diameter and the range of z it covers, in m."""
+
+    diameter: float
+    low: float
+    high: float
+
+
+def pitch_radius(model: Model, name: str) -> float:
+    """Working pitch radius in m of a gear in its first mesh; without a mesh that of its own pressure angle."""
+    gear = model.layout.gear(name)
+    for mesh in model.layout.meshes:
+        if gear in mesh.gears:
+            return gear.base_radius / math.cos(mesh.pressure_angle)
+    geometry = gear.geometry
+    angle = geometry.transverse_pressure_angle if geometry else gear.part.transverse_pressure_angle or 0.0
+    return gear.base_radius / math.cos(angle)
+
+
+def helix_width(model: Model, name: str) -> float:
+    """Width in m of one helix as it is shown."""
+    return model.layout.gear(name).part.width or LUMPED_WIDTH * pitch_radius(model, name)
+
+
+def gear_size(model: Model, name: str) -> BodySize:
+    """Tip cylinder of a gear over all its helices."""
+    geometry = model.layout.gear(name).geometry
+    diameter = geometry.effective_tip_diameter if geometry else 2.0 * pitch_radius(model, name)
+    planes = model.layout.gear(name).planes
+    half = 0.5 * helix_width(model, name)
+    return BodySize(diameter, planes[0] - half, planes[-1] + half)
+
+
+def disk_size(model: Model, name: str) -> BodySize:
+    """Cylinder of a disk, never thinner than the shaft it sits on."""
+    disk = model.disks[name]
+    shaft = model.shafts[disk.shaft]
+    z = model.layout.place(f"disks.{name}").z
+    density = model.material_of(disk.shaft, name=disk.material).density
+    mass = disk.mass or 0.0
+    inertia = disk.polar_inertia or 2.0 * (disk.diametral_inertia or 0.0)
+    if disk.outer_diameter is not None and disk.width is not None:
+        diameter = disk.outer_diameter
+        width = disk.width
+    elif mass > 0.0 and inertia > 0.0:  # m = rho pi D^2 w / 4, J = m D^2 / 8
+        diameter = math.sqrt(8.0 * inertia / mass)
+        width = 4.0 * mass / (math.pi * density * diameter**2)
+    elif inertia > 0.0:  # the same with w = D / 5
+        diameter = (160.0 * inertia / (math.pi * density)) ** 0.2
+        width = diameter / 5.0
+    else:
+        diameter = (20.0 * mass / (math.pi * density)) ** (1.0 / 3.0)
+        width = diameter / 5.0
+    diameter = max(diameter, 1.3 * shaft.diameter_at(z)) or NOMINAL_DIAMETER
+    width = width or 0.2 * diameter
+    return BodySize(diameter, z - 0.5 * width, z + 0.5 * width)
+
+
+def ball_radius(model: Model, name: str) -> float:
+    """Radius in m of a point mass as a ball of the shaft's material, at least a little above the shaft's surface."""
+    point = model.point_masses[name]
+    volume = point.mass / model.material_of(point.shaft).density
+    return max((0.75 * volume / math.pi) ** (1.0 / 3.0), 0.55 * shaft_diameter(model, point.shaft, point.at))
+
+
+def shaft_diameter(model: Model, shaft: str, at: float | str) -> float:
+    """Diameter in m of a shaft at a place, or a nominal one for a shaft without sections; never 0."""
+    diameter = model.shafts[shaft].diameter_at(model.layout.at(shaft, at).z)
+    if diameter:
+        return diameter
+    bodies = [body.diameter for body in bodies_on(model, shaft)]
+    return NOMINAL_SHARE * max(bodies) if bodies else NOMINAL_DIAMETER
+
+
+def hidden_hole(model: Model, shaft: str, low: float, high: float) -> tuple[float, float]:
+    """Smallest outer radius in m of a shaft between two values of z, and a radius inside its wall there; 0, 0 without sections.
+
+    The second is 0 for a solid shaft: a body may close its hole where nobody looks.
+    """
+    left = model.shafts[shaft].start
+    outer = [0.0]
+    bore = [0.0]
+    for section in model.shafts[shaft].sections:
+        if left < high and left + section.length > low:
+            diameters = section.stiffness_diameters()
+            outer.append(0.5 * min(diameters[0::2]))
+            bore.append(0.5 * max(diameters[1::2]))
+        left += section.length
+    least = min(outer[1:], default=0.0)
+    return least, 0.5 * (least + max(bore)) if max(bore) > 0.0 else 0.0
+
+
+def bodies_on(model: Model, shaft: str) -> list[BodySize]:
+    """Sizes of all gears and disks on a shaft."""
+    gears = [gear_size(model, name) for name, gear in model.gears.items() if gear.shaft == shaft]
+    return gears + [disk_size(model, name) for name, disk in model.disks.items() if disk.shaft == shaft]
+
 
 Axis = tuple[float, float]
 # Directions in which a mate without a given centre-line angle is tried, in rad from +x.
@@ -22,7 +132,17 @@ def display_axes(model: Model) -> dict[str, Axis]:
     # Given positions stand. From them on neighbours are placed one by one; what nothing leads to begins a group of its own, to
     # the right of all.
     axes: dict[str, Axis] = {name: shaft.position for name, shaft in model.shafts.items() if shaft.position is not None}
-    envelopes = {name: _envelope(model, name) for name in model.shafts}
+    envelopes = {}
+    for name, part in model.shafts.items():
+        # Cylinders that a shaft and its bodies fill.
+        cylinders = []
+        left = part.start
+        for section in part.sections:
+            outer, _, outer_end, _ = section.stiffness_diameters()
+            cylinders.append(BodySize(max(outer, outer_end), left, left + section.length))
+            left += section.length
+        cylinders += bodies_on(model, name)
+        envelopes[name] = cylinders or [BodySize(shaft_diameter(model, name, "start"), part.start, part.end)]
     while len(axes) < len(model.shafts):
         if _place_neighbours(model, axes, envelopes):
             continue
@@ -34,19 +154,6 @@ def display_axes(model: Model) -> dict[str, Axis]:
         right = max(axis[0] + reach[name] for name, axis in axes.items())
         axes[start] = (float(right + 1.2 * reach[start]), float(np.mean([axis[1] for axis in axes.values()])))
     return axes
-
-
-def _envelope(model: Model, shaft: str) -> list[BodySize]:
-    """Cylinders that a shaft and its bodies fill."""
-    part = model.shafts[shaft]
-    cylinders = []
-    left = part.start
-    for section in part.sections:
-        outer, _, outer_end, _ = section.stiffness_diameters()
-        cylinders.append(BodySize(max(outer, outer_end), left, left + section.length))
-        left += section.length
-    cylinders += bodies_on(model, shaft)
-    return cylinders or [BodySize(shaft_diameter(model, shaft, "start"), part.start, part.end)]
 
 
 def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, list[BodySize]]) -> bool:

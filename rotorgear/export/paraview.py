@@ -1,53 +1,102 @@
-"""What ParaView needs beside the meshes: collections of files over time (.pvd), and a page that says how to look at them."""
+"""What all files for ParaView share: solids as pyvista meshes, texts in them, and collections of files over time (.pvd)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from rotorgear.results.modal import ModalResult
+import numpy as np
+
+from rotorgear.export.solids import Solids, build_solids
+from rotorgear.extras import require
 
 
-def collection(steps: Iterable[tuple[float, str]]) -> str:
-    """Text of a .pvd file that shows one file at each time."""
+def import_pyvista(purpose: str) -> ModuleType:
+    """Return pyvista.
+
+    Raises:
+        MissingExtraError: it is not installed; `purpose` says what it was needed for.
+    """
+    require("pyvista", purpose)
+    import pyvista
+
+    return pyvista
+
+
+def undeformed(result: Any) -> tuple[ModuleType, Solids, Any]:
+    """pyvista, the solids of a result's model, and their mesh with the names of parts, kinds and shafts and the title.
+
+    Raises:
+        MissingExtraError: pyvista is not installed.
+    """
+    pv = import_pyvista("VTK output")
+    solids = build_solids(result.model, result.nodes)
+    mesh = solids_mesh(pv, solids)
+    for name in ("part_names", "kind_names", "shaft_names"):
+        add_texts(mesh, name, getattr(solids, name))
+    add_texts(mesh, "title", [result.model.title])
+    return pv, solids, mesh
+
+
+def solids_mesh(pv: ModuleType, solids: Solids) -> Any:
+    """Return a pyvista.PolyData of the undeformed solids with the cell data `part_id`, `kind_id` and `shaft_id`."""
+    quads = np.column_stack([np.full(len(solids.quads), 4), solids.quads])
+    triangles = np.column_stack([np.full(len(solids.triangles), 3), solids.triangles])
+    mesh = pv.PolyData(solids.points.astype(np.float32), faces=np.concatenate([quads.ravel(), triangles.ravel()]))
+    mesh.GetPolys().ConvertTo32BitStorage()  # half of the file's cells
+    mesh.cell_data["part_id"] = solids.part.astype(np.int16)
+    mesh.cell_data["kind_id"] = solids.kind.astype(np.int16)
+    mesh.cell_data["shaft_id"] = solids.shaft.astype(np.int16)
+    return mesh
+
+
+def add_texts(mesh: Any, name: str, texts: Sequence[str]) -> None:
+    """Add texts of any script to the field data of a mesh; pyvista itself takes ASCII only."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    array = vtkStringArray()
+    array.SetName(name)
+    for text in texts:
+        array.InsertNextValue(text)
+    mesh.GetFieldData().AddArray(array)
+
+
+def save_mesh(mesh: Any, path: Path) -> None:
+    """Write a mesh as a VTK XML file: binary, appended, compressed.
+
+    Raises:
+        OSError: the disk does not take it.
+    """
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+
+    writer = vtkXMLPolyDataWriter() if mesh.IsA("vtkPolyData") else vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(mesh)
+    writer.SetFileName(str(path))
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    writer.SetCompressorTypeToZLib()
+    writer.SetCompressionLevel(2)
+    shown = writer.GetGlobalWarningDisplay()
+    writer.GlobalWarningDisplayOff()  # what goes wrong is said once, in a sentence
+    try:
+        written = writer.Write() and not writer.GetErrorCode()
+    finally:
+        writer.SetGlobalWarningDisplay(shown)
+    if not written:
+        raise OSError(f"VTK could not write {path.name}; is the disk full?")
+
+
+def put_shape(mesh: Any, name: str, values: np.ndarray) -> None:
+    """Point data of complex displacements (P, 3), real and imaginary; the star of a name such as "displacement*_m" says which."""
+    mesh.point_data[name.replace("*", "_real")] = values.real.astype(np.float32)
+    mesh.point_data[name.replace("*", "_imag")] = values.imag.astype(np.float32)
+
+
+def write_collection(path: Path, steps: Iterable[tuple[float, str]]) -> None:
+    """Write a .pvd file that shows one file at each time."""
     rows = [f'    <DataSet timestep="{time:.9g}" part="0" file={quoteattr(file)}/>' for time, file in steps]
     head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n  <Collection>'
-    return "\n".join([head, *rows, "  </Collection>\n</VTKFile>\n"])
-
-
-def readme(result: ModalResult, modes: Sequence[int], frames: int) -> str:
-    """Text of README.txt: what the files are, and what to do in ParaView."""
-    speed = "undamped, at standstill"
-    if result.speed is not None:
-        speed = f"damped and gyroscopic, reference shaft at {result.speed:.6g} rad/s"
-    rows = [
-        f"  mode_{mode + 1:02d}  {result.frequency_hz[mode]:10.3f} Hz  {100.0 * result.damping_ratio[mode]:7.3f} %  "
-        f"{result.description[mode]}"
-        for mode in modes
-    ]
-    return _README.format(title=result.model.title or "Mode shapes", speed=speed, frames=frames, rows="\n".join(rows))
-
-
-_README = """{title}: mode shapes ({speed})
-
-  mode      frequency      damping    what moves
-{rows}
-
-FILES
-  mode_NN.pvd   the motion of a mode over a period, {frames} frames; the time is the phase in degrees
-  mode_NN.vtp   the undeformed gearbox with a mode's displacement, real and imaginary
-  index.pvd     all mode_NN.vtp, one after the other; the time is the number of the mode
-  beam.vtp      the beam model: nodes, sizes, all six degrees of freedom of all modes
-  model.vtp     the undeformed gearbox
-
-IN PARAVIEW
-  See a mode move: open mode_NN.pvd, Apply, colour by displacement, Play. (Animation View: mode Sequence, a loop.)
-  See a mode as a still: open mode_NN.vtp, Apply, filter Warp By Vector with displacement_real.
-  Any phase p: filter Calculator with  displacement_real*cos(p) - displacement_imag*sin(p),  then Warp By Vector.
-  Tell the parts apart: colour by part_id, kind_id or shaft_id; the names stand in the field data (Information, Spreadsheet View).
-  Smooth shafts: filter Generate Surface Normals.
-
-UNITS
-  Positions in m. displacement_real and displacement_imag are scaled so that they are seen, by displacement_scale in the field
-  data; mass_normalised_real and mass_normalised_imag are the shape itself, scaled to a modal mass of 1.
-"""
+    path.write_text("\n".join([head, *rows, "  </Collection>\n</VTKFile>\n"]), encoding="utf-8")

@@ -13,12 +13,15 @@ from rotorgear.export.parts import (
     LIGHT,
     Detail,
     Piece,
+    bearing_pieces,
+    casing_pieces,
+    coupling_pieces,
     disk_pieces,
     gear_pieces,
     point_mass_pieces,
     shaft_pieces,
+    support_pieces,
 )
-from rotorgear.export.parts_held import bearing_pieces, casing_pieces, coupling_pieces, support_pieces
 from rotorgear.export.surface import join
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable

@@ -44,7 +44,11 @@ class ChunkStream:
         mark = {"program": versions(), "run": run}
         note = self.folder / "settings.json"
         if self._resume and (note.exists() or any(self.folder.glob("chunk_*.h5"))):
-            there = _settings(note)
+            try:
+                there = json.loads(note.read_text(encoding="utf-8"))
+                there = {"program": dict(there["program"]), "run": dict(there["run"])}
+            except (OSError, ValueError, KeyError, TypeError):
+                raise RotorgearError(f"{note} is damaged: start without resume") from None
             for name, own in versions().items():
                 other = there["program"].get(name, "unknown")
                 if other != own:
@@ -118,15 +122,6 @@ def read_chunk(path: Path) -> dict[str, np.ndarray]:
 
 def _chunk_name(number: int) -> str:
     return f"chunk_{number:06d}.h5"
-
-
-def _settings(note: Path) -> dict[str, dict[str, str]]:
-    """What the chunks in a folder were computed with; RotorgearError where that can't be told."""
-    try:
-        there = json.loads(note.read_text(encoding="utf-8"))
-        return {"program": dict(there["program"]), "run": dict(there["run"])}
-    except (OSError, ValueError, KeyError, TypeError):
-        raise RotorgearError(f"{note} is damaged: start without resume") from None
 
 
 def stream(path: str | Path, *, resume: bool = False) -> ChunkStream:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,11 +15,10 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.beam import beam_mesh
+from rotorgear.export.attachment import nodes_in_order
 from rotorgear.export.files import filling, publish
-from rotorgear.export.paraview import collection, readme
-from rotorgear.export.polydata import add_texts, import_pyvista, save_mesh, solids_mesh
-from rotorgear.export.solids import Solids, build_solids
+from rotorgear.export.paraview import add_texts, put_shape, save_mesh, undeformed, write_collection
+from rotorgear.export.solids import Solids
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
 
@@ -62,13 +60,7 @@ def write_vtk(
     check_amplitude(amplitude)
     if frames < 2:
         raise AnalysisError(f"an animation needs at least 2 frames, got {frames}")
-    pv = import_pyvista("VTK output")
-    solids = build_solids(result.model, result.nodes)
-    plain = solids_mesh(pv, solids)
-    add_texts(plain, "part_names", solids.part_names)
-    add_texts(plain, "kind_names", solids.kind_names)
-    add_texts(plain, "shaft_names", solids.shaft_names)
-    add_texts(plain, "title", [result.model.title])
+    pv, solids, plain = undeformed(result)
     target = Path(directory)
     with filling(target) as scratch:
         save_mesh(plain, scratch / "model.vtp")
@@ -78,7 +70,7 @@ def write_vtk(
             progress(count / len(chosen), f"mode {mode + 1}")
             names += _write_mode(pv, result, solids, plain, mode, frames, amplitude, scratch)
         index = [(mode + 1, f"mode_{mode + 1:02d}.vtp") for mode in chosen]
-        (scratch / "index.pvd").write_text(collection(index), encoding="utf-8")
+        write_collection(scratch / "index.pvd", index)
         (scratch / "README.txt").write_text(readme(result, chosen, frames), encoding="utf-8")
         written = publish(scratch, target, [*names, "index.pvd", "README.txt"])
 
@@ -108,18 +100,6 @@ def check_amplitude(amplitude: float | None) -> None:
         )
 
 
-@dataclass(frozen=True)
-class Motion:
-    """Scaled displacement of the surface points of a shape, (P, 3) complex, and the scale."""
-
-    scaled: np.ndarray
-    scale: float
-
-    def at(self, phase: float) -> np.ndarray:
-        """Displacement at a phase in rad."""
-        return self.scaled.real * math.cos(phase) - self.scaled.imag * math.sin(phase)
-
-
 def _write_mode(
     pv: ModuleType,
     result: ModalResult,
@@ -131,50 +111,126 @@ def _write_mode(
     scratch: Path,
 ) -> list[str]:
     """Write one mode to the temporary folder and return the names of its files, what refers to others last."""
-    motion = Motion(*solids.scaled(result.shapes[:, :, mode], amplitude))
+    scaled, scale = solids.scaled(result.shapes[:, :, mode], amplitude)
     name = f"mode_{mode + 1:02d}"
     mesh = plain.copy(deep=False)  # the same points and cells, but data of its own
-    for label, values in (("displacement", motion.scaled), ("mass_normalised", motion.scaled / motion.scale)):
-        mesh.point_data[f"{label}_real"] = values.real.astype(np.float32)
-        mesh.point_data[f"{label}_imag"] = values.imag.astype(np.float32)
+    put_shape(mesh, "displacement*", scaled)
+    put_shape(mesh, "mass_normalised*", scaled / scale)
     mesh.field_data["mode"] = np.array([mode + 1], dtype=np.int32)
-    mesh.field_data["displacement_scale"] = np.array([motion.scale])
+    mesh.field_data["displacement_scale"] = np.array([scale])
     mesh.field_data["frequency_hz"] = result.frequency_hz[[mode]]
     mesh.field_data["natural_frequency_hz"] = result.natural_frequency_hz[[mode]]
     mesh.field_data["damping_ratio"] = result.damping_ratio[[mode]]
     add_texts(mesh, "description", [result.description[mode]])
     save_mesh(mesh, scratch / f"{name}.vtp")
-    (scratch / name).mkdir()
-    steps = write_frames(pv, solids, plain, motion, frames, scratch, name)
-    (scratch / f"{name}.pvd").write_text(collection(steps), encoding="utf-8")
-    return [*dict.fromkeys(file for _, file in steps), f"{name}.vtp", f"{name}.pvd"]
+    return [f"{name}.vtp", *write_period(pv, solids, plain, scaled, frames, scratch, name)]
 
 
-def write_frames(
-    pv: ModuleType, solids: Solids, plain: Any, motion: Motion, frames: int, scratch: Path, name: str
-) -> list[tuple[float, str]]:
-    """Write the frames of a motion to `name/`; return (phase in degrees, name of the file) for a whole period.
+def write_period(
+    pv: ModuleType, solids: Solids, plain: Any, scaled: np.ndarray, frames: int, scratch: Path, name: str
+) -> list[str]:
+    """Write frames of a motion over a period to `name/`, and `name.pvd`, which plays them; return their names, that one last.
 
-    Where all points move in phase, the second half of the period shows the files of the first one backwards.
+    `scaled` are displacements (P, 3) of the surface points, complex. Where all points move in phase, the second half of the
+    period shows the files of the first one backwards. The time is the phase in degrees.
     """
-    in_phase = not np.any(motion.scaled.imag)
+    (scratch / name).mkdir()
+    in_phase = not np.any(scaled.imag)
     steps = []
     for frame in range(frames + 1):
         number = frame % frames
         number = min(number, frames - number) if in_phase else number
         file = f"{name}/phase_{number:03d}.vtp"
         if not (scratch / file).exists():
-            displacement = motion.at(2.0 * math.pi * number / frames)
+            phase = 2.0 * math.pi * number / frames
+            displacement = scaled.real * math.cos(phase) - scaled.imag * math.sin(phase)
             mesh = plain.copy(deep=False)  # the same cells, but points of its own
             mesh.clear_field_data()
             mesh.SetPoints(pv.vtk_points(_rounded(solids.points + displacement, _POINT_GRID * solids.size)))
             mesh.point_data["displacement"] = _rounded(displacement, _COLOUR_GRID * solids.size)
             save_mesh(mesh, scratch / file)
         steps.append((360.0 * frame / frames, file))
-    return steps
+    write_collection(scratch / f"{name}.pvd", steps)
+    return [*dict.fromkeys(file for _, file in steps), f"{name}.pvd"]
 
 
 def _rounded(values: np.ndarray, step: float) -> np.ndarray:
     """Multiples of the power of two next to a step, so that the last bits are 0, in single precision."""
     grid = 2.0 ** round(math.log2(step))
     return (np.round(values / grid) * grid).astype(np.float32)
+
+
+def beam_mesh(pv: ModuleType, result: ModalResult, solids: Solids) -> Any:
+    """Return a pyvista.PolyData of the nodes, joined by a line along each shaft; nodes of pedestals are single points.
+
+    Point data: `shaft_id`, `pedestal` (0 or 1), `outer_diameter` (m), and for each mode NN `mode_NN_translation_real`,
+    `mode_NN_translation_imag` (m), `mode_NN_rotation_real` and `mode_NN_rotation_imag` (rad), mass-normalised.
+    """
+    nodes = result.nodes
+    model = result.model
+    lines = [nodes_in_order(nodes, name) for name in model.shafts]
+    cells = [[len(line), *line] for line in lines if len(line) > 1]
+    single = [int(line[0]) for line in lines if len(line) == 1]
+    single += [number for number, bearing in enumerate(nodes.pedestal) if bearing]
+    # Points of casings come last, and are no nodes of a beam.
+    count = sum(bool(shaft) for shaft in nodes.shaft)
+    mesh = pv.PolyData()
+    mesh.points = np.asarray(solids.node_positions[:count], float)
+    if cells:
+        mesh.lines = np.concatenate(cells)
+    if single:
+        mesh.verts = np.column_stack([np.ones(len(single), int), single]).ravel()
+    names = list(model.shafts)
+    mesh.point_data["shaft_id"] = np.array([names.index(shaft) for shaft in nodes.shaft[:count]], dtype=np.int16)
+    mesh.point_data["pedestal"] = np.array([bool(bearing) for bearing in nodes.pedestal[:count]], dtype=np.uint8)
+    mesh.point_data["outer_diameter"] = np.array(
+        [model.shafts[s].diameter_at(z) for s, z in zip(nodes.shaft[:count], nodes.position[:count, 2], strict=True)]
+    )
+    for mode in range(len(result)):
+        for what, dofs in (("translation", slice(0, 3)), ("rotation", slice(3, 6))):
+            values = result.shapes[:count, dofs, mode]
+            mesh.point_data[f"mode_{mode + 1:02d}_{what}_real"] = np.ascontiguousarray(values.real, float)
+            mesh.point_data[f"mode_{mode + 1:02d}_{what}_imag"] = np.ascontiguousarray(values.imag, float)
+    add_texts(mesh, "shaft_names", names)
+    mesh.field_data["frequency_hz"] = result.frequency_hz
+    mesh.field_data["damping_ratio"] = result.damping_ratio
+    add_texts(mesh, "description", result.description)
+    return mesh
+
+
+def readme(result: ModalResult, modes: Sequence[int], frames: int) -> str:
+    """Text of README.txt: what the files are, and what to do in ParaView."""
+    speed = "undamped, at standstill"
+    if result.speed is not None:
+        speed = f"damped and gyroscopic, reference shaft at {result.speed:.6g} rad/s"
+    rows = [
+        f"  mode_{mode + 1:02d}  {result.frequency_hz[mode]:10.3f} Hz  {100.0 * result.damping_ratio[mode]:7.3f} %  "
+        f"{result.description[mode]}"
+        for mode in modes
+    ]
+    return _README.format(title=result.model.title or "Mode shapes", speed=speed, frames=frames, rows="\n".join(rows))
+
+
+_README = """{title}: mode shapes ({speed})
+
+  mode      frequency      damping    what moves
+{rows}
+
+FILES
+  mode_NN.pvd   the motion of a mode over a period, {frames} frames; the time is the phase in degrees
+  mode_NN.vtp   the undeformed gearbox with a mode's displacement, real and imaginary
+  index.pvd     all mode_NN.vtp, one after the other; the time is the number of the mode
+  beam.vtp      the beam model: nodes, sizes, all six degrees of freedom of all modes
+  model.vtp     the undeformed gearbox
+
+IN PARAVIEW
+  See a mode move: open mode_NN.pvd, Apply, colour by displacement, Play. (Animation View: mode Sequence, a loop.)
+  See a mode as a still: open mode_NN.vtp, Apply, filter Warp By Vector with displacement_real.
+  Any phase p: filter Calculator with  displacement_real*cos(p) - displacement_imag*sin(p),  then Warp By Vector.
+  Tell the parts apart: colour by part_id, kind_id or shaft_id; the names stand in the field data (Information, Spreadsheet View).
+  Smooth shafts: filter Generate Surface Normals.
+
+UNITS
+  Positions in m. displacement_real and displacement_imag are scaled so that they are seen, by displacement_scale in the field
+  data; mass_normalised_real and mass_normalised_imag are the shape itself, scaled to a modal mass of 1.
+"""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.export.polydata import solids_mesh
+from rotorgear.export.paraview import solids_mesh
 from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable

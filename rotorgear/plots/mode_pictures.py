@@ -11,7 +11,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish
-from rotorgear.export.polydata import import_pyvista
+from rotorgear.export.paraview import import_pyvista
 from rotorgear.export.solids import FINE, build_solids
 from rotorgear.export.vtk import check_amplitude, chosen_modes
 from rotorgear.plots.camera import best_direction, look

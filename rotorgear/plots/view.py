@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.polydata import import_pyvista
+from rotorgear.export.paraview import import_pyvista
 from rotorgear.export.solids import DEFAULT_AMPLITUDE, LIGHT, build_solids
 from rotorgear.model.model import Model
 from rotorgear.plots.camera import best_direction, look

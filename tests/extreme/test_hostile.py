@@ -22,9 +22,8 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import cluster as clusters
 from rotorgear.cli import main as command_line
 from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
-from rotorgear.export.files import WriteError
+from rotorgear.export.files import WriteError, write_json
 from rotorgear.export.hdf5 import ReadError
-from rotorgear.export.json_file import write_json
 from rotorgear.export.stream import ChunkStream
 from tests.extreme.models import points
 from tests.paths import ROOT

@@ -4,8 +4,7 @@ import os
 import pytest
 
 from rotorgear.errors import RotorgearError
-from rotorgear.export.files import WriteError
-from rotorgear.export.json_file import write_json
+from rotorgear.export.files import WriteError, write_json
 from tests.unit.export.small_models import PAIR, modes_of
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
-from rotorgear.export.model_text import scaled_text
+from rotorgear.export.model_files import scaled_text
 from tests.paths import MODELS
 
 pytest.importorskip("tomlkit")

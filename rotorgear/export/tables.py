@@ -1,4 +1,4 @@
-"""Writes rows of numbers as a CSV file: a header with names and units, full digits, commas."""
+"""Rows of numbers as a CSV file, with names and units in its header, and the sensors of a planned test as such a table."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from rotorgear.export.files import replacing
+from rotorgear.results.sensors import SensorPlan
 
 
 def write_csv(rows: Iterable[Mapping[str, object]], path: str | Path) -> Path:
@@ -29,3 +30,21 @@ def write_csv(rows: Iterable[Mapping[str, object]], path: str | Path) -> Path:
         writer.writeheader()
         writer.writerows(listed)
     return target
+
+
+def write_sensors(plan: SensorPlan, path: str | Path) -> Path:
+    """Write point, node and direction of each sensor, and where it is in mm; the rig numbers its nodes so.
+
+    Args:
+        plan: of `sensors`.
+        path: of the file, such as "sensors.csv".
+
+    Raises:
+        WriteError: the file can't be written.
+    """
+    rows = [
+        {"point": row.place, "node": row.node, "direction": row.direction}
+        | {f"{axis}_mm": f"{1e3 * value:.3f}" for axis, value in zip("xyz", row.position, strict=True)}
+        for row in plan.sensors
+    ]
+    return write_csv(rows, path)

@@ -1,4 +1,4 @@
-"""Loaded teeth for ParaView: both finite-element meshes with deflection and stress, and the contact lines with pressure."""
+"""Casings with their modes, and loaded teeth with their stresses, for ParaView."""
 
 from __future__ import annotations
 
@@ -6,9 +6,49 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.export.files import filling, publish
-from rotorgear.export.polydata import import_pyvista, save_mesh
+from rotorgear.export.files import filling, publish, replacing
+from rotorgear.export.paraview import import_pyvista, save_mesh
+from rotorgear.results.casing import CasingSurvey
 from rotorgear.results.tooth_field import ToothFields
+
+
+def write_casing_vtk(survey: CasingSurvey, folder: str | Path) -> list[Path]:
+    """Write one `casing_NAME.vtp` for each casing.
+
+    Point data: `free_NN` and `held_NN`, displacements (3) of mode NN from 1, the largest of them 1; field data:
+    `free_frequency_hz`, `held_frequency_hz`. ParaView's filter Warp By Vector shows a mode.
+
+    Args:
+        survey: what `casing` returned.
+        folder: made if it is not there.
+
+    Returns:
+        The files.
+
+    Raises:
+        MissingExtraError: pyvista is not installed. OSError: the files can't be written.
+    """
+    pv = import_pyvista("VTK output")
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for name, row in survey.casings.items():
+        faces = np.column_stack([np.full(len(row.triangles), 3), row.triangles])
+        mesh = pv.PolyData(row.points.astype(np.float32), faces=faces.ravel())
+        for kind, shapes, frequency in (
+            ("free", row.free_shapes, row.free_frequency_hz),
+            ("held", row.held_shapes, row.held_frequency_hz),
+        ):
+            for mode, shape in enumerate(np.moveaxis(shapes, 2, 0), start=1):
+                largest = np.linalg.norm(shape, axis=1).max()
+                mesh.point_data[f"{kind}_{mode:02d}"] = (shape / largest).astype(np.float32)
+            mesh.field_data[f"{kind}_frequency_hz"] = np.array(frequency)
+        path = folder / f"casing_{name}.vtp"
+        with replacing(path) as scratch:
+            save_mesh(mesh, scratch)
+        written.append(path)
+    return written
+
 
 _README = """Loaded teeth of mesh '{mesh}' at position {position:g} of the mesh period, first helix.
 

@@ -1,0 +1,208 @@
+"""Deflections, branches of a Campbell diagram and the motion of a transient for ParaView, on the solids of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.export.files import filling, publish
+from rotorgear.export.paraview import add_texts, put_shape, save_mesh, undeformed, write_collection
+from rotorgear.export.solids import Solids
+from rotorgear.export.vtk import check_amplitude, write_period
+from rotorgear.progress import Progress, silent
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import CampbellResult
+from rotorgear.results.response import ResponseResult
+from rotorgear.results.static import StaticResult
+from rotorgear.results.transient import TransientResult
+
+FRAMES = 16
+
+
+def write_deflections(
+    result: StaticResult | ResponseResult,
+    directory: str | Path,
+    *,
+    amplitude: float | None = None,
+    progress: Progress = silent,
+) -> list[Path]:
+    """Write deflections as VTK files and return their paths.
+
+    A static result becomes `static.vtp`: the undeformed solids with the point data `displacement` (scaled so that it is seen)
+    and `displacement_m` (true, in m). A response becomes, for every order NN, `order_NN.vtp` with `displacement_real`,
+    `displacement_imag` (scaled), `displacement_real_m` and `displacement_imag_m`, and `order_NN.pvd`, which plays a period.
+    The scale, and for a response the speed, frequency and name of the order, stand in the field data.
+
+    Args:
+        result: a static result, or a response with its shapes at `shape_speed`.
+        directory: folder to write to; made if need be. Other files in it are left alone.
+        amplitude: largest displacement shown, as a share of the size of the model; for None 0.05, or less where bodies turn far.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: an amplitude that is not positive.
+        MissingExtraError: pyvista is not installed.
+        WriteError: the folder can't be written.
+    """
+    check_amplitude(amplitude)
+    pv, solids, plain = undeformed(result)
+    with filling(directory) as scratch:
+        if isinstance(result, StaticResult):
+            scaled, scale = solids.scaled(result.displacement, amplitude)
+            mesh = plain.copy(deep=False)
+            mesh.point_data["displacement"] = scaled.astype(np.float32)
+            mesh.point_data["displacement_m"] = (scaled / scale).astype(np.float32)
+            mesh.field_data["displacement_scale"] = np.array([scale])
+            save_mesh(mesh, scratch / "static.vtp")
+            names = ["static.vtp"]
+        else:
+            names = list(_write_orders(pv, result, solids, plain, amplitude, scratch, progress))
+        written = publish(scratch, Path(directory), names)
+    progress(1.0, "done")
+    return written
+
+
+def _write_orders(
+    pv: ModuleType,
+    result: ResponseResult,
+    solids: Solids,
+    plain: Any,
+    amplitude: float | None,
+    scratch: Path,
+    progress: Progress,
+) -> Iterator[str]:
+    """Write every order and yield the names of its files, what refers to others last."""
+    rpm = result.shape_speed * RPM_PER_RAD_S
+    for o, order in enumerate(result.orders):
+        progress(o / len(result.orders), order)
+        scaled, scale = solids.scaled(result.shapes[:, :, o], amplitude)
+        name = f"order_{o + 1:02d}"
+        mesh = plain.copy(deep=False)
+        put_shape(mesh, "displacement*", scaled)
+        put_shape(mesh, "displacement*_m", scaled / scale)
+        mesh.field_data["displacement_scale"] = np.array([scale])
+        mesh.field_data["speed_rpm"] = np.array([rpm])
+        mesh.field_data["frequency_hz"] = np.array([result.ratio[o] * abs(result.shape_speed) / (2.0 * np.pi)])
+        add_texts(mesh, "order", [order])
+        save_mesh(mesh, scratch / f"{name}.vtp")
+        yield f"{name}.vtp"
+        yield from write_period(pv, solids, plain, scaled, FRAMES, scratch, name)
+
+
+def write_branch(
+    result: CampbellResult,
+    directory: str | Path,
+    branch: int,
+    *,
+    amplitude: float | None = None,
+    progress: Progress = silent,
+) -> list[Path]:
+    """Write `branch_NN_KKK.vtp` for every speed and `branch_NN.pvd`, whose time is the speed in rpm; return the paths.
+
+    Each file holds the undeformed solids with `displacement_real` and `displacement_imag`, scaled by `displacement_scale`, in the
+    phase that goes on smoothly from the speed before, and frequency, log decrement and speed in the field data.
+
+    Args:
+        result: branches over speed.
+        directory: folder to write to; made if need be.
+        branch: which, counted from 0.
+        amplitude: largest displacement shown, as a share of the size of the model.
+        progress: is told fraction and step.
+
+    Raises:
+        AnalysisError: a branch that the result does not have, an amplitude that is not positive.
+        MissingExtraError: pyvista is not installed.
+        WriteError: the folder can't be written.
+    """
+    if not 0 <= branch < len(result):
+        raise AnalysisError(f"there is no branch {branch + 1}: the result has {len(result)}")
+    check_amplitude(amplitude)
+    _, solids, plain = undeformed(result)
+    names = []
+    with filling(directory) as scratch:
+        steps = []
+        shapes = smooth_shapes(result, branch)
+        for k, shape in shapes:
+            progress(k / len(result.speeds), f"speed {k + 1}")
+            scaled, scale = solids.scaled(shape, amplitude)
+            mesh = plain.copy(deep=False)
+            put_shape(mesh, "displacement*", scaled)
+            mesh.field_data["displacement_scale"] = np.array([scale])
+            mesh.field_data["speed_rpm"] = result.speed_rpm[[k]]
+            mesh.field_data["frequency_hz"] = result.frequency_hz[[k], branch]
+            mesh.field_data["log_decrement"] = result.log_decrement[[k], branch]
+            names.append(f"branch_{branch + 1:02d}_{k:03d}.vtp")
+            save_mesh(mesh, scratch / names[-1])
+            steps.append((float(result.speeds[k] * RPM_PER_RAD_S), names[-1]))
+        names.append(f"branch_{branch + 1:02d}.pvd")
+        write_collection(scratch / names[-1], steps)
+        written = publish(scratch, Path(directory), names)
+    progress(1.0, "done")
+    return written
+
+
+def smooth_shapes(result: CampbellResult, branch: int) -> Sequence[tuple[int, np.ndarray]]:
+    """(number of the speed, shape (p, 6)) of a branch where it oscillates, each in phase with the one before."""
+    shapes: list[tuple[int, np.ndarray]] = []
+    for k in np.flatnonzero(np.isfinite(result.eigenvalues[:, branch])):
+        shape = result.basis @ result.coordinates[k, :, branch]
+        # The phase of an eigenvector is free: the first shape has its largest component real, each other follows the one before.
+        if shapes:
+            turn = np.vdot(shape, shapes[-1][1])
+        else:
+            turn = np.conj(shape[np.unravel_index(np.argmax(np.abs(shape)), shape.shape)])
+        shapes.append((int(k), shape * (turn / abs(turn) if turn else 1.0)))
+    return shapes
+
+
+def write_motion(
+    result: TransientResult, directory: str | Path, *, amplitude: float | None = None, progress: Progress = silent
+) -> list[Path]:
+    """Write the kept motion as VTK files and return their paths: `motion.pvd` plays `motion/instant_NNNN.vtp`.
+
+    Displacements are those about the mean of the window, drawn with one scale, which stands in the field data. Point data:
+    `displacement` (scaled) and `displacement_m` (true, in m).
+
+    Args:
+        result: a transient with `frames`.
+        directory: folder to write to; made if need be.
+        amplitude: largest displacement shown, as a share of the size of the model; for None 0.05, or less where bodies turn far.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: no motion was kept, or an amplitude that is not positive.
+        MissingExtraError: pyvista is not installed.
+        WriteError: the folder can't be written.
+    """
+    check_amplitude(amplitude)
+    if not result.motion_time.size:
+        raise AnalysisError("this transient kept no motion to animate: run it with frames (--vtk)")
+    pv, solids, plain = undeformed(result)
+    about = result.motion - result.motion.mean(axis=2, keepdims=True)
+    # One scale for all instants: that of the largest.
+    sizes = np.abs([solids.displacement(about[:, :, i]) for i in range(about.shape[2])]).max(axis=(1, 2))
+    scale = solids.scaled(about[:, :, int(np.argmax(sizes))], amplitude)[1]
+    steps = []
+    with filling(directory) as scratch:
+        (scratch / "motion").mkdir()
+        for i, time in enumerate(result.motion_time):
+            progress(i / result.motion_time.size, f"instant {i + 1}")
+            raw = solids.displacement(about[:, :, i])
+            mesh = plain.copy(deep=False)
+            mesh.SetPoints(pv.vtk_points((solids.points + scale * raw).astype(np.float32)))
+            mesh.point_data["displacement"] = (scale * raw).astype(np.float32)
+            mesh.point_data["displacement_m"] = raw.astype(np.float32)
+            mesh.field_data["displacement_scale"] = np.array([scale])
+            mesh.field_data["time_s"] = np.array([time])
+            file = f"motion/instant_{i + 1:04d}.vtp"
+            save_mesh(mesh, scratch / file)
+            steps.append((float(time), file))
+        write_collection(scratch / "motion.pvd", steps)
+        written = publish(scratch, Path(directory), [*(file for _, file in steps), "motion.pvd"])
+    progress(1.0, "done")
+    return written
