@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import Block, Column, exact, heading, table_of, table_over
+
+# So many crossings are listed; sidebands of a gearbox give thousands.
+_MOST_CROSSINGS = 100
 
 
 class ExcitationOrder(Record):
@@ -29,15 +35,17 @@ class Crossing(Record):
     First order of a shaft: the participation is forward whirl of its bending only, which is what unbalance can drive.
     """
 
-    line: str = of("excitation line", note=" that is met")
-    branch: int = of("branch", note=", from 1")
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm", note=" there", form=".2f")
-    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f")
-    damping_ratio: float = of("damping ratio", note=" of the mode there")
-    whirl: str = of("sense of whirl", note=" there, for the shaft whose line it is")
+    line: str = of("excitation line", note=" that is met", column="line")
+    branch: int = of("branch", note=", from 1", column="branch")
+    speed: float = of("speed of the input shaft", "rad/s", note=" there", form=".2f", column="rpm")
+    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f", column="Hz")
+    damping_ratio: float = of("damping ratio", note=" of the mode there", form=".3f", column="zeta %")
+    whirl: str = of("sense of whirl", note=" there, for the shaft whose line it is", column="whirl")
     participation: float = of(
         "share of the exciting part in the energy of the mode",
         note=": a mesh in the strain energy, a shaft in the kinetic energy",
+        form=".2f",
+        column="takes part %",
     )
     excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
 
@@ -45,29 +53,38 @@ class Crossing(Record):
 class Margin(Record):
     """The mode next to a line at the operating speed, among those that the line can excite."""
 
-    line: str = of("excitation line")
-    frequency_hz: float = of("frequency", "Hz", note=" of the line at the operating speed", form=".2f")
+    line: str = of("excitation line", column="line")
+    frequency_hz: float = of("frequency", "Hz", note=" of the line at the operating speed", form=".2f", column="Hz")
     branch: int = of(
-        "branch", note=", from 1: the nearest that the line can excite; 0: none, or the line lies above all"
+        "branch",
+        note=", from 1: the nearest that the line can excite; 0: none, or the line lies above all",
+        column="branch",
     )
-    mode_hz: float = of("damped frequency of that branch", "Hz", note="; `null`: none", form=".2f")
-    margin: float = of("margin", note=": `mode_hz` over `frequency_hz`, less 1", form="+.4f")
-    whirl: str = of("sense of whirl", note=" of that branch for the shaft whose line it is")
-    participation: float = of("share of the exciting part in the energy of the mode", note=", as at a crossing")
+    mode_hz: float = of("damped frequency of that branch", "Hz", note="; `null`: none", form=".2f", column="Hz")
+    margin: float = of("margin", note=": `mode_hz` over `frequency_hz`, less 1", form="+.2f", column="margin %")
+    whirl: str = of("sense of whirl", note=" of that branch for the shaft whose line it is", column="whirl")
+    participation: float = of(
+        "share of the exciting part in the energy of the mode", note=", as at a crossing", form=".2f", column="part %"
+    )
     crossing_speed: float = of(
         "nearest speed, in the range, at which the line meets a mode that it can excite",
         "rad/s",
-        json="crossing_speed_rpm",
         note="; `null`: none",
+        form=".1f",
+        column="crossing rpm",
     )
 
 
 class Onset(Record):
     """Where a branch becomes unstable."""
 
-    branch: int = of("branch", note=" that becomes unstable, from 1; 0: a motion that does not oscillate")
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm", note=" from which on it is unstable")
-    frequency_hz: float = of("frequency", "Hz", note=" there")
+    branch: int = of(
+        "branch", note=" that becomes unstable, from 1; 0: a motion that does not oscillate", column="branch"
+    )
+    speed: float = of(
+        "speed of the input shaft", "rad/s", note=" from which on it is unstable", form=".1f", column="from rpm"
+    )
+    frequency_hz: float = of("frequency", "Hz", note=" there", form=".3f", column="Hz")
 
 
 def by_branch(key: str) -> Written:
@@ -93,9 +110,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     """
 
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm", note=", ascending in size")
-    operating_speed: float | None = of(
-        "operating speed of the model", "rad/s", json="operating_speed_rpm", note="; `null` without one"
-    )
+    operating_speed: float | None = of("operating speed of the model", "rad/s", note="; `null` without one")
     eigenvalues: np.ndarray = of("eigenvalue s", "rad/s", "speed", "branch", json=None)
 
     @property
@@ -205,3 +220,44 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     def shapes(self, speed: int) -> np.ndarray:
         """Displacements x y z tx ty tz of all branches at a speed (number from 0), (p, 6, b) complex, modal mass 1."""
         return np.asarray(self.basis @ self.coordinates[speed])
+
+    def tables(self, *, crossings: bool = False) -> Iterator[Block]:
+        """Branches, margins and, where asked for, crossings."""
+        first, last = self.speed_rpm[[0, -1]]
+        yield heading(f"{self.model.title or 'Modes'}: {self.model.reference_shaft} at {first:.6g} to {last:.6g} rpm")
+        small = exact(".4f")
+        columns = (
+            Column("branch", lambda b: b + 1),
+            Column(f"Hz at {first:.6g}", lambda b: self.frequency_hz[0, b], small),
+            Column(f"Hz at {last:.6g}", lambda b: self.frequency_hz[-1, b], small),
+            Column("log dec.", lambda b: self.log_decrement[-1, b], small),
+            Column("whirl", lambda b: self.whirl_word(-1, b)),
+        )
+        yield table_over(self, "branch", *columns, "description", caption="Branches")
+        if self.operating_speed is not None and self.margins:
+            at = f"Margins at {self.operating_speed * RPM_PER_RAD_S:.6g} rpm"
+            hits = Column("", "branch", where=lambda one: one.branch > 0)
+            part = Column("", "participation", where=lambda one: one.branch > 0)
+            shown = ("line", "frequency_hz", hits, "mode_hz", "margin", "whirl", part, "crossing_speed")
+            yield table_of(self, "margins", *shown, caption=at, titled=True)
+        if crossings:
+            # The most telling ones of a long list, in its order.
+            numbers = range(len(self.crossings))
+            kept = sorted(sorted(numbers, key=lambda k: -self.crossings[k].participation)[:_MOST_CROSSINGS])
+            part = Column("", "participation", where=lambda one: one.excited, without="not excited")
+            met = ("speed", "frequency_hz", "branch", "line", "whirl", "damping_ratio", part)
+            yield table_of(self, "crossings", *met, keep=kept, titled=True)
+        yield ""
+        if crossings and len(self.crossings) > _MOST_CROSSINGS:
+            rest = len(self.crossings) - _MOST_CROSSINGS
+            yield f"{rest} more crossings take part less than these: --json has them all"
+        if any(not item.branch for item in self.margins):
+            yield "-: the line lies above all branches (--fmax follows more), or can't excite any"
+        if not crossings:
+            excited = f"{sum(item.excited for item in self.crossings)} of them of modes that the line can excite"
+            yield f"{len(self.crossings)} crossings, {excited}; --crossings lists them"
+        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        estimates = self.error_estimate[np.isfinite(self.error_estimate)]
+        if estimates.size:
+            yield f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}"
+        yield from (*self.remarks(), "")

@@ -9,13 +9,16 @@ Davison & Hinkley, Bootstrap Methods and their Application (1997), section 4.2.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rotorgear.errors import ModelError, Problem
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Column, Line, Table, table_of
 
 EVIDENCE_LEVEL = 0.05
+# So many modes stand in a line.
+_ABREAST = 5
 _UNFITTED = "if it was not fitted to these lines"
 
 
@@ -105,6 +108,10 @@ class Candidate(Record):
     error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", note=", in %")
     matched_elsewhere: bool = of("whether the mode belongs to another rig line", default=False)
 
+    def words(self, separator: str = " ") -> str:
+        """Number, frequency and error."""
+        return f"{self.mode_number}: {self.frequency_hz:.1f} Hz{separator}({self.error_percent:+.2f} %)"
+
 
 class Match(Record):
     """A rig line and its mode, within the tolerance.
@@ -116,10 +123,12 @@ class Match(Record):
     """
 
     rig: RigLine = of("rig line", record=RigLine)
-    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted")
-    mode_frequency_hz: float = of("frequency of the mode", "Hz")
+    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted", column="mode")
+    mode_frequency_hz: float = of("frequency of the mode", "Hz", form=".1f", column="model Hz")
     mode_description: str = of("what moves")
-    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", note=", in %")
+    error_percent: float = of(
+        "frequency of the mode over that of the rig, less 1", "%", note=", in %", form="+.2f", column="error %"
+    )
     within_uncertainty: bool | None = of(
         "whether the difference is within the rig's uncertainty", note="; `null`: none stated"
     )
@@ -139,6 +148,22 @@ class Match(Record):
         """What is outside is no match."""
         return True
 
+    def notes(self) -> list[str]:
+        """What there is to know of the pair: label, mode, coincidences, the rig's own uncertainty, damping."""
+        rig = self.rig
+        notes = [text for text in (rig.label, self.mode_description) if text]
+        if self.excitations:
+            notes.append(f"rig line coincides with {_names(self.excitations)}")
+        extra = [line for line in self.mode_excitations if line not in self.excitations]
+        if extra:
+            notes.append(f"mode coincides with {_names(extra)}")
+        if self.within_uncertainty is not None:
+            side = "within" if self.within_uncertainty else "outside"
+            notes.append(f"{side} the rig's own +/- {rig.uncertainty_hz:.3g} Hz")
+        if rig.damping_ratio is not None and self.mode_damping_ratio is not None:
+            notes.append(f"damping: rig {100 * rig.damping_ratio:.3g} %, model {100 * self.mode_damping_ratio:.3g} %")
+        return notes
+
 
 class UnmatchedRigLine(Record):
     """A rig line without a mode; the nearest elastic mode is outside the tolerance or the partner of another line."""
@@ -148,6 +173,19 @@ class UnmatchedRigLine(Record):
     excitations: tuple[ExcitationLine, ...] = of(
         "shaft and mesh orders that coincide with it", "", "excitation", record=ExcitationLine
     )
+
+    def sentence(self, tolerance: float) -> str:
+        """How far the nearest mode is, and which excitation the line coincides with."""
+        label = f" ({self.rig.label})" if self.rig.label else ""
+        text = f"Rig line {self.rig.frequency_hz:.1f} Hz{label} has no mode within {100 * tolerance:.3g} %"
+        nearest = self.nearest_mode
+        if nearest and nearest.matched_elsewhere:
+            text += f" to itself; the nearest, {nearest.words()}, belongs to another line"
+        elif nearest:
+            text += f"; the nearest is {nearest.words()}"
+        if self.excitations:
+            text += f". It coincides with {_names(self.excitations)}"
+        return f"{text}."
 
 
 class UnmatchedMode(Record):
@@ -262,6 +300,58 @@ class Comparison(Result, kind="compare"):
         which = f"{driven} of the {self.rig_count} rig lines {verb} with an excitation line"
         return f"{_finding(self)}; {which} and may be no natural frequency at all."
 
+    def tables(self) -> Iterator[Block]:
+        """The matches, lines and modes without a partner, what chance gives and what the agreement is worth."""
+        if self.matches:
+            yield self._matches()
+        for line in self.unmatched_rig:
+            yield from (line.sentence(self.tolerance), "")
+        yield from self._unmatched_modes()
+        chance = self.chance
+        yield (
+            f"Chance: {100 * chance.coverage:.1f} % of the band {chance.band_low_hz:.1f} to {chance.band_high_hz:.1f} Hz "
+            f"(measured in log frequency) lies within {100 * self.tolerance:.3g} % of one of its "
+            f"{chance.modes_in_band} modes. Of {chance.samples} random lists of {self.rig_count}, the mean matches "
+            f"{chance.expected_random_matches:.2f}; {100 * chance.probability_as_many:.3g} % match as many as the rig, "
+            f"{100 * chance.probability_as_close:.3g} % come as close. Independent lines in closed form: "
+            f"{chance.binomial_expected:.2f}, {100 * chance.binomial_probability:.3g} %."
+        )
+        yield ""
+        if self.stiffnesses:
+            prior = f"{100 * self.stiffnesses[0].prior:.0f} %"
+            taken = f"if stiffnesses are known to {prior} and lines to 0.5 % where they state nothing"
+            yield f"{learnt_words(self.stiffnesses, len(self.matches), 'matched lines')} This holds {taken}."
+            yield ""
+        for note in self.remarks():
+            yield from (note, "")
+        yield Line(self.verdict)
+
+    def _matches(self) -> Table:
+        columns = (
+            Column("rig Hz", "rig.frequency_hz", ".1f"),
+            "mode_number",
+            "mode_frequency_hz",
+            "error_percent",
+            Column("runner-up", lambda match: match.runner_up.words("\n") if match.runner_up else ""),
+            Column("note", lambda match: "\n".join(match.notes())),
+        )
+        return table_of(self, "matches", *columns, caption="Rig comparison", titled=True, ruled=True)
+
+    def _unmatched_modes(self) -> Iterator[str]:
+        """The modes without a rig line, number and frequency, then those that an excitation meets by name."""
+        modes = self.unmatched_modes
+        if not modes:
+            return
+        count = f"{len(modes)} of {self.chance.modes_in_band} elastic modes in the band, no. and Hz"
+        yield f"Without a rig line: {count}"
+        cells = [f"{mode.mode_number:>4} {mode.frequency_hz:>8.1f}" for mode in modes]
+        for first in range(0, len(cells), _ABREAST):
+            yield "  ".join(cells[first : first + _ABREAST])
+        met = [f"mode {mode.mode_number} with {_names(mode.excitations)}" for mode in modes if mode.excitations]
+        yield f"Of these coincide: {'; '.join(met)}." if met else ""
+        if met:
+            yield ""
+
 
 def _finding(comparison: Comparison) -> str:
     """Return the finding of the verdict: the matches against what chance gives."""
@@ -288,3 +378,7 @@ def _finding(comparison: Comparison) -> str:
 
 def _percent(share: float) -> str:
     return f"{100.0 * share:.3g} %"
+
+
+def _names(lines: Iterable[ExcitationLine]) -> str:
+    return ", ".join(str(line) for line in lines)

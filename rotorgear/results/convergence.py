@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.mesh import MeshErrors
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
+from rotorgear.results.table import Block, Column, grid, heading, table_of
 
 
 class Rung(Record):
@@ -17,18 +22,28 @@ class Rung(Record):
         '`"elements"` or `"fixed modes"` of a casing',
     )
     setting: float = of("the number that was asked for")
-    dofs: int = of("degrees of freedom", note=" of the last solution")
-    seconds: float = of("CPU time", "s", note=" of the whole analysis on one thread, the median of `timed` runs")
+    dofs: int = of("degrees of freedom", note=" of the last solution", column="dofs")
+    seconds: float = of(
+        "CPU time",
+        "s",
+        note=" of the whole analysis on one thread, the median of `timed` runs",
+        form=".3f",
+        column="CPU s",
+    )
     error: float = of(
         "largest relative error of the quantities compared",
         note=" against the reference; `null` where the discretisation can't tell one of them",
         form=".1e",
+        column="error",
     )
-    estimate: float = of("largest error of the same quantities that the analysis itself estimated", form=".1e")
+    estimate: float = of(
+        "largest error of the same quantities that the analysis itself estimated", form=".1e", column="estimate"
+    )
     order: float | None = of(
         "measured order of the error in the length of elements or steps",
         note=" against the rung before; `null` where it makes no sense",
         form=".2f",
+        column="order",
     )
     spread: float = of(
         "spread of the times", note=": difference of their quartiles over the median", default=0.0, kw_only=True
@@ -37,7 +52,6 @@ class Rung(Record):
     memory: int = of(
         "largest memory of arrays and objects",
         "byte",
-        json="memory_bytes",
         note=", without the factors of sparse matrices",
         default=0,
         kw_only=True,
@@ -45,9 +59,10 @@ class Rung(Record):
     effectivity: float | None = of(
         "effectivity",
         note=": estimate over error; `null` where the reference does not resolve the error",
-        form=".2f",
         default=None,
         kw_only=True,
+        form=".2f",
+        column="ratio",
     )
     effectivity_smallest: float | None = of(
         "smallest effectivity of a single quantity",
@@ -82,6 +97,42 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
         "relative error below which the reference or rounding decides", form=".0e", default=0.0, kw_only=True
     )
 
+    def tables(self) -> Iterator[Block]:
+        """What was measured, and the rungs, with marks for what there is to know of each."""
+        marks: dict[str, str] = {}
+        for rung in self.rungs:
+            for note in rung.notes:
+                marks.setdefault(note, "*+'\"^~"[len(marks) % 6])
+        yield heading(self.title, f": {self.analysis}, {self.modes} {self.compared}")
+        yield f"error: the largest relative one, against {self.reference}"
+        yield "ratio: estimate over error"
+        yield from (*(f"{sign} {note}" for note, sign in marks.items()), *self.remarks(), "")
+
+        def timed(rung: Rung) -> bool:
+            return math.isfinite(rung.seconds)
+
+        def known(name: str) -> Column:
+            return Column(
+                "", name, where=lambda rung: getattr(rung, name) == getattr(rung, name) is not None, without=""
+            )
+
+        columns = (
+            Column("discretisation", lambda rung: rung.method + "".join(marks[note] for note in rung.notes)),
+            Column("", "dofs", where=lambda rung: rung.dofs > 0, without=""),
+            Column("", "seconds", where=timed, without=""),
+            Column(
+                "+-",
+                "spread",
+                lambda spread: f"{spread:.0f}%",
+                "%",
+                where=lambda r: timed(r) and r.timed > 1,
+                without="",
+            ),
+            Column("MB", lambda r: r.memory / 1e6, ".1f", where=lambda rung: bool(rung.memory), without=""),
+        )
+        last = (known("estimate"), known("effectivity"), known("order"))
+        yield from (table_of(self, "rungs", *columns, "error", *last), "")
+
 
 class MeshRung(Record):
     """One mesh of the teeth."""
@@ -112,26 +163,58 @@ class MeshConvergenceStudy(Result, kind="mesh_convergence", analysis="accuracy")
     reference: str = of("what the errors are measured against")
     rungs: tuple[MeshRung, ...] = of("discretisations", "", "rung", record=MeshRung)
 
+    def tables(self) -> Iterator[Block]:
+        """What was measured, and the meshes with their errors, real and estimated."""
+        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', F_bt {self.base_force_n:.6g} N on a helix")
+        yield from (f"body: {self.body}", f"errors in % against {self.reference};")
+        yield from ("after the stroke what the analysis itself estimates", "")
+        rows = []
+        for rung in self.rungs:
+            errors = []
+            for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
+                estimate = "-" if rung.estimate is None else f"{100 * getattr(rung.estimate, name):.2g}"
+                errors.append(f"{100 * getattr(rung.error, name):.2g}/{estimate}")
+            size = f"{rung.elements}" + (f"x{rung.layers}" if rung.layers else "")
+            times = (f"{rung.fe_seconds:.2f} s", f"{rung.contact_seconds:.2f} s")
+            rows.append((rung.method.removeprefix("preset "), size, str(rung.dofs), *times, *errors))
+        heads = ("mesh", "elements", "dofs", "FE", "contact", "k", "k pp", "STE pp")
+        yield from (grid(rows, *heads, caption="Meshes", no_wrap=True), "")
+
 
 class SweepRung(Record):
     """One number of steps and of periods."""
 
-    steps: int = of("steps", note=" in a period of the fastest mesh")
-    count: int = of("periods sampled (least common periods)")
+    steps: int = of("steps", note=" in a period of the fastest mesh", column="steps")
+    count: int = of("periods sampled (least common periods)", column="periods")
     seconds: float = of("wall time", "s", note=" of one run, CPU time")
-    exponent: float = of("mean of the largest Lyapunov exponents")
-    scatter: float = of("standard deviation of these exponents over the runs")
-    stated: float = of("standard error that one run states", note=", the median")
-    peak_to_peak: float = of("penetration of the flanks, peak to peak", "m", note=", of the worst contact")
-    peak_to_peak_scatter: float = of("standard deviation of the peak to peak", "m")
-    dynamic_factor: float = of("dynamic factor", note=" of that contact")
+    exponent: float = of("mean of the largest Lyapunov exponents", form="+.3f", column="LE")
+    scatter: float = of("standard deviation of these exponents over the runs", form=".3f", column="scatter")
+    stated: float = of("standard error that one run states", note=", the median", form=".3f", column="stated")
+    peak_to_peak: float = of(
+        "penetration of the flanks, peak to peak",
+        "m",
+        note=", of the worst contact",
+        form=".2f",
+        column="p-p um",
+        json="peak_to_peak",
+    )
+    peak_to_peak_scatter: float = of(
+        "standard deviation of the peak to peak",
+        "m",
+        form=".2f",
+        column="scatter",
+        shown="um",
+        json="peak_to_peak_scatter",
+    )
+    dynamic_factor: float = of("dynamic factor", note=" of that contact", form=".2f", column="K_dyn")
     dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")
     motion: tuple[str, ...] = of("response type", "", "kind", note=": those that occurred")
     error: float = of(
         "largest relative difference of peak to peak and dynamic factor from the reference",
-        form=".1e",
         default=float("nan"),
         kw_only=True,
+        form=".0e",
+        column="error",
     )
 
 
@@ -142,5 +225,20 @@ class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy
     analysis: str = of("analysis that is measured", json="of", default="sweep", kw_only=True)
     runs: int = of("number of states that the point was run from")
     rungs: tuple[SweepRung, ...] = of("discretisations", "", "rung", record=SweepRung)
-    speed: float | None = of("speed of the input shaft", "rad/s", json="speed_rpm", default=None, kw_only=True)
+    speed: float | None = of("speed of the input shaft", "rad/s", default=None, kw_only=True)
     reference: str = of("what the errors are measured against", default="", kw_only=True)
+
+    def tables(self) -> Iterator[Block]:
+        """Values of a point, their scatter and its cost."""
+        kinds = ", ".join(sorted({kind for rung in self.rungs for kind in rung.motion}))
+        at = "" if self.speed is None else f" at {self.speed * RPM_PER_RAD_S:.6g} rpm"
+        yield from (heading(f"{self.title}: one point{at} from {self.runs} states ({kinds})"), "")
+        time = Column("seconds", "seconds", lambda seconds: f"{seconds:.3f} s")
+        values = ("exponent", "scatter", "stated", "peak_to_peak", "peak_to_peak_scatter", "dynamic_factor", "error")
+        yield from (table_of(self, "rungs", "steps", "count", time, *values), "")
+        yield (
+            "LE: largest Lyapunov exponent per period of the fastest mesh; scatter: standard deviation over the states; stated: "
+            "standard error that one run states; seconds: CPU time of one run; error: of p-p and K_dyn, against "
+            f"{self.reference}"
+        )
+        yield from (*self.remarks(), "")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from rotorgear.results.comparison import ExcitationLine, LearntParameter, RigLine
+from rotorgear.results.comparison import ExcitationLine, LearntParameter, RigLine, learnt_words
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Column, heading, table_of
 
 # Two shapes more alike than this at the sensors are one shape to the test.
 SAME = 0.9
@@ -21,18 +24,27 @@ class ShapeMatch(Record):
     """A measured mode and its mode of the model."""
 
     rig: RigLine = of("rig line", record=RigLine)
-    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted")
-    mode_frequency_hz: float = of("frequency of the mode", "Hz")
-    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", note=", in %")
+    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted", column="mode")
+    mode_frequency_hz: float = of("frequency of the mode", "Hz", form=".2f", column="model Hz")
+    error_percent: float = of(
+        "frequency of the mode over that of the rig, less 1",
+        "%",
+        note=", in %",
+        form="{:+.2f} %".format,
+        column="error",
+    )
     mac: float = of(
         "modal assurance criterion",
         note="; of modes too close to each other to be told apart, share of the shape in their plane",
+        form=".3f",
+        column="MAC",
     )
     scale: float = of("measured shape over that of the mode", note=": modal scale factor, size", form=".3e")
     phase_collinearity: float = of(
         "modal phase collinearity of the measured shape",
         note=": 1 where all sensors move in phase or against it",
-        form=".3f",
+        form=".2f",
+        column="phase",
     )
     close_to: tuple[int, ...] = of("modes that are too close to be told apart", "", "close_mode", note=", by number")
     excitations: tuple[ExcitationLine, ...] = of(
@@ -47,7 +59,7 @@ class Subspace(Record):
     mode_hz: tuple[float, ...] = of("frequencies of the modes", "Hz", "close_mode")
     rig_hz: tuple[float, ...] = of("measured frequencies", "Hz", "rig_shape")
     angles: tuple[float, ...] = of(
-        "principal angles", "rad", "rig_shape", note=" between the measured shapes and the modes' plane"
+        "principal angles", "rad", "rig_shape", note=" between the measured shapes and the modes' plane", json="angles"
     )
 
 
@@ -75,7 +87,11 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
 
     points: tuple[str, ...] = of("names of the points", "", "point", note=", or places, of the sensors")
     distance: np.ndarray = of(
-        "distance from the node of the rig to the place", "m", "point", note="; `null` where a table names the place"
+        "distance from the node of the rig to the place",
+        "m",
+        "point",
+        note="; `null` where a table names the place",
+        json="distance",
     )
     rig_hz: np.ndarray = of("frequency of the rig line", "Hz", "rig_shape")
     mode_number: np.ndarray = of("number of the mode", "", "mode")
@@ -126,6 +142,24 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
     def verdicts(self) -> tuple[str, ...]:
         """Agreement against chance, modes that the sensors can't tell apart, sensors in doubt."""
         return tuple(_findings(self))
+
+    def tables(self) -> Iterator[Block]:
+        """Measured modes beside those of the model, and what the agreement is worth."""
+        if self.title:
+            yield heading(self.title)
+        close = Column("", lambda m: f"with {', '.join(map(str, m.close_to))}" if m.close_to else "", left=False)
+        own = ("mode_number", "mode_frequency_hz", "error_percent", "mac", "phase_collinearity")
+        yield table_of(self, "matches", Column("rig Hz", "rig.frequency_hz", ".2f"), *own, close)
+        yield from ("", *self.verdicts)
+        for group in self.subspaces:
+            numbers = " and ".join(str(k) for k in group.mode_numbers)
+            angles = ", ".join(f"{angle:.1f}" for angle in np.degrees(group.angles))
+            yield f"Modes {numbers} are too close to be told apart: principal angles to the measured plane {angles} degrees."
+        if self.unmatched:
+            yield f"Without a mode: {', '.join(f'{line.frequency_hz:.1f}' for line in self.unmatched)} Hz."
+        if self.stiffnesses:
+            yield learnt_words(self.stiffnesses, len(self.matches), "matched lines")
+        yield from self.remarks()
 
 
 def _findings(result: ShapeComparison) -> list[str]:

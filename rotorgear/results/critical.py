@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -10,19 +13,24 @@ from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import Block, Column, error_words, grid, heading, table_of
 
 
 class CriticalSpeed(Record):
     """A speed at which a line of excitation meets a mode."""
 
-    line: str = of("excitation line")
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
-    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f")
-    damping_ratio: float = of("damping ratio", note=" of the mode there; 0 in an undamped analysis")
-    whirl: str = of("sense of whirl", note=' there, for the shaft whose line it is; `""` where that does not bend')
+    line: str = of("excitation line", column="line")
+    speed: float = of("speed of the input shaft", "rad/s", form=".2f", column="rpm")
+    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f", column="Hz")
+    damping_ratio: float = of(
+        "damping ratio", note=" of the mode there; 0 in an undamped analysis", form=".3f", column="zeta %"
+    )
+    whirl: str = of(
+        "sense of whirl", note=' there, for the shaft whose line it is; `""` where that does not bend', column="whirl"
+    )
     participation: float = of("share of the exciting part in the energy of the mode")
     excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
-    description: str = of("what moves")
+    description: str = of("what moves", column="what moves")
     residual: float = of(
         "residual",
         note=" |w - p W| / (p W): relative difference of the frequency from the line, with the eigenvalue of the system "
@@ -32,8 +40,9 @@ class CriticalSpeed(Record):
     error_estimate: float = of(
         "estimated relative discretisation error",
         note=" of the speed; infinite (`null`) where the mesh can't follow the shape",
-        form=".0e",
         default=0.0,
+        form=error_words,
+        column="error",
     )
 
 
@@ -58,10 +67,8 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
     """c critical speeds, ascending; shapes have modal mass 1."""
 
     damped: bool = of("whether damping and circulatory terms took part")
-    low_speed: float = of("lowest speed looked at", "rad/s", json="low_speed_rpm")
-    top_speed: float = of(
-        "highest speed looked at", "rad/s", json="top_speed_rpm", note=", negative for the other sense"
-    )
+    low_speed: float = of("lowest speed looked at", "rad/s")
+    top_speed: float = of("highest speed looked at", "rad/s", note=", negative for the other sense")
 
     @derived("critical speeds of the input shaft", "rpm", "critical_speed", form=".2f")
     def critical_speed_rpm(self) -> np.ndarray:
@@ -84,6 +91,22 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
         """Largest residual; 0 without critical speeds."""
         return max((item.residual for item in self.speeds), default=0.0)
 
+    def tables(self) -> Iterator[Block]:
+        """The critical speeds and the notes."""
+        kind = "damped" if self.damped else "undamped"
+        title = self.model.title or "Critical speeds"
+        yield heading(f"{title}: {kind} critical speeds to {self.top_speed * RPM_PER_RAD_S:.6g} rpm")
+        part = Column("part %", "participation", ".2f", "%", where=lambda one: one.excited, without="none")
+        columns = ("speed", "frequency_hz", "line", *(("damping_ratio",) if self.damped else ()), "whirl", part)
+        yield table_of(self, "speeds", *columns, "description", at=_place)
+        # The residuals' power of ten; below 1e-12 they are rounding.
+        bound = 10.0 ** math.ceil(math.log10(max(self.worst_residual, 1e-12)))
+        worst = max((one.error_estimate for one in self.speeds), default=0.0)
+        yield from ("", f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}")
+        yield f"substituted back: |w - p W| / (p W) at most {bound:.0e}"
+        yield f"estimated relative discretisation error of the speeds at most {error_words(worst)}"
+        yield from self.remarks()
+
 
 class CriticalMap(ModelResult, kind="critical_map"):
     """Undamped critical speeds over one radial stiffness of all bearings.
@@ -93,9 +116,7 @@ class CriticalMap(ModelResult, kind="critical_map"):
     """
 
     line: str = of("excitation line", note=" of the map")
-    stiffness: np.ndarray = of(
-        "stiffness", "N/m", "stiffness", json="stiffness_n_per_m", note=", radial, of all bearings"
-    )
+    stiffness: np.ndarray = of("stiffness", "N/m", "stiffness", note=", radial, of all bearings")
     critical_speeds: np.ndarray = of(
         "critical speeds of the input shaft",
         "rad/s",
@@ -121,14 +142,13 @@ class CriticalMap(ModelResult, kind="critical_map"):
         "xy",
         json="bearing_stiffness_n_per_m",
     )
-    top_speed: float = of("highest speed looked at", "rad/s", json="top_speed_rpm")
+    top_speed: float = of("highest speed looked at", "rad/s")
 
     @derived(
         "critical speeds with forward whirl",
         "rad/s",
         "stiffness",
         "forward_speed",
-        json="forward_rpm",
         note=", ascending at each stiffness: no curves",
     )
     def forward(self) -> np.ndarray:
@@ -140,7 +160,6 @@ class CriticalMap(ModelResult, kind="critical_map"):
         "rad/s",
         "stiffness",
         "backward_speed",
-        json="backward_rpm",
         note=", ascending at each stiffness: no curves",
     )
     def backward(self) -> np.ndarray:
@@ -152,7 +171,6 @@ class CriticalMap(ModelResult, kind="critical_map"):
         "rad/s",
         "stiffness",
         "other_speed",
-        json="other_rpm",
         note=", ascending at each stiffness: no curves",
     )
     def other(self) -> np.ndarray:
@@ -165,3 +183,19 @@ class CriticalMap(ModelResult, kind="critical_map"):
         order = np.argsort(~chosen, axis=1, kind="stable")
         found = np.take_along_axis(np.where(chosen, self.critical_speeds, np.nan), order, axis=1)
         return np.asarray(found[:, : int(chosen.sum(axis=1).max(initial=0))])
+
+    def tables(self) -> Iterator[Block]:
+        """Critical speeds in ascending order, whirl by letter."""
+        rows = []
+        for k in range(0, len(self.stiffness), max(1, len(self.stiffness) // 8)):
+            known = [(v, WHIRL_WORDS[w]) for v, w in zip(self.critical_speeds[k], self.whirl[k], strict=True) if v == v]
+            speeds = ", ".join(f"{v * RPM_PER_RAD_S:.0f} {word[:1]}".rstrip() for v, word in known)
+            rows.append((f"{self.stiffness[k]:.2e}", speeds))
+        title = f"Undamped map: {self.line}, rpm of the input shaft"
+        yield grid(rows, "N/m", "critical speeds", left=0, last=True, caption=title, titled=True)
+        yield "f forward, b backward, m mixed, p planar for the shaft of the line; no letter: torsional or axial"
+
+
+def _place(k: int, key: str) -> tuple[str, int]:
+    """Where a number of a critical speed is written: in the column of its key."""
+    return ("critical_speed_rpm" if key == "speed_rpm" else key, k)

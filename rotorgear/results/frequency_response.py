@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import Piece
 from rotorgear.results.schema import Written, of
+from rotorgear.results.table import Block, error_words, grid, heading
 
 # What the receptance is multiplied with: a power of i w.
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
 
 
+# So many peaks of each response are listed.
+_PEAKS = 6
 # Half-power width of a peak, in steps of the frequencies, from which on three of them describe it.
 _RESOLVED = 1.0
 
@@ -61,7 +66,7 @@ def peak_between(x: np.ndarray, size: np.ndarray, power: int) -> Peak | None:
 class FrequencyResponse(AboutEquilibrium, kind="frf"):
     """Response of o places to unit forces (or moments) at i places, at f frequencies; Re(x e^{+iwt})."""
 
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    speed: float = of("speed of the input shaft", "rad/s")
     frequency_hz: np.ndarray = of("frequency", "Hz", "frequency")
     inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
     outputs: tuple[str, ...] = of("where the response is read", "", "output", json="output")
@@ -120,3 +125,30 @@ class FrequencyResponse(AboutEquilibrium, kind="frf"):
             peak = peak_between(x[k - 1 : k + 2], receptance[k - 1 : k + 2], power)
             found.append(peak if peak and peak.resolved else Peak(float(self.frequency_hz[k]), float(size[k]), False))
         return sorted(found, key=lambda peak: -peak.size)
+
+    def tables(self, *, quantity: str = "receptance") -> Iterator[Block]:
+        """The highest peaks of each response, of receptance, mobility or accelerance."""
+        hz = self.frequency_hz
+        at = "standstill"
+        if self.speed:
+            at = f"{self.speed * RPM_PER_RAD_S:.6g} rpm"
+        shaft = f"{self.model.reference_shaft} at " if self.speed else "at "
+        yield heading(f"{self.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz, {shaft}{at}")
+        rows = []
+        coarse = False
+        for i, entry in enumerate(self.inputs):
+            for o, place in enumerate(self.outputs):
+                for peak in self.peaks(o, i, quantity)[:_PEAKS]:
+                    coarse |= not peak.resolved
+                    size = f"{'' if peak.resolved else '> '}{peak.size:.3e}"
+                    rows.append((entry, place, f"{peak.frequency_hz:.2f}", size, self.unit(o, i, quantity)))
+        yield from ("", grid(rows, "force at", "response at", "peak Hz", quantity, "unit", left=2, caption="Peaks"), "")
+        yield f"{len(hz)} frequencies, {self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield (
+            f"residual {error_words(self.residual)} of the forces inside; on a finer mesh the peaks change by "
+            f"{error_words(self.error_estimate)}"
+        )
+        yield f"damping ratio added to every elastic mode: {self.damping_ratio:g}"
+        if coarse:
+            yield "> the peak is narrower than a step of the frequencies, and higher than at any of them"
+        yield from (*self.remarks(), "")

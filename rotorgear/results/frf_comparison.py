@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, heading, table_of
 
 
 class FrfMatch(Record):
     """One measured frequency response and that of the model."""
 
-    response: str = of("place of the response")
-    reference: str = of("place of the force")
-    frac: float = of("frequency response assurance criterion", note=": 1 where both are in proportion", form=".3f")
-    size_frac: float = of("the same of the sizes alone", note=", which phase and sign leave as it is", form=".3f")
-    ratio: float = of("root mean square of the model's over that of the rig", form=".3g")
+    response: str = of("place of the response", column="response")
+    reference: str = of("place of the force", column="force")
+    frac: float = of(
+        "frequency response assurance criterion", note=": 1 where both are in proportion", form=".3f", column="FRAC"
+    )
+    size_frac: float = of(
+        "the same of the sizes alone", note=", which phase and sign leave as it is", form=".3f", column="of sizes"
+    )
+    ratio: float = of("root mean square of the model's over that of the rig", form=".3g", column="model/rig")
 
 
 class FrfComparison(ModelResult, kind="compare_frf"):
@@ -50,17 +57,32 @@ class FrfComparison(ModelResult, kind="compare_frf"):
                 said.append(f"{name}: the model's is {pair.ratio:.2g} times as large: another unit?")
         return tuple(said)
 
+    def tables(self) -> Iterator[Block]:
+        """Each pair of places, and what the agreement is worth."""
+        if self.title:
+            yield heading(self.title)
+        hz = self.frequency_hz
+        yield from (table_of(self, "pairs"), "")
+        yield f"Mean FRAC {self.mean_frac:.3f} over {len(hz)} frequencies, {hz[0]:.5g} to {hz[-1]:.5g} Hz."
+        yield from (*self.verdicts, *self.remarks())
+
 
 class OrderMatch(Record):
     """The cut of one order at one place, measured and computed, over the same speeds."""
 
-    point: str = of("named point")
-    order: str = of("name of the order")
+    point: str = of("named point", column="point")
+    order: str = of("name of the order", column="order")
     ratio: float = of("frequency over that of the input shaft")
-    level_db: float = of("root mean square of the model over that of the rig", "dB", form=".1f")
-    correlation: float = of("correlation of the levels over speed", note=", in dB", form=".2f")
-    rig_peak_rpm: float = of("speed of the largest measured amplitude", "rpm")
-    model_peak_rpm: float = of("speed of the largest amplitude of the model", "rpm")
+    level_db: float = of(
+        "root mean square of the model over that of the rig", "dB", form="{:+.1f} dB".format, column="model/rig"
+    )
+    correlation: float = of("correlation of the levels over speed", note=", in dB", form=".2f", column="correlation")
+    rig_peak_rpm: float = of(
+        "speed of the largest measured amplitude", "rpm", form="{:.0f} rpm".format, column="peak: rig"
+    )
+    model_peak_rpm: float = of(
+        "speed of the largest amplitude of the model", "rpm", form="{:.0f} rpm".format, column="model"
+    )
 
 
 class OrderComparison(ModelResult, kind="compare_orders"):
@@ -71,3 +93,13 @@ class OrderComparison(ModelResult, kind="compare_orders"):
     measured_acceleration: np.ndarray = of("measured acceleration", "m/s^2, rad/s^2", "cut", "speed")
     computed_acceleration: np.ndarray = of("acceleration of the model", "m/s^2, rad/s^2", "cut", "speed")
     without: tuple[str, ...] = of("measured cuts without an order of the model", "", "left_cut")
+
+    def tables(self) -> Iterator[Block]:
+        """Each cut, and those that the model has no order for."""
+        if self.title:
+            yield heading(self.title)
+        columns = ("point", "order", "level_db", "correlation", "rig_peak_rpm", "model_peak_rpm")
+        yield from (table_of(self, "cuts", *columns), "")
+        if self.without:
+            yield f"No order of the model: {', '.join(self.without)}."
+        yield from self.remarks()

@@ -15,11 +15,10 @@ from rotorgear.results.schema import Record
 
 @cache
 def kinds() -> dict[str, type[Result]]:
-    """Return the classes of all results; a new one is here as soon as its file stands in a room of this folder."""
+    """Return the classes of all results; a new one is here as soon as its file stands in this folder."""
     name = rotorgear.results.__name__
-    for module in pkgutil.walk_packages(rotorgear.results.__path__, f"{name}."):
-        if not module.ispkg and not module.name.startswith(f"{name}.tables."):
-            import_module(module.name)
+    for module in pkgutil.iter_modules(rotorgear.results.__path__, f"{name}."):
+        import_module(module.name)
     return dict(Result.kinds)
 
 

@@ -10,13 +10,14 @@ from rotorgear.model.layout.state import OperatingPoint, State
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, of
+from rotorgear.results.table import Table, grid, written
 
 
 class LawRow(Record):
     """Operating point of a bearing or nonlinear element: where its force law stands in the static equilibrium."""
 
     part: str = of("bearing or nonlinear element")
-    speed: float | None = of("speed of the reference shaft", "rad/s", json="speed_rpm", default=None, kw_only=True)
+    speed: float | None = of("speed of the reference shaft", "rad/s", default=None, kw_only=True)
     force: np.ndarray = of(
         "force of the shaft on it", "N and N m", "component", note=" along its displacements", json="force"
     )
@@ -72,3 +73,23 @@ class AboutEquilibrium(ModelResult):
         kw_only=True,
         note=" of bearings and nonlinear elements in the static equilibrium, at the first and the last speed",
     )
+
+    def operating_points(self) -> Table:
+        """Force, deflection and stiffness of each across the shaft, in the direction of the force, and along z.
+
+        "mean" stands behind those that are averaged over a pitch of rolling elements.
+        """
+        rows = []
+        for row in self.laws:
+            # What is rounding of the largest component is shown as none.
+            least = 1e-6 * max(map(abs, row.force), default=0.0)
+            carries = row.load > least
+            across = (row.load if carries else None, 1e6 * row.deflection, 1e-6 * row.along_load if carries else None)
+            along = (None, None, None)
+            if len(row.force) >= 3 and abs(row.force[2]) > least:
+                along = (row.force[2], 1e6 * row.displacement[2], 1e-6 * row.stiffness[2, 2])
+            speed = None if row.speed is None else row.speed * RPM_PER_RAD_S
+            cells = (written(speed, ".6g"), *(written(x, ".4g") for x in (*across, *along)))
+            rows.append((row.part + (", mean" if row.averaged else ""), *cells))
+        heads = ("operating point", "rpm", "F N", "moves um", "N/um", "Fz N", "z um", "z N/um")
+        return grid(rows, *heads, caption="Operating points")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.old_names import warn_old
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of, plain
+from rotorgear.results.table import Block, Table, grid, heading
 
 PLANE = "transverse, along the line of action: base force over approach"
 # So many orders are written where nothing else is asked for.
@@ -43,9 +45,7 @@ class LoadedPieces(Record):
 class HelixContact(Record):
     """Loaded contact of one helix over p positions, in n slices of the contact lines; stiffness in the transverse plane."""
 
-    stiffness: np.ndarray = of(
-        "stiffness", "N/m", "position", json="stiffness_n_per_m", note=" of one helix over `position`"
-    )
+    stiffness: np.ndarray = of("stiffness", "N/m", "position", note=" of one helix over `position`")
     tangent: np.ndarray = of("tangent stiffness", "N/m", "position", json=None)
     transmission_error: np.ndarray = of("transmission error", "m", "position", json="ste_m", note=" under load")
     no_load_error: np.ndarray = of("transmission error without load", "m", "position", json="no_load_te_m")
@@ -57,11 +57,7 @@ class HelixContact(Record):
         "total contact ratio without load", note=", of the involutes that are there: undercut shortens it"
     )
     path_of_contact: tuple[float, float, float] = of(
-        "roll lengths of the pinion at A, C and E",
-        "m",
-        "points_a_c_e",
-        json="path_of_contact_m",
-        note=": start of contact, pitch point and end",
+        "roll lengths of the pinion at A, C and E", "m", "points_a_c_e", note=": start of contact, pitch point and end"
     )
     position: np.ndarray = of("number of the position", "", "slice", json=None)
     pair: np.ndarray = of("number of the tooth pair", "", "slice", json=None)
@@ -165,15 +161,15 @@ class MeshResult(Result, kind="mesh"):
     definition: str = of("definition of the stiffness", note=': `"secant"` or `"tangent"`')
     body: str = of("what the teeth stand on", note=", in words")
     helices: int = of("number of helices")
-    face_width: float = of("common face width of one helix", "m", json="face_width_m")
-    base_helix_angle: float = of("base helix angle", "rad", json="base_helix_angle_deg")
+    face_width: float = of("common face width of one helix", "m")
+    base_helix_angle: float = of("base helix angle", "rad")
     stagger: float = of("lead of the second helix in mesh periods")
     load: MeshLoad | None = of("load", record=MeshLoad)
     position: np.ndarray = of(
         "position", "", "position", note=" in mesh periods, rising, not evenly spaced for loaded teeth"
     )
     event: np.ndarray = of("whether a tooth pair comes or goes there", "", "position", note=": the curves have a kink")
-    stiffness: np.ndarray = of("stiffness", "N/m", "position", json="stiffness_n_per_m", note=" over `position`")
+    stiffness: np.ndarray = of("stiffness", "N/m", "position", note=" over `position`")
     tangent: np.ndarray | None = of(
         "tangent stiffness", "N/m", "position", json="tangent_stiffness_n_per_m", note=" over `position`"
     )
@@ -203,27 +199,27 @@ class MeshResult(Result, kind="mesh"):
         """The same for all stiffness models."""
         return PLANE
 
-    @derived("mean stiffness", "N/m", json="mean_stiffness_n_per_m")
+    @derived("mean stiffness", "N/m")
     def mean_stiffness(self) -> float:
         """Mean of the transverse stiffness (N/m)."""
         return float(self._curve(self.stiffness).mean()[0])
 
-    @derived("mean stiffness along the flank normal", "N/m", json="mean_normal_stiffness_n_per_m")
+    @derived("mean stiffness along the flank normal", "N/m")
     def mean_normal_stiffness(self) -> float:
         """Mean stiffness along the flank normal (N/m): what a model file takes as a number."""
         return self.mean_stiffness / float(np.cos(self.base_helix_angle)) ** 2
 
-    @derived("peak to peak of the stiffness", "N/m", json="peak_to_peak_stiffness_n_per_m")
+    @derived("peak to peak of the stiffness", "N/m")
     def peak_to_peak_stiffness(self) -> float:
         """Largest less smallest transverse stiffness (N/m)."""
         return float(np.ptp(self.stiffness))
 
-    @derived("mean tangent stiffness", "N/m", json="mean_tangent_stiffness_n_per_m")
+    @derived("mean tangent stiffness", "N/m")
     def mean_tangent_stiffness(self) -> float | None:
         """Mean of the transverse tangent stiffness (N/m)."""
         return None if self.tangent is None else float(self._curve(self.tangent).mean_of_steps()[0])
 
-    @derived("peak to peak of the transmission error", "m", json="ste_peak_to_peak_m", note=" under load")
+    @derived("peak to peak of the transmission error", "m", note=" under load")
     def ste_peak_to_peak(self) -> float | None:
         """Largest less smallest transmission error under load (m)."""
         return None if self.transmission_error is None else float(np.ptp(self.transmission_error))
@@ -285,3 +281,86 @@ class MeshResult(Result, kind="mesh"):
     def to_dict(self, harmonics: int = _ORDERS) -> dict[str, Any]:
         """Plain values for JSON with so many orders; the keys are on docs/json.md."""
         return {**super().to_dict(), "harmonics": plain(self.orders(harmonics))}
+
+    def tables(self, *, harmonics: int = 0) -> Iterator[Block]:
+        """Stiffness, transmission error, loads and, where asked for, so many orders of the mesh."""
+        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+        preset = "" if self.preset is None else f", preset {self.preset}"
+        yield f"stiffness model {self.stiffness_model}{preset}: {self.definition}, {PLANE}"
+        yield f"body: {self.body}"
+        if self.load is None:
+            yield "no load"
+        else:
+            yield (
+                f"load: {self.load.pinion_torque_n_m:.6g} N m on the pinion, F_bt {self.load.base_force_n:.6g} N, "
+                f"F_n {self.load.normal_force_n:.6g} N ({self.load.source})"
+            )
+        helices = f"all {self.helices} helices" if self.helices > 1 else "one helix"
+        heads = ("", helices, "per width of a helix", "est. error")
+        yield from ("", grid(self._cycle(), *heads, caption="The mesh cycle", no_wrap=True))
+        if harmonics:
+            yield from ("", self._orders(harmonics))
+        if self.loads:
+            rows = [
+                (
+                    f"{point.factor:g}",
+                    f"{point.mean_stiffness_n_per_m:.5g} N/m",
+                    f"{point.peak_to_peak_stiffness_n_per_m:.4g} N/m",
+                    f"{1e6 * point.ste_peak_to_peak_m:.4f} um",
+                    f"{point.contact_ratio:.3f}",
+                )
+                for point in self.loads
+            ]
+            columns = ("load factor", "mean stiffness", "peak to peak", "STE peak to peak", "contact ratio")
+            yield from ("", grid(rows, *columns, caption="Loads", no_wrap=True))
+        yield from ("", *self.remarks())
+        if self.dofs:
+            # Teeth in the plane take nothing worth a word.
+            told = self.memory_bytes is not None and any(np.ptp(helix.z) > 0.0 for helix in self.helix)
+            memory = f", {1e-9 * (self.memory_bytes or 0.0):.1f} GB" if told else ""
+            yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s{memory}"
+
+    def _cycle(self) -> Iterator[tuple[str, str, str, str]]:
+        """Rows of what the mesh does over its cycle: name, value, the same per width of a helix, estimated error."""
+        per = 1e-9 / (self.face_width * self.helices) if self.face_width else None
+        errors = self.errors
+
+        def percent(error: float | None) -> str:
+            return "-" if error is None else f"{100 * error:.2g} %"
+
+        def stiffness(name: str, value: float, error: float | None = None) -> tuple[str, str, str, str]:
+            width = f"{per * value:.4f} N/(mm um)" if per else "-"
+            return (name, f"{value:.5g} N/m", width, percent(error))
+
+        yield stiffness("mean stiffness", self.mean_stiffness, errors.mean_stiffness if errors else None)
+        yield stiffness("peak to peak", self.peak_to_peak_stiffness, errors.peak_to_peak_stiffness if errors else None)
+        if self.tangent is not None:
+            yield stiffness("mean tangent stiffness", float(self.mean_tangent_stiffness or 0.0))
+        yield stiffness("mean along the normal", self.mean_normal_stiffness)
+        if self.transmission_error is not None and self.no_load_error is not None:
+            varies = 1e6 * np.ptp(self.transmission_error)
+            yield ("transmission error, mean", f"{1e6 * (self.mean_transmission_error or 0.0):.4f} um", "", "")
+            yield ("peak to peak", f"{varies:.4f} um", "", percent(errors.ste_peak_to_peak if errors else None))
+            yield ("peak to peak, no load", f"{1e6 * np.ptp(self.no_load_error):.4f} um", "", "")
+        if self.helix:
+            ratio = np.mean([item.contact_ratio for item in self.helix])
+            share = max(float(values.max()) for item in self.helix for values in item.share.values())
+            pressure = 1e-6 * max(item.pressure.max() for item in self.helix)
+            geometric = f"{self.helix[0].geometric_contact_ratio:.3f} geometric"
+            yield ("contact ratio under load", f"{ratio:.3f}", geometric, "")
+            yield ("largest share of a pair", f"{100 * share:.1f} %", "", "")
+            yield ("largest line load", f"{1e-3 * max(item.line_load.max() for item in self.helix):.4g} N/mm", "", "")
+            yield ("largest pressure", f"{pressure:.4g} MPa", "", percent(errors.largest_pressure if errors else None))
+
+    def _orders(self, count: int) -> Table:
+        rows = []
+        for one in self.orders(count):
+            # Below this share of the mean an order is rounding, and its phase says nothing.
+            small = one.stiffness_n_per_m < 1e-9 * self.mean_stiffness
+            cells = [str(one.order), f"{one.stiffness_n_per_m:.4g} N/m"]
+            cells.append("-" if small else f"{one.stiffness_phase_deg:.1f} deg")
+            if one.ste_m is not None:
+                cells += [f"{1e6 * one.ste_m:.4f} um", "-" if small else f"{one.ste_phase_deg:.1f} deg"]
+            rows.append(cells + [""] * (5 - len(cells)))
+        heads = ("mesh order", "stiffness", "phase", "transmission error", "phase")
+        return grid(rows, *heads, caption="Orders of the mesh", no_wrap=True)

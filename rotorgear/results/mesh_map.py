@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import of
+from rotorgear.results.table import Block, grid, heading
 
 
 class MeshMap(Result, kind="mesh_map"):
@@ -19,28 +22,15 @@ class MeshMap(Result, kind="mesh_map"):
     body: str = of("what the teeth stand on", note=", in words")
     helices: int = of("number of helices")
     positions: int = of("positions in the mesh period")
-    pinion_torque: np.ndarray = of("torque on the pinion about +z", "N m", "torque", json="pinion_torque_n_m")
+    pinion_torque: np.ndarray = of("torque on the pinion about +z", "N m", "torque")
     misalignment: np.ndarray = of(
-        "misalignment over the face",
-        "m",
-        "misalignment",
-        json="misalignment_m",
-        note=", positive where the flanks stand apart at larger z",
+        "misalignment over the face", "m", "misalignment", note=", positive where the flanks stand apart at larger z"
     )
-    ste_peak_to_peak: np.ndarray = of(
-        "peak to peak of the transmission error", "m", "torque", "misalignment", json="ste_peak_to_peak_m"
-    )
+    ste_peak_to_peak: np.ndarray = of("peak to peak of the transmission error", "m", "torque", "misalignment")
     ste_harmonics: np.ndarray = of(
-        "amplitudes of mesh orders 1 to 3 of the transmission error",
-        "m",
-        "torque",
-        "misalignment",
-        "order",
-        json="ste_harmonics_m",
+        "amplitudes of mesh orders 1 to 3 of the transmission error", "m", "torque", "misalignment", "order"
     )
-    largest_pressure: np.ndarray = of(
-        "largest contact pressure", "Pa", "torque", "misalignment", json="largest_pressure_pa"
-    )
+    largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
     face_load_factor: np.ndarray = of(
         "face load factor",
         "",
@@ -48,7 +38,28 @@ class MeshMap(Result, kind="mesh_map"):
         "misalignment",
         note=" K_Hbeta: largest load per width over the mean one, mean of the mesh cycle",
     )
-    mean_stiffness: np.ndarray = of(
-        "mean stiffness", "N/m", "torque", "misalignment", json="mean_stiffness_n_per_m", note=", transverse"
-    )
+    mean_stiffness: np.ndarray = of("mean stiffness", "N/m", "torque", "misalignment", note=", transverse")
     dofs: int = of("degrees of freedom", note=" of both gears' elements")
+
+    def tables(self) -> Iterator[Block]:
+        """A row for each torque and misalignment."""
+        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+        yield from (f"preset {self.preset}, {self.positions} positions", f"body: {self.body}", "")
+        rows: list[tuple[str, ...]] = [("N m", "um", "um", "um", "um", "um", "MPa", "", "N/m")]
+        for i, torque in enumerate(self.pinion_torque):
+            for j, misalignment in enumerate(self.misalignment):
+                rows.append(
+                    (
+                        f"{torque:.5g}",
+                        f"{1e6 * misalignment:.4g}",
+                        f"{1e6 * self.ste_peak_to_peak[i, j]:.3f}",
+                        *(f"{1e6 * value:.3f}" for value in self.ste_harmonics[i, j]),
+                        f"{1e-6 * self.largest_pressure[i, j]:.4g}",
+                        f"{self.face_load_factor[i, j]:.3f}",
+                        f"{self.mean_stiffness[i, j]:.4g}",
+                    )
+                )
+        heads = ("torque", "misalignment", "STE pp", "order 1", "2", "3", "p_max", "K_Hbeta", "k mean")
+        yield from (grid(rows, *heads, caption="Over torque and misalignment", no_wrap=True), "")
+        yield from self.remarks()
+        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s"

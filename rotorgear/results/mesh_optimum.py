@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Table, grid, heading
 
 
 class FlankVariable(Record):
@@ -32,19 +35,15 @@ class MeshOptimum(Result, kind="mesh_optimum"):
     preset: str = of("preset of the finite elements")
     positions: int = of("positions in the mesh period")
     variables: tuple[FlankVariable, ...] = of("what was looked for", "", "variable", record=FlankVariable)
-    pinion_torque: np.ndarray = of("torque on the pinion about +z", "N m", "torque", json="pinion_torque_n_m")
+    pinion_torque: np.ndarray = of("torque on the pinion about +z", "N m", "torque")
     misalignment: np.ndarray = of(
-        "misalignment over the face",
-        "m",
-        "misalignment",
-        json="misalignment_m",
-        note=", positive where the flanks stand apart at larger z",
+        "misalignment over the face", "m", "misalignment", note=", positive where the flanks stand apart at larger z"
     )
     weight: np.ndarray = of("share of an operating point in the mean", "", "torque", "misalignment")
-    pressure_limit: float | None = of("largest contact pressure that is allowed", "Pa", json="pressure_limit_pa")
-    mean_before: float = of("weighted mean of the peak to peak with the flanks of the model", "m", json="mean_before_m")
-    mean: float = of("weighted mean of the peak to peak", "m", json="mean_m", note=" with the best flanks")
-    mean_band: tuple[float, float] | None = of("its tolerance band", "m", "low_and_high", json="mean_band_m")
+    pressure_limit: float | None = of("largest contact pressure that is allowed", "Pa")
+    mean_before: float = of("weighted mean of the peak to peak with the flanks of the model", "m")
+    mean: float = of("weighted mean of the peak to peak", "m", note=" with the best flanks")
+    mean_band: tuple[float, float] | None = of("its tolerance band", "m", "low_and_high")
     before: np.ndarray = of(
         "peak to peak of the transmission error with the flanks of the model",
         "m",
@@ -59,13 +58,9 @@ class MeshOptimum(Result, kind="mesh_optimum"):
         "misalignment",
         json="ste_peak_to_peak_m",
     )
-    ste_low: np.ndarray | None = of("lower end of its tolerance band", "m", "torque", "misalignment", json="ste_low_m")
-    ste_high: np.ndarray | None = of(
-        "upper end of its tolerance band", "m", "torque", "misalignment", json="ste_high_m"
-    )
-    largest_pressure: np.ndarray = of(
-        "largest contact pressure", "Pa", "torque", "misalignment", json="largest_pressure_pa"
-    )
+    ste_low: np.ndarray | None = of("lower end of its tolerance band", "m", "torque", "misalignment")
+    ste_high: np.ndarray | None = of("upper end of its tolerance band", "m", "torque", "misalignment")
+    largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
     evaluations: int = of("flanks that were tried", note=", without those of the band")
     samples: int = of("flanks of the tolerance band")
     changes: dict[str, str] = of("values for the model by address", "", "ADDRESS", note=": what `model.with_` takes")
@@ -78,3 +73,50 @@ class MeshOptimum(Result, kind="mesh_optimum"):
             table, _, key = address.rpartition(".")
             tables.setdefault(table, []).append(f'{key} = "{text}"')
         return "\n\n".join("\n".join([f"[{table}]", *keys]) for table, keys in tables.items())
+
+    def tables(self) -> Iterator[Block]:
+        """The best modifications, what they do at each operating point, and their lines for the model file."""
+        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+        limit = "no limit" if self.pressure_limit is None else f"p_max up to {1e-6 * self.pressure_limit:.4g} MPa"
+        yield f"preset {self.preset}, {self.positions} positions, {limit}, {self.evaluations} flanks tried"
+        rows = [
+            (
+                variable.name,
+                f"{1e6 * variable.low_m:.4g} ... {1e6 * variable.high_m:.4g}",
+                f"{1e6 * variable.best_m:.2f}",
+                f"+-{1e6 * variable.tolerance_m:.3g}",
+            )
+            for variable in self.variables
+        ]
+        heads = ("modification", "bounds um", "best um", "tolerance um")
+        yield from ("", grid(rows, *heads, caption="Modifications", no_wrap=True), "", self._points(), "")
+        yield from self.remarks()
+        if self.status != "success":
+            yield f"Warning: {self.status}"
+        yield from (f"{self.seconds['total']:.1f} s", "", "for the model file:", *self.lines.splitlines())
+
+    def _points(self) -> Table:
+        """What the best flanks do at each operating point, and in the mean."""
+
+        def band(low: float | None, high: float | None) -> str:
+            return "-" if low is None or high is None else f"{1e6 * low:.3f} ... {1e6 * high:.3f}"
+
+        rows: list[tuple[str, ...]] = [("N m", "um", "", "um", "um", "um", "MPa")]
+        for i, torque in enumerate(self.pinion_torque):
+            for j, misalignment in enumerate(self.misalignment):
+                ends = (None if ste is None else ste[i, j] for ste in (self.ste_low, self.ste_high))
+                rows.append(
+                    (
+                        f"{torque:.5g}",
+                        f"{1e6 * misalignment:.4g}",
+                        f"{self.weight[i, j]:.3f}",
+                        f"{1e6 * self.before[i, j]:.3f}",
+                        f"{1e6 * self.ste[i, j]:.3f}",
+                        band(*ends),
+                        f"{1e-6 * self.largest_pressure[i, j]:.4g}",
+                    )
+                )
+        mean = band(*(self.mean_band or (None, None)))
+        rows.append(("mean", "", "", f"{1e6 * self.mean_before:.3f}", f"{1e6 * self.mean:.3f}", mean, ""))
+        heads = ("torque", "misalignment", "weight", "STE pp before", "best", "90 % band", "p_max")
+        return grid(rows, *heads, caption="Operating points", no_wrap=True)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import Block, Column, error_words, exact, heading, table_over
 
 # The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
 WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
@@ -24,7 +28,7 @@ class NodeTable(Record):
     """
 
     shaft: tuple[str, ...] = of("shaft", "", "node")
-    position: np.ndarray = of("position", "m", "node", "xyz")
+    position: np.ndarray = of("position", "m", "node", "xyz", json="position")
     pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
     casing: tuple[str, ...] = of(
         "casing or gear body whose surface the node is on",
@@ -53,8 +57,8 @@ class Piece(Record):
     """A stretch of shaft between two neighbouring places, and how it was cut into elements."""
 
     shaft: str = of("shaft")
-    start: float = of("z of the left end", "m")
-    end: float = of("z of the right end", "m")
+    start: float = of("z of the left end", "m", json="start")
+    end: float = of("z of the right end", "m", json="end")
     elements: int = of("number of elements")
     order: int = of("polynomial order of the elements")
 
@@ -70,11 +74,16 @@ class ModalResult(AboutEquilibrium, kind="modal"):
     of all p nodes, with modal mass 1 (q^H M q) and the largest displacement real and positive.
     """
 
-    speed: float | None = of(
-        "speed of the input shaft", "rad/s", json="speed_rpm", note="; `null`: undamped, at standstill"
-    )
+    speed: float | None = of("speed of the input shaft", "rad/s", note="; `null`: undamped, at standstill")
 
-    @derived("frequency", "Hz", "mode", note=" of each mode, the damped one; 0 for rigid-body modes", form=".4f")
+    @derived(
+        "frequency",
+        "Hz",
+        "mode",
+        note=" of each mode, the damped one; 0 for rigid-body modes",
+        form=exact(".4f"),
+        column="Hz",
+    )
     def frequency_hz(self) -> np.ndarray:
         """Damped frequency |Im s| / 2 pi, (m,)."""
         return np.where(self.rigid, 0.0, np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
@@ -90,7 +99,14 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         """|s| / 2 pi, (m,)."""
         return np.where(self.rigid, 0.0, np.abs(self.eigenvalues) / (2.0 * np.pi))
 
-    @derived("damping ratio", "", "mode", note=", −Re s / |s|, as a fraction; negative: unstable")
+    @derived(
+        "damping ratio",
+        "",
+        "mode",
+        note=", −Re s / |s|, as a fraction; negative: unstable",
+        form=".3f",
+        column="zeta %",
+    )
     def damping_ratio(self) -> np.ndarray:
         """-Re s / |s|, (m,); 0 for rigid modes, 1 for overdamped and -1 for divergent ones."""
         size = np.abs(self.eigenvalues)
@@ -98,19 +114,21 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         return np.where(self.rigid | (size == 0.0), 0.0, -self.eigenvalues.real / safe) + 0.0
 
     rigid: np.ndarray = of("whether the mode is a rigid-body motion", "", "mode")
-    description: tuple[str, ...] = of("what moves", "", "mode", note=", in a line")
+    description: tuple[str, ...] = of("what moves", "", "mode", note=", in a line", column="what moves")
     whirl: tuple[str, ...] = of(
         "sense of whirl",
         "",
         "mode",
         note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"`, or `""` where nothing whirls',
+        column="whirl",
     )
     error_estimate: np.ndarray = of(
         "estimated relative discretisation error",
         "",
         "mode",
         note=" of the frequency; `null`: the mesh can't follow that mode, or the estimate was left out",
-        form=".0e",
+        form=error_words,
+        column="error",
     )
     eigenvalues: np.ndarray = of(
         "eigenvalue s",
@@ -182,3 +200,31 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         orders = sorted({piece.order for piece in self.discretisation})
         text = f"order {orders[0]}" if len(orders) == 1 else f"orders {orders[0]} to {orders[-1]}"
         return f"{elements} shaft element{'s'[: elements != 1]} of {text} in {len(self.discretisation)} pieces"
+
+    def tables(self, *, energies: bool = False) -> Iterator[Block]:
+        """Modes, notes and, where asked for, energy shares."""
+        how = "undamped, at standstill"
+        damped: tuple[str, ...] = ()
+        if self.speed is not None:
+            how = f"damped, {self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
+            damped = ("damping_ratio", "whirl")
+        yield heading(f"{self.model.title or 'Modes'}: {how}")
+        number = Column("mode", lambda k: k + 1)
+        # A rigid body has no frequency whose error could be relative to it.
+        error = Column("", "error_estimate", where=lambda k: not self.rigid[k])
+        yield table_over(self, "mode", number, "frequency_hz", error, *damped, "description", caption="Modes")
+        if energies:
+            kinetic = Column("kinetic, by part", lambda k: _largest(self.kinetic_energy, k))
+            strain = Column("strain, by part", lambda k: _largest(self.strain_energy, k))
+            yield table_over(self, "mode", number, kinetic, strain, caption="Energy shares", titled=True)
+        yield from ("", f"{self.dofs} dofs, {self.mesh_text}, {self.seconds['total']:.2f} s; {self.method}")
+        estimates = self.error_estimate[np.isfinite(self.error_estimate)]
+        if estimates.size:
+            yield f"error: estimated relative error of each frequency; largest {estimates.max():.1e}"
+        yield from (*self.remarks(), "")
+
+
+def _largest(shares: dict[str, np.ndarray], k: int) -> str:
+    """The parts that hold most of a mode's energy."""
+    ranked = sorted(((float(share[k]), part) for part, share in shares.items()), reverse=True)[:4]
+    return ", ".join(f"{part} {100.0 * share:.0f}%" for share, part in ranked if share >= 0.01)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import numbers_of
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Table, grid, heading
 
 
 class LayoutNumber(Record):
@@ -31,7 +35,7 @@ class LayoutMargin(Record):
     """One excitation at one speed, and the mode next to it among those that count, before and after."""
 
     line: str = of("excitation line")
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    speed: float = of("speed of the input shaft", "rad/s")
     frequency_hz: float = of("frequency", "Hz", note=" of the line", form=".2f")
     before_hz: float = of("frequency of the nearest mode before", "Hz", note="; `null`: none", form=".2f")
     before_margin: float = of("margin before", note=": f_mode / f_line - 1", form="+.4f")
@@ -49,7 +53,7 @@ class LayoutMode(Record):
     """A mode near an excitation."""
 
     line: str = of("excitation line")
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    speed: float = of("speed of the input shaft", "rad/s")
     frequency_hz: float = of("frequency", "Hz", note=" of the mode", form=".2f")
     margin: float = of("margin", note=": f_mode / f_line - 1", form="+.4f")
     participation: float = of("participation of the mode", form=".2%")
@@ -108,6 +112,59 @@ class OptimiseResult(ModelResult, kind="optimise"):
             for row in held
         )
 
+    def tables(self) -> Iterator[Block]:
+        """Numbers with their bounds, margins with the modes that count, and what was reached."""
+        rows = []
+        for row in self.numbers:
+            values = (value_words(row, value) for value in (row.before, row.after, row.low, row.high))
+            rows.append((row.address, *values, f"at {row.at_bound}" if row.at_bound else ""))
+        yield heading(self.title or "Layout")
+        yield from (grid(rows, "number", "before", "after", "low", "high", "", caption="Free numbers"), "")
+        yield from (self._margins(), "")
+        yield from (*self._said(), *self.remarks())
+
+    def _margins(self) -> Table:
+        def cells(hz: float, margin: float, share: float, inside: float) -> tuple[str, ...]:
+            others = f"{100 * inside:.2f} %" if inside else "-"
+            if not np.isfinite(hz):
+                return ("none", "-", "-", others)
+            return (f"{hz:.1f}", f"{100 * margin:+.2f} %", f"{100 * share:.2f} %", others)
+
+        rows: list[tuple[str, ...]] = []
+        for row in self.lines:
+            first = (f"{row.speed * RPM_PER_RAD_S:.6g}", f"{row.frequency_hz:.1f}")
+            before = (row.before_hz, row.before_margin, row.before_participation, row.before_inside)
+            after = (row.after_hz, row.after_margin, row.after_participation, row.after_inside)
+            rows += [(f"{row.line}: before", *first, *cells(*before)), ("after", "", "", *cells(*after))]
+        heads = ("excitation, and the mode next to it", "rpm", "Hz", "mode", "margin", "share", "others")
+        return grid(rows, *heads, caption="Margins")
+
+    def _said(self) -> Iterator[str]:
+        asked = f"{100 * self.least_margin:.3g} %"
+        least = f"{100 * self.participation:.3g} %"
+        yield f"share: participation of the mode; others: the largest within the margin of a mode that has less than {least}"
+        if self.reached:
+            yield f"Every excitation keeps {asked} from the modes that it excites (participation of {least} and more)."
+        else:
+            short = dict.fromkeys(row.line for row in self.lines if abs(row.after_margin) < self.least_margin)
+            yield f"A margin of {asked} was NOT reached by {', '.join(short)} (modes with a participation of {least} and more)."
+            if self.forbidden_by:
+                yield f"Bounds that forbid it: {'; '.join(self.forbidden_by)}."
+            elif any(row.pull for row in self.numbers):
+                yield "No bound forbids it: the search ended in a local minimum; free more numbers, or ask for more searches."
+            else:
+                yield "None of the free numbers moves the modes that count: free others."
+        if self.deviations_before is not None and self.deviations_after is not None:
+            yield (
+                f"With [scatter], the margin is kept by {_deviations(self.deviations_before)} before, "
+                f"{_deviations(self.deviations_after)} after (negative: a mode inside it)."
+            )
+        yield f"Mass of the rotors {self.mass_before_kg:.2f} kg before, {self.mass_after_kg:.2f} kg after."
+        yield (
+            f"{self.searches_reached} of {self.searches} searches reached the margin; {self.solutions} modal solutions, "
+            f"{self.gradients} gradients, {self.dofs} dofs"
+        )
+
 
 def _value(row: LayoutNumber, value: float) -> str:
     if row.unit == "m":
@@ -118,3 +175,7 @@ def _value(row: LayoutNumber, value: float) -> str:
 def value_words(row: LayoutNumber, value: float) -> str:
     """A value of a number with its unit, lengths in mm; a factor as a factor."""
     return _value(row, value) if row.unit else f"x {value:.4f}"
+
+
+def _deviations(value: float) -> str:
+    return f"{value:+.1f} standard deviations" if np.isfinite(value) else "any scatter (no mode that counts is near)"

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Table, grid, heading, written
+
+# Points of a branch that are listed; all are in the files.
+_SHOWN = 12
 
 
 class SpecialPoint(Record):
@@ -16,12 +21,10 @@ class SpecialPoint(Record):
     kind: str = of("kind", note=': `"fold"`, `"period doubling"` or `"Neimark-Sacker"`')
     value: float = of("value of the parameter", note=", in SI")
     branch: int = of("branch", note=", counted from 0")
-    period: float = of("period", "s", json="period_s")
+    period: float = of("period", "s")
     multiplier_real: np.ndarray = of("real part of the Floquet multipliers", "", "multiplier", note=", largest first")
     multiplier_imaginary: np.ndarray = of("imaginary part of the Floquet multipliers", "", "multiplier")
-    approach_extremes: np.ndarray = of(
-        "least and largest approach of the flanks", "m", "contact", "extreme", json="approach_extremes_m"
-    )
+    approach_extremes: np.ndarray = of("least and largest approach of the flanks", "m", "contact", "extreme")
     place_extremes: np.ndarray = of(
         "least and largest displacement at a place", "", "place", "extreme", default_factory=lambda: np.zeros((0, 2))
     )
@@ -42,14 +45,9 @@ class SpecialCurve(Record):
     branch: int = of("branch", note=", counted from 0, that it begins on")
     value: np.ndarray = of("value of the parameter", "", "curve_point", note=", the first one, in SI")
     second: np.ndarray = of("value of the second parameter", "", "curve_point", note=", in SI")
-    period: np.ndarray = of("period", "s", "curve_point", json="period_s")
+    period: np.ndarray = of("period", "s", "curve_point")
     approach_extremes: np.ndarray = of(
-        "least and largest approach of the flanks",
-        "m",
-        "curve_point",
-        "contact",
-        "extreme",
-        json="approach_extremes_m",
+        "least and largest approach of the flanks", "m", "curve_point", "contact", "extreme"
     )
     ended: str = of("why it ended")
     place_extremes: np.ndarray = of(
@@ -90,38 +88,23 @@ class OrbitsResult(ModelResult, kind="orbits"):
     branches: tuple[OrbitBranch, ...] = of("branches", "", "branch", record=OrbitBranch)
     branch: np.ndarray = of("branch", "", "point", note=", counted from 0")
     value: np.ndarray = of("value of the parameter", "", "point", note=", in SI")
-    period: np.ndarray = of("period", "s", "point", json="period_s")
+    period: np.ndarray = of("period", "s", "point")
     stable: np.ndarray = of("whether the motion is stable", "", "point")
     multipliers: np.ndarray = of("Floquet multipliers", "", "point", "multiplier", json=None)
     approach_extremes: np.ndarray = of(
-        "least and largest approach of the flanks",
-        "m",
-        "point",
-        "contact",
-        "extreme",
-        json="approach_extremes_m",
-        note=", transverse",
+        "least and largest approach of the flanks", "m", "point", "contact", "extreme", note=", transverse"
     )
-    peak_to_peak_transmission_error: np.ndarray = of(
-        "transmission error, peak to peak", "m", "point", "contact", json="peak_to_peak_transmission_error_m"
-    )
-    mean_force: np.ndarray = of("mean force", "N", "point", "contact", json="mean_force_n")
-    rms_force: np.ndarray = of(
-        "root mean square of the force about its mean", "N", "point", "contact", json="rms_force_n"
-    )
-    largest_force: np.ndarray = of("largest force", "N", "point", "contact", json="largest_force_n")
+    peak_to_peak_transmission_error: np.ndarray = of("transmission error, peak to peak", "m", "point", "contact")
+    mean_force: np.ndarray = of("mean force", "N", "point", "contact")
+    rms_force: np.ndarray = of("root mean square of the force about its mean", "N", "point", "contact")
+    largest_force: np.ndarray = of("largest force", "N", "point", "contact")
     apart: np.ndarray = of("contact-loss ratio", "", "point", "contact", json="apart_share")
     back: np.ndarray = of("share of the time on the coast flank", "", "point", "contact", json="back_share")
     force_harmonics: np.ndarray = of(
         "coefficients of the mesh force, F = Re sum c_h exp(i h w t)", "N", "point", "harmonic", "contact", json=None
     )
     displacement_harmonics: np.ndarray = of(
-        "coefficients of the displacement along the flank normal",
-        "m",
-        "point",
-        "harmonic",
-        "contact",
-        json=None,
+        "coefficients of the displacement along the flank normal", "m", "point", "harmonic", "contact", json=None
     )
     special_points: tuple[SpecialPoint, ...] = of("special points", "", "special_point", record=SpecialPoint)
     curves: tuple[SpecialCurve, ...] = of(
@@ -193,12 +176,12 @@ class OrbitsResult(ModelResult, kind="orbits"):
         """Of each point."""
         return np.asarray(self.multipliers.imag)
 
-    @derived("approach, peak to peak", "m", "point", "contact", json="peak_to_peak_approach_m")
+    @derived("approach, peak to peak", "m", "point", "contact")
     def peak_to_peak_approach(self) -> np.ndarray:
         """Of each point."""
         return np.asarray(self.approach_extremes[:, :, 1] - self.approach_extremes[:, :, 0])
 
-    @derived("amplitude of the mesh force's first harmonic", "N", "point", "contact", json="first_harmonic_n")
+    @derived("amplitude of the mesh force's first harmonic", "N", "point", "contact")
     def first_harmonic(self) -> np.ndarray:
         """Of each point: of the harmonic that the base period brings."""
         return np.abs(self.force_harmonics[:, 1])
@@ -215,6 +198,92 @@ class OrbitsResult(ModelResult, kind="orbits"):
         unit = "m" if "m" in self.place_unit else "rad"
         own = np.array([k for k, one in enumerate(self.place_unit) if one == unit], int)
         return Shown("displacement", tuple(self.place[k] for k in own), unit, own, of_contacts=False)
+
+    def tables(self) -> Iterator[Block]:
+        """Special points, branches, curves, transients started on orbits, and notes."""
+        yield heading(f"{self.model.title or 'Orbits'}: periodic motions over {self.address[0]}")
+        yield from ("", f"excited by {self.excited}", "", "Special points")
+        yield self._special() if self.special_points else "none"
+        for number in range(len(self.branches)):
+            yield from ("", *self._branch(number))
+        for curve in self.curves:
+            yield from ("", *self._curve(curve))
+        if self.verifications:
+            yield from ("", "Transients started on orbits", self._started())
+        shown = f"p-p: largest peak to peak of {', '.join(self.shown().label)}"
+        if self.contact:
+            shown = "p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact"
+        yield from ("", f"|mu|: largest Floquet multiplier; {shown}", f"{self.dofs} dofs; {self.method}")
+        yield f"{self.cpu_per_point:.3g} s a point, {self.seconds['total']:.2f} s in all"
+        if self.error_estimate == self.error_estimate:
+            yield f"error estimate {self.error_estimate:.1e} of the motions' coefficients"
+        yield from (*self.remarks(), "")
+
+    def _value(self, si: float, parameter: int = 0) -> str:
+        return f"{si / self.per_unit[parameter]:.8g}"
+
+    def _head(self, parameter: int = 0) -> str:
+        return f"{self.address[parameter].rpartition('.')[2]} {self.unit[parameter]}".strip()
+
+    def _special(self) -> Table:
+        rows = []
+        for point in self.special_points:
+            mu = point.multiplier_real + 1j * point.multiplier_imaginary
+            words = (f"{z.real:.4g}" if abs(z.imag) < 1e-9 else f"{z.real:.3g}{z.imag:+.3g}i" for z in mu[:3])
+            branch = self.branches[point.branch].name
+            rows.append((point.kind, self._value(point.value), branch, f"{1e3 * point.period:.4g}", ", ".join(words)))
+        return grid(rows, "kind", self._head(), "branch", "period\nms", "multipliers", caption="Special points")
+
+    def _branch(self, number: int) -> Iterator[Block]:
+        own = np.flatnonzero(self.branch == number)
+        branch = self.branches[number]
+        yield f"Branch {branch.name}: {_points(len(own))}, {int(self.stable[own].sum())} stable, to {branch.ended}"
+        shown = self.shown()
+        sizes = shown.peak_to_peak(self)
+        rows = []
+        for i in own[_spread(len(own))]:
+            worst = int(np.argmax(sizes[i]))
+            size = float(np.nanmax(np.abs(self.multipliers[i])))
+            cells = [self._value(float(self.value[i])), written(bool(self.stable[i])), f"{size:.4f}"]
+            cells.append(f"{1e6 * sizes[i, worst]:.4g}")
+            if self.contact:
+                cells += [f"{self.mean_force[i, worst]:.4g}", f"{self.largest_force[i, worst]:.4g}"]
+                cells.append(f"{100.0 * self.apart[i, worst]:.1f}")
+            rows.append(cells)
+        forces = ("F mean\nN", "F max\nN", "loss\n%") if self.contact else ()
+        heads = (self._head(), "stable", "|mu|", f"p-p\nu{shown.unit}", *forces)
+        yield grid(rows, *heads, left=0, caption=f"Branch {branch.name}")
+
+    def _curve(self, curve: SpecialCurve) -> Iterator[Block]:
+        name = self.branches[curve.branch].name
+        yield f"Curve of the {curve.kind} of branch {name}: {_points(len(curve.value))}, to {curve.ended}"
+        shown = self.shown()
+        sizes = shown.peak_to_peak(curve)
+        rows = [
+            (
+                self._value(float(curve.value[i])),
+                self._value(float(curve.second[i]), 1),
+                f"{1e3 * curve.period[i]:.4g}",
+                f"{1e6 * sizes[i].max():.4g}",
+            )
+            for i in _spread(len(curve.value))
+        ]
+        heads = (self._head(), self._head(1), "period\nms", f"p-p\nu{shown.unit}")
+        yield grid(rows, *heads, left=0, caption=f"Curve of the {curve.kind}")
+
+    def _started(self) -> Table:
+        rows = [
+            (
+                self._value(one.value),
+                written(one.stable),
+                f"{one.deviation:.1e}",
+                written(one.growth, ".5f"),
+                f"{one.expected:.5f}",
+            )
+            for one in self.verifications
+        ]
+        heads = (self._head(), "stable", "deviation", "growth", "|mu|")
+        return grid(rows, *heads, left=0, caption="Transients started on orbits")
 
 
 @dataclass(frozen=True)
@@ -235,3 +304,12 @@ class Shown:
         """Over what is shown in the last place, in its unit."""
         extremes = motions.approach_extremes if self.of_contacts else motions.place_extremes
         return np.asarray(np.ptp(extremes[..., self.number, :], axis=-1))
+
+
+def _points(number: int) -> str:
+    return "1 point" if number == 1 else f"{number} points"
+
+
+def _spread(count: int) -> np.ndarray:
+    """Numbers of the points of a branch that are listed: its ends, and evenly between them."""
+    return np.unique(np.linspace(0, count - 1, min(_SHOWN, count)).round().astype(int))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,16 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import (
+    TRANSMISSION_WORDS,
+    Block,
+    Column,
+    Table,
+    error_words,
+    grid,
+    heading,
+    table_of,
+)
 
 
 def _by_contact(key: str) -> Written:
@@ -60,6 +71,10 @@ def _wrenches(kind: str, names: str, name: str, on: str) -> tuple[Written, Writt
     )
 
 
+# Rows of a run of orders before the rest of it shares one.
+_SHOWN = 5
+
+
 class Peak(Record):
     """The largest amplitude of a quantity over orders and speeds, and what the linear analysis leaves out there."""
 
@@ -67,12 +82,13 @@ class Peak(Record):
         "quantity",
         note=": mesh force, transmission error, approach, bearing force, seat force, ground force, acceleration, "
         "displacement or normal velocity",
+        column="largest of",
     )
-    part: str = of("mesh, bearing, point, place, seat, or held set or mount")
+    part: str = of("mesh, bearing, point, place, seat, or held set or mount", column="of")
     unit: str = of("unit of the amplitudes")
-    order: int = of("number of the order", note=", from 0")
-    speed_rpm: float = of("speed of the input shaft", "rpm")
-    frequency_hz: float = of("frequency", "Hz")
+    order: int = of("number of the order", note=", from 0", column="order no")
+    speed_rpm: float = of("speed of the input shaft", "rpm", form=".1f", column="rpm")
+    frequency_hz: float = of("frequency", "Hz", form=".1f", column="Hz")
     amplitude: float = of("amplitude", note=" in that unit")
     left_out: float | None = of(
         "size of what the linear analysis of loaded teeth leaves out",
@@ -100,7 +116,11 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     orders: tuple[str, ...] = of("name of each order", "", "order", json="order")
     ratio: np.ndarray = of("frequency over that of the input shaft", "", "order", json="frequency_ratio")
     fixed_frequency: np.ndarray = of(
-        "frequency that does not go with the speed", "Hz", "order", note=" of a load in Hz; else 0"
+        "frequency that does not go with the speed",
+        "Hz",
+        "order",
+        note=" of a load in Hz; else 0",
+        json="fixed_frequency",
     )
 
     @property
@@ -262,7 +282,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         """1/2 rho c sum of v_n^2 A in W, (o, s, k); those of the orders add up."""
         return 0.5 * AIR_IMPEDANCE * self.normal_velocity**2 * self.surface_area
 
-    shape_speed: float = of("speed of the deflection shapes", "rad/s", json="shape_speed_rpm")
+    shape_speed: float = of("speed of the deflection shapes", "rad/s")
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "order", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
     damping_ratio: float = of("damping ratio", note=" added to every elastic mode")
@@ -296,3 +316,77 @@ class ResponseResult(AboutEquilibrium, kind="response"):
                 (mesh, self.orders[o], float(self.speed_rpm[s]), float(self.frequency_hz[o, s]), float(size[o, s]))
             )
         return rows
+
+    def tables(self) -> Iterator[Block]:
+        """The orders, the largest amplitude of each quantity, and notes."""
+        first, last = self.speed_rpm[[0, -1]]
+        at = f"{first:.6g} rpm" if len(self.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
+        yield heading(f"{self.model.title or 'Model'}: forced response, {self.model.reference_shaft} at {at}")
+        rows = []
+        for one, other in _rows_of_orders(self.orders):
+            ends = dict.fromkeys((one, other))
+            rows.append(
+                (
+                    " to ".join(str(o + 1) for o in ends),
+                    " to ".join(self.orders[o] if o == one else self.orders[o].rpartition(" ")[2] for o in ends),
+                    " to ".join(f"{self.ratio[o]:.6g}" for o in ends),
+                    " to ".join(f"{self.frequency_hz[o, -1]:.2f}" for o in ends),
+                )
+            )
+        heads = ("no", "order", "times input", f"Hz at {abs(last):.6g} rpm")
+        yield from ("", grid(rows, *heads, left=2, caption="Orders"), "", self._largest(), "")
+        if self.contact_mesh:
+            yield TRANSMISSION_WORDS
+        yield "amplitudes are half of peak to peak, each order by itself; forces without their mean"
+        yield f"{len(self.speeds)} speeds, {self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield (
+            f"solver error {error_words(self.solver_error)} at {self.checked} points checked; "
+            f"on a finer mesh the peaks change by {error_words(self.error_estimate)}"
+        )
+        yield f"damping ratio added to every elastic mode: {self.damping_ratio:g}"
+        for k, name in enumerate(self.casings):
+            power = self.radiated_power[:, :, k].sum(axis=0)
+            s = int(np.argmax(power))
+            if power[s] > 0.0:
+                yield (
+                    f"casing {name}: equivalent radiated power of all orders {power[s]:.3g} W at most, "
+                    f"{10.0 * np.log10(power[s] / 1e-12):.1f} dB, at {self.speed_rpm[s]:.1f} rpm"
+                )
+        yield from (*self.remarks(), "")
+
+    def _largest(self) -> Table:
+        """The largest amplitude of each quantity, the order, speed and frequency of it, and what is left out of it."""
+
+        def amplitude(peak: Peak, value: float | None, form: str) -> str:
+            factor, unit = (1e6, "um") if peak.unit == "m" else (1.0, peak.unit.replace("^", ""))
+            return "-" if value is None else f"{factor * value:{form}} {unit}"
+
+        columns: list[Column | str] = [
+            Column("", "quantity", lambda quantity: "transm. error" if quantity == "transmission error" else quantity),
+            Column(" ", "part"),
+            Column("order no", lambda peak: peak.order + 1),
+            "speed_rpm",
+            "frequency_hz",
+            Column("amplitude", lambda peak: amplitude(peak, peak.amplitude, ".4g"), left=False),
+        ]
+        if any(peak.left_out is not None or peak.teeth_part for peak in self.largest):
+            left_out = Column(
+                "left out",
+                lambda peak: "teeth part" if peak.teeth_part else amplitude(peak, peak.left_out, ".2g"),
+                left=False,
+            )
+            columns.append(left_out)
+        return table_of(self, "largest", *columns)
+
+
+def _rows_of_orders(orders: tuple[str, ...]) -> list[tuple[int, int]]:
+    """First and last number of each row of the table of orders: a long run of high orders of one part shares a row."""
+    rows: list[tuple[int, int]] = []
+    start = 0
+    for _, group in groupby(order.rpartition(" ")[0] for order in orders):
+        end = start + len(list(group))
+        shown = start + _SHOWN if end - start > 2 * _SHOWN else end
+        rows += [(o, o) for o in range(start, shown)]
+        rows += [(shown, end - 1)] if shown < end else []
+        start = end
+    return rows

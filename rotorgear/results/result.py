@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from html import escape
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rotorgear.drawing import picture_of
-from rotorgear.note import as_notes, sentences
+from rotorgear.note import NAMED, as_notes, sentences
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import Block, as_html, as_rich, heading, table_of, table_over
 from rotorgear.version import VERSION
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from rotorgear.model.model import Model
 
-# A notebook shows so many lines of a result; `text()` has them all.
+# The screen shows so many lines of a result, a notebook so many rows of a table; `text()` has them all.
 _LINES = 40
 _WIDTH = 80
 
@@ -125,21 +126,37 @@ class Result(Record):
         head = {"title": values.pop("title")} if "title" in values else {}
         return {"analysis": self.analysis_word, **head, **values}
 
+    def tables(self, *_: Any, **options: Any) -> Iterator[Block]:
+        """What there is to show, as data: a title, tables of what declares a column, and what was left out.
+
+        A kind of result that has more to say does so itself; the options are those of the command that choose tables.
+        """
+        yield heading(getattr(self, "title", "") or self.kind)
+        declared = self.declarations.values()
+        counted = dict.fromkeys(
+            one.axes[0] for one in declared if one.column and one.record is None and len(one.axes) == 1
+        )
+        for axis in counted:
+            yield from ("", table_over(self, axis))
+        for one in declared:
+            if one.record is not None and one.axes and any(d.column for d in one.record.declarations.values()):
+                yield from ("", table_of(self, one.name))
+        yield from ("", *self.remarks())
+
+    def remarks(self) -> list[str]:
+        """What all tables end with: what the analysis left out, and its warnings, one sentence for each cause."""
+        return [
+            *(f"left out: {text}" for text in sentences(self.left_out, named=NAMED)),
+            *(f"Warning: {text}" for text in sentences(self.warnings, named=NAMED)),
+        ]
+
     def table(self, *, laws: bool = False, **options: Any) -> RenderableType:
         """What the command prints, as one rich renderable; the options are those of the command that choose tables.
 
         `laws` puts the operating points of bearings below it, of a result that is linear about an equilibrium.
         """
-        # A table knows its result, so the result finds its table by name: that of its own room and file, below tables/.
-        place = type(self).__module__.removeprefix(f"{__package__}.")
-        module = import_module(f".tables.{place}", __package__)
-        table: RenderableType = getattr(module, f"{self.kind}_table")(self, **options)
-        if not laws:
-            return table
-        from rich.console import Group
-
-        points = import_module(".tables.common", __package__).operating_points
-        return Group(table, points(getattr(self, "laws", ())))
+        points = [self.operating_points()] if laws and hasattr(self, "operating_points") else []
+        return as_rich([*self.tables(**options), *points])
 
     def plot(self, on: Any = None, **options: Any) -> Any:
         """Draw this result; `rotorgear.plot` has the picture of its kind, with the options, and others.
@@ -182,8 +199,10 @@ class Result(Record):
         return [*lines[: _LINES - 1], f"... and {len(lines) - _LINES + 1} more lines: result.text() has them all"]
 
     def _repr_html_(self) -> str:
-        first, *rest = (escape(line) for line in self._lines() or [type(self).__name__])
-        return "<pre>" + "\n".join([f"<b>{first}</b>", *rest]) + "</pre>"
+        try:
+            return as_html(self.tables(), _LINES)
+        except Exception:  # as above
+            return f"<p>{escape(repr(self))}</p>"
 
     def rows(self, *axes: str) -> list[dict[str, Any]]:
         """One dictionary for each entry along an axis, or along several; see `rotorgear.results.labelled.rows`."""

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
+from rotorgear.results.table import Block, heading
 
 
 class Assumption(Record):
@@ -27,3 +30,26 @@ class RexsImport(Result, kind="import"):
     bearings: int = of("number of bearings", note=", those between two shafts included")
     toml: str = of("text of the model file")
     assumptions: tuple[Assumption, ...] = of("assumptions", "", "assumption", record=Assumption)
+
+    def tables(self) -> Iterator[Block]:
+        """What was read, the assumptions, and what was left out."""
+        made = f"REXS {self.version}" + (f" by {self.application}" if self.application else "")
+        yield heading(self.file, f": {made}" + (f", load case {self.load_case}" if self.load_case else ""))
+        yield f"{self.shafts} shafts, {self.gears} gears, {self.meshes} meshes, {self.bearings} bearings"
+        yield from ("", *self._assumed(), "")
+        yield f"{len(self.assumptions)} assumptions; each stands as a comment in the model file"
+        yield from self.remarks()
+
+    def _assumed(self) -> Iterator[str]:
+        """One sentence for each reason; parts of one table with the same reason are counted, and named in the model file."""
+        alike: dict[tuple[str, str, str], list[Assumption]] = {}
+        for item in self.assumptions:
+            table, _, rest = item.address.partition(".")
+            alike.setdefault((table, rest.partition(".")[2], item.reason), []).append(item)
+        for (table, key, reason), items in alike.items():
+            values = list(dict.fromkeys(item.value for item in items))
+            if len(items) == 1:
+                yield f"assumed {items[0].address} = {values[0]}: {reason}"
+            else:
+                shown = values[0] if len(values) == 1 else f"{values[0]} and others"
+                yield f"assumed {table}.*.{key} = {shown} ({len(items)} of them): {reason}"

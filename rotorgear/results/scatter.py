@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Column, Table, grid, heading, table_of
 
 # Ends of the bands that are written, as shares of the samples below.
 LOW = 0.05
 HIGH = 0.95
+
+
+# Of the Sobol indices a table shows this many numbers a mode.
+_RANKED = 3
+
+
+def _spread(sigma: float) -> str:
+    return f"±{100 * sigma:.2f} %"
+
+
+def _spread_of_share(sigma: float) -> str:
+    return f"±{sigma:.4f}"
 
 
 class ScatteredNumber(Record):
@@ -26,14 +41,16 @@ class ScatteredNumber(Record):
 class FrequencyBand(Record):
     """One mode over the samples; it is the mode of its nominal shape, whatever its number there."""
 
-    mode_number: int = of("number of the nominal mode", note=", from 1, elastic modes counted")
-    nominal_hz: float = of("frequency", "Hz", note=" of the nominal model", form=".2f")
+    mode_number: int = of("number of the nominal mode", note=", from 1, elastic modes counted", column="mode")
+    nominal_hz: float = of("frequency", "Hz", note=" of the nominal model", form=".2f", column="Hz")
     group: int = of("number of the group", note=", from 1: modes of one group turn into each other within the scatter")
-    sigma_first_order: float = of("relative standard deviation", note=", to first order, from energies", form=".2e")
-    sigma: float = of("relative standard deviation", note=" of the samples", form=".2e")
+    sigma_first_order: float = of(
+        "relative standard deviation", note=", to first order, from energies", form=_spread, column="1st order"
+    )
+    sigma: float = of("relative standard deviation", note=" of the samples", form=_spread, column="sampled")
     mean_hz: float = of("mean frequency", "Hz", note=" of the samples", form=".2f")
-    low_hz: float = of("5 % quantile of the frequency", "Hz", form=".2f")
-    high_hz: float = of("95 % quantile of the frequency", "Hz", form=".2f")
+    low_hz: float = of("5 % quantile of the frequency", "Hz", form=".2f", column="5 %")
+    high_hz: float = of("95 % quantile of the frequency", "Hz", form=".2f", column="95 %")
     found: float = of("share of the samples that have a mode of this shape")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
     leading_share: float = of("share of that number in the variance", note=", to first order", form=".0%")
@@ -51,24 +68,28 @@ class GroupBand(Record):
 class MarginBand(Record):
     """One excitation at the operating speed, and the mode next to it among those that it can excite."""
 
-    line: str = of("excitation line")
-    frequency_hz: float = of("frequency", "Hz", note=" of the line", form=".2f")
-    nominal: float = of("margin of the nominal model", note=": f_mode / f_line - 1; `null`: no mode", form="+.4f")
-    low: float = of("5 % quantile of the size of the margin", form=".4f")
-    median: float = of("median of the size of the margin", form=".4f")
-    below: float = of("share of the samples whose margin is too small", form=".3f")
+    line: str = of("excitation line", column="excitation")
+    frequency_hz: float = of("frequency", "Hz", note=" of the line", form=".2f", column="Hz")
+    nominal: float = of(
+        "margin of the nominal model", note=": f_mode / f_line - 1; `null`: no mode", form="+.4f", column="margin"
+    )
+    low: float = of("5 % quantile of the size of the margin", form=".4f", column="5 % have under")
+    median: float = of("median of the size of the margin", form=".4f", column="median")
+    below: float = of("share of the samples whose margin is too small", form=".3f", column="below")
 
 
 class ShareBand(Record):
     """The share of a mesh in the load of a gear that it shares with other meshes."""
 
-    gear: str = of("gear")
-    mesh: str = of("mesh")
-    nominal: float = of("share in the nominal model", form=".4f")
-    sigma_first_order: float = of("standard deviation", note=" to first order", form=".2e")
-    sigma: float = of("standard deviation", note=" of the samples", form=".2e")
-    low: float = of("5 % quantile", form=".4f")
-    high: float = of("95 % quantile", form=".4f")
+    gear: str = of("gear", column="shared by")
+    mesh: str = of("mesh", column="mesh")
+    nominal: float = of("share in the nominal model", form=".4f", column="share")
+    sigma_first_order: float = of(
+        "standard deviation", note=" to first order", form=_spread_of_share, column="1st order"
+    )
+    sigma: float = of("standard deviation", note=" of the samples", form=_spread_of_share, column="sampled")
+    low: float = of("5 % quantile", form=".4f", column="5 %")
+    high: float = of("95 % quantile", form=".4f", column="95 %")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
     leading_share: float = of("share of that number in the variance", note=", to first order", form=".0%")
 
@@ -79,7 +100,7 @@ class ScatterResult(ModelResult, kind="scatter"):
     Rows of `first_order_share` and of Sobol indices are the m modes, then the s load shares.
     """
 
-    speed: float | None = of("speed of the input shaft", "rad/s", note="; `null` at standstill")
+    speed: float | None = of("speed of the input shaft", "rad/s", note="; `null` at standstill", json="speed")
     numbers: tuple[ScatteredNumber, ...] = of("scattering numbers", "", "number", record=ScatteredNumber)
     bands: tuple[FrequencyBand, ...] = of("modes", "", "mode", record=FrequencyBand)
     groups: tuple[GroupBand, ...] = of("modes that turn into each other", "", "group", record=GroupBand)
@@ -120,3 +141,66 @@ class ScatterResult(ModelResult, kind="scatter"):
     def sample_count(self) -> int:
         """n."""
         return len(self.z)
+
+    def tables(self) -> Iterator[Block]:
+        """Bands of modes, margins and load shares, the numbers that make them, and how far to trust them."""
+        at = "at standstill" if self.speed_rpm is None else f"at {self.speed_rpm:.6g} rpm"
+        yield heading(self.title or "Scatter", f": scatter {at}, {self.sample_count} samples")
+        # Addresses without their last key where that tells them apart all the same.
+        whole = [row.address for row in self.numbers]
+        short = [address.rpartition(".")[0] for address in whole]
+        names = {a: b if short.count(b) == 1 else a for a, b in zip(whole, short, strict=True)}
+        by = Column(
+            "mostly by",
+            lambda row: f"{100 * row.leading_share:.0f} % {names[row.leading]}" if row.leading else "",
+            left=True,
+        )
+        several = {one.group for one in self.groups}
+        group = Column("group", "group", where=lambda row: row.group in several, without="")
+        frequencies = ("mode_number", "nominal_hz", "sigma_first_order", "sigma", "low_hz", "high_hz")
+        yield table_of(self, "bands", *frequencies, group, by)
+        if self.groups:
+            yield from ("", "Modes of a group turn into each other; a row of theirs follows one shape.")
+        for one in self.groups:
+            modes = ", ".join(map(str, one.modes))
+            yield f"group {one.group}: modes {modes} lie from {one.lowest_hz:.2f} to {one.highest_hz:.2f} Hz"
+        if self.margins:
+            yield from ("", self._margins())
+        if self.shares:
+            shares = ("gear", "mesh", "nominal", "sigma_first_order", "sigma", "low", "high")
+            yield from ("", table_of(self, "shares", *shares, by))
+        if self.sobol_first.size:
+            yield from ("", self._ranks())
+        yield ""
+        yield (
+            f"basis of {self.basis_size} shapes: frequencies within {self.frequency_basis_error:.0e} of the whole system's at "
+            f"{self.checked_samples} samples that it was not made from"
+        )
+        lost = [row for row in self.bands if row.found < 0.95]
+        if lost:
+            modes = ", ".join(f"{row.mode_number} ({100 * row.found:.0f} %)" for row in lost)
+            yield f"found again in fewer than 95 % of the samples: modes {modes}"
+        if self.failed:
+            yield f"{self.failed} samples have numbers that the model can't have"
+        yield from self.remarks()
+
+    def _margins(self) -> Table:
+        def percent(name: str, form: str, without: str = "-", head: str = "") -> Column:
+            words = lambda value: f"{value:{form}} %"  # noqa: E731
+            return Column(head, name, words, "%", where=lambda row: bool(np.isfinite(row.median)), without=without)
+
+        margin = percent("nominal", "+.2f", "no mode")
+        below = percent("below", ".1f", head=f"below {100 * self.least_margin:.3g} %")
+        return table_of(
+            self, "margins", "line", "frequency_hz", margin, percent("low", ".2f"), percent("median", ".2f"), below
+        )
+
+    def _ranks(self) -> Table:
+        rows = []
+        names = [f"mode {row.mode_number}" for row in self.bands] + [f"{row.gear}, {row.mesh}" for row in self.shares]
+        for k, name in enumerate(names):
+            for place, j in enumerate(np.argsort(-self.sobol_total[k], kind="stable")[:_RANKED]):
+                first = f"{self.sobol_first[k, j]:.3f} ±{self.sobol_first_error[k, j]:.3f}"
+                total = f"{self.sobol_total[k, j]:.3f} ±{self.sobol_total_error[k, j]:.3f}"
+                rows.append(("" if place else name, self.numbers[j].address, first, total))
+        return grid(rows, "of", "number", "first", "total", left=2, caption="Sobol indices")

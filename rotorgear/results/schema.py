@@ -26,8 +26,28 @@ if TYPE_CHECKING:
     import numpy as np
 
 T = TypeVar("T")
-_SAME_KEY = "\0"  # written under the field's own name
+_SAME_KEY = "\0"  # the field's name, with its unit
 _places = count()  # fields and computed fields of a class share one order, that of the page
+# A key is the field's name with its unit behind it, where the name does not say that already.
+_ENDINGS = {
+    "N": "_n",
+    "m": "_m",
+    "N m": "_n_m",
+    "N/m": "_n_per_m",
+    "Pa": "_pa",
+    "s": "_s",
+    "rad/s": "_rpm",
+    "rad": "_deg",
+    "W": "_w",
+    "K": "_k",
+    "Pa s": "_pa_s",
+    "kg": "_kg",
+    "J": "_j",
+    "Hz": "_hz",
+    "m^3/s": "_m3_per_s",
+    "mm/s": "_mm_per_s",
+    "byte": "_bytes",
+}
 # A key that ends so is written in its unit: the unit stands with the written key, SI with the stored field.
 _WRITTEN_UNITS = {
     ("rad/s", "_rpm"): ("rpm", RPM_PER_RAD_S),
@@ -56,12 +76,15 @@ class Declared:
     unit: str
     axes: tuple[str, ...]
     note: str
-    form: str
+    form: str | Callable[[Any], str]
     record: type[Record] | None
     json: tuple[str | Written, ...]
     stored: bool
     computed: bool
+    column: str
+    shown: str
     place: int
+    words: bool = False
 
     def written(self) -> Iterator[Written]:
         """Yield the keys that are written, with their units and words."""
@@ -69,7 +92,7 @@ class Declared:
             if isinstance(entry, Written):
                 yield entry
                 continue
-            key = self.name if entry == _SAME_KEY else entry
+            key = key_of(self.name, self.unit) if entry == _SAME_KEY else entry
             factor: float | None = None
             unit = self.unit
             for (stored, ending), (in_file, times) in _WRITTEN_UNITS.items():
@@ -77,6 +100,12 @@ class Declared:
                     unit = in_file
                     factor = times
             yield Written(key, _scaled(factor), unit)
+
+
+def key_of(name: str, unit: str) -> str:
+    """The key of a field in JSON: its name, and its unit where it has one that the name does not say."""
+    ending = _ENDINGS.get(unit, "")
+    return name if name.endswith((ending, "seconds")) else f"{name}{ending}"
 
 
 def _scaled(factor: float | None) -> Callable[[Any, Any], Any]:
@@ -91,10 +120,12 @@ def of(
     unit: str = "",
     *axes: str,
     note: str = "",
-    form: str = "",
+    form: str | Callable[[Any], str] = "",
     record: type[Record] | None = None,
     json: str | Written | tuple[str | Written, ...] | None = _SAME_KEY,
     stored: bool = True,
+    column: str = "",
+    shown: str = "",
     default: Any = MISSING,
     default_factory: Any = MISSING,
     kw_only: bool = False,
@@ -106,14 +137,18 @@ def of(
         unit: SI, as it is stored; "" for words, counts and ratios.
         axes: what its entries are counted by, one name a dimension.
         note: goes on after the label on the page of keys, punctuation included: what the label means in this result.
-        form: how a number is shown, such as ".4f".
+        form: how tables show a number, such as ".4f", or what writes it.
         record: class of its entries (or of its value, without axes), where they are records.
-        json: key of the JSON output where it is not the name; a `Written` (or several) where the value is converted or cut in
-            parts; None where it is not written.
+        json: key of the JSON output where it is not the name with its unit (`key_of`); a `Written` (or several) where the value
+            is converted or cut in parts; None where it is not written.
         stored: whether it is saved and compared; what only drawings need is not.
+        column: heading of its column in tables, in few letters; "" where it stands in none that is not told to hold it.
+        shown: unit that tables show it in, where neither the heading ends with it nor the key is in it.
         default, default_factory, kw_only: as of a dataclass field.
     """
-    declared = _declared("", label, unit, axes, note, form, record, json, stored, computed=False)
+    declared = _declared(
+        "", label, unit, axes, note, form, record, json, stored, computed=False, column=column, shown=shown
+    )
     more: dict[str, Any] = {"default": default} if default is not MISSING else {}
     more |= {"default_factory": default_factory} if default_factory is not MISSING else {}
     return field(metadata={"declared": declared}, kw_only=kw_only, **more)
@@ -125,15 +160,17 @@ def _declared(
     unit: str,
     axes: tuple[str, ...],
     note: str,
-    form: str,
+    form: str | Callable[[Any], str],
     record: type[Record] | None,
     json: str | Written | tuple[str | Written, ...] | None,
     stored: bool,
     *,
     computed: bool,
+    column: str,
+    shown: str,
 ) -> Declared:
     keys = () if json is None else json if isinstance(json, tuple) else (json,)
-    return Declared(name, label, unit, axes, note, form, record, keys, stored, computed, next(_places))
+    return Declared(name, label, unit, axes, note, form, record, keys, stored, computed, column, shown, next(_places))
 
 
 class Derived(Generic[T]):
@@ -157,15 +194,21 @@ def derived(
     unit: str = "",
     *axes: str,
     note: str = "",
-    form: str = "",
+    form: str | Callable[[Any], str] = "",
     record: type[Record] | None = None,
     json: str | Written | tuple[str | Written, ...] | None = _SAME_KEY,
+    column: str = "",
+    shown: str = "",
 ) -> Callable[[Callable[[Any], T]], Derived[T]]:
     """Declare a computed field; the arguments are those of `of`."""
 
     def declare(function: Callable[[Any], T]) -> Derived[T]:
         name = function.__name__
-        return Derived(function, _declared(name, label, unit, axes, note, form, record, json, False, computed=True))
+        declared = _declared(
+            name, label, unit, axes, note, form, record, json, False, computed=True, column=column, shown=shown
+        )
+        words = "str" in str(function.__annotations__.get("return"))
+        return Derived(function, replace(declared, words=words))
 
     return declare
 
@@ -184,7 +227,7 @@ class Record:
         by_name: dict[str, Declared] = {}
         for item in fields(cls):
             if "declared" in item.metadata:
-                by_name[item.name] = replace(item.metadata["declared"], name=item.name)
+                by_name[item.name] = replace(item.metadata["declared"], name=item.name, words="str" in str(item.type))
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if isinstance(value, Derived):

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.results.correlation import pairs_alike
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Column, heading, table_of
 
 
 class PlannedSensor(Record):
     """A place for a sensor."""
 
-    place: str = of("place", note=": a part, a point or a place on a casing, as tables of sensors name it")
-    node: int = of("number of the place", note=", from 1; directions of one place share it")
-    direction: str = of("direction", note=" that it looks along")
-    position: np.ndarray = of("position", "m", "xyz")
+    place: str = of(
+        "place", note=": a part, a point or a place on a casing, as tables of sensors name it", column="place"
+    )
+    node: int = of("number of the place", note=", from 1; directions of one place share it", column="node")
+    direction: str = of("direction", note=" that it looks along", column="along")
+    position: np.ndarray = of("position", "m", "xyz", json="position")
     independence: float = of(
         "effective independence",
         note=": share of the sensor in the rank of the shapes, 1 where nothing replaces it",
         form=".2f",
+        column="independence",
     )
 
 
@@ -42,3 +48,17 @@ class SensorPlan(ModelResult, kind="sensors"):
     def confused(self) -> tuple[str, ...]:
         """Modes that are the same at the sensors."""
         return tuple(pairs_alike(self.model_auto_mac, [str(number) for number in self.mode_number], "modes", set()))
+
+    def tables(self) -> Iterator[Block]:
+        """The sensors, and what they can't tell."""
+        if self.title:
+            yield heading(self.title)
+        where = [Column(f"{x} mm", "position", ".1f", "mm", entry=(j,)) for j, x in enumerate("xyz")]
+        along = Column("", "direction", left=False)
+        yield from (table_of(self, "sensors", "place", "node", along, *where, "independence"), "")
+        hz = self.mode_hz
+        yield (
+            f"{len(self.sensors)} of {self.candidates} places and directions for {len(hz)} modes, {hz[0]:.5g} to "
+            f"{hz[-1]:.5g} Hz. Largest MAC of two of them: {self.worst:.2f}, with all places {self.all_auto_mac:.2f}."
+        )
+        yield from (*self.confused, *self.remarks())

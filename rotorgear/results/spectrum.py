@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Column, heading, table_of
 
 
 class Spectrum(Record):
@@ -34,7 +37,7 @@ class SpectralLines(Result, kind="spectral_lines", analysis="spectrum"):
     name: str = of("name of the history", json="history")
     unit: str = of("unit", note=" of the amplitudes")
     frequency_hz: np.ndarray = of("frequency", "Hz", "line", json=None, form=".2f")
-    amplitude: np.ndarray = of("amplitude", "", "line", json=None)
+    amplitude: np.ndarray = of("amplitude", "", "line", json=None, form=".4g")
     source: tuple[str, ...] = of("shaft or mesh order that the line belongs to", "", "line", json=None)
     window: str = of("window")
     resolution_hz: float = of("distance at which two lines are told apart", "Hz")
@@ -43,6 +46,15 @@ class SpectralLines(Result, kind="spectral_lines", analysis="spectrum"):
     def lines(self) -> tuple[SpectralLine, ...]:
         """A record for each line."""
         return tuple(map(SpectralLine, self.frequency_hz.tolist(), self.amplitude.tolist(), self.source))
+
+    def tables(self) -> Iterator[Block]:
+        """The lines of the spectrum."""
+        yield heading(f"Spectrum of {self.name}, {self.window} window, {self.resolution_hz:.3g} Hz apart")
+        amplitude = Column(f"amplitude {self.unit}", "amplitude", ".4g")
+        yield from (
+            table_of(self, "lines", Column("Hz", "frequency_hz", ".2f"), amplitude, Column("order", "source")),
+            "",
+        )
 
 
 class LineBesideRig(Record):
@@ -74,3 +86,14 @@ class RigSpectrum(Result, kind="rig_spectrum", analysis="compare spectrum"):
         """A record for each line of the rig."""
         columns = (self.rig_hz.tolist(), self.label, self.frequency_hz.tolist(), self.amplitude.tolist())
         return tuple(map(LineBesideRig, *columns, self.source, self.reason))
+
+    def tables(self) -> Iterator[Block]:
+        """Rig lines beside spectral lines."""
+        yield heading(f"Rig lines within {100.0 * self.tolerance:g} %")
+        columns = (
+            Column("rig Hz", "rig_hz", ".6g"),
+            Column("Hz", "frequency_hz", ".2f", where=lambda line: not line.reason),
+            Column(f"amplitude {self.unit}", "amplitude", ".4g", where=lambda line: not line.reason),
+            Column("order, or why there is no line", lambda line: line.reason or line.source),
+        )
+        yield from (table_of(self, "lines", *columns), "")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import scipy.linalg as la
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import Piece
 from rotorgear.results.schema import of
+from rotorgear.results.table import Block, error_words, grid, heading
 
 
 class StateSpace(AboutEquilibrium, kind="state_space"):
@@ -17,8 +21,8 @@ class StateSpace(AboutEquilibrium, kind="state_space"):
     and gyroscopic moments at the speed.
     """
 
-    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
-    fmax: float = of("highest frequency that the system is meant for", "Hz", json="fmax_hz")
+    speed: float = of("speed of the input shaft", "rad/s")
+    fmax: float = of("highest frequency that the system is meant for", "Hz")
     inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
     outputs: tuple[str, ...] = of("where the response is read", "", "output", json="output")
     input_units: tuple[str, ...] = of("units of what acts", "", "input", note=": N or N m")
@@ -75,3 +79,24 @@ class StateSpace(AboutEquilibrium, kind="state_space"):
             Z = self.stiffness_matrix + 1j * w * self.velocity_terms - w**2 * self.mass_matrix
             found.append(self.output_matrix @ la.solve(Z, self.input_matrix.astype(complex)))
         return np.array(found)
+
+    def tables(self) -> Iterator[Block]:
+        """Inputs and outputs with their units, the size, and how far the reduction is off."""
+        speed = "at standstill"
+        if self.speed:
+            speed = f"{self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
+        yield from (heading(f"{self.model.title or 'Model'}: state space, {speed}"), "")
+        rows = [("input", *one) for one in zip(self.inputs, self.input_units, strict=True)]
+        rows += [("output", *one) for one in zip(self.outputs, self.output_units, strict=True)]
+        yield from (grid(rows, "kind", "place", "unit", left=3, caption="Inputs and outputs"), "")
+        size = f"{2 * self.size} states"
+        if self.reduced:
+            size += f": {self.kept_modes} modes and {self.size - self.kept_modes} other shapes of {self.dofs} dofs"
+            changed = error_words(self.reduction_error)
+            error = (
+                f"the reduction changes responses up to {self.fmax:.6g} Hz by {changed} of their largest (estimated)"
+            )
+        else:
+            size += f", twice the {self.dofs} dofs: nothing is reduced"
+            error = f"for frequencies up to {self.fmax:.6g} Hz"
+        yield from (f"{size}; {self.seconds['total']:.2f} s", error, *self.remarks())

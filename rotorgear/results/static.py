@@ -2,13 +2,36 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import (
+    Block,
+    Cell,
+    Column,
+    Table,
+    error_words,
+    grid,
+    heading,
+    table_of,
+    table_over,
+    written,
+)
+
+# The change that one line of the sensitivity table is for, by the end of the parameter's name, and its words.
+_STEPS = {
+    "index_error": (10e-6, "10 um later"),
+    "stiffness": (0.1, "10 % stiffer"),
+    "centre_line_angle": (math.radians(1.0), "1 deg on"),
+}
+_MOST_SENSITIVE = 12
 
 
 class Share(Record):
@@ -17,13 +40,14 @@ class Share(Record):
     The sharing factor K_gamma of the group is the largest factor in it.
     """
 
-    gear: str = of("gear", note=" whose meshes share a load")
-    mesh: str = of("mesh", note=": one of these meshes")
-    share: float = of("share", note=" of the mesh in the force of them all", form=".3f")
-    factor: float = of("factor", note=": the share times the number of meshes", form=".4f")
+    gear: str = of("gear", note=" whose meshes share a load", column="shared by")
+    mesh: str = of("mesh", note=": one of these meshes", column="mesh")
+    share: float = of("share", note=" of the mesh in the force of them all", form=".3f", column="share %")
+    factor: float = of("factor", note=": the share times the number of meshes", form=".4f", column="times mean")
     decided_by: str = of(
         "what decides the share",
         note=': `"stiffness"`: a loop, which stiffness and index errors divide; `"loads"`: the torques alone decide',
+        column="decided by",
     )
 
 
@@ -52,23 +76,42 @@ class Sensitivity(Record):
 class MeshFace(Record):
     """How a helix carries along its face, in equilibrium with its shafts."""
 
-    mesh: str = of("mesh")
+    mesh: str = of("mesh", column="along the face")
     helix: int = of("helix", note=": 0 at the smaller z, 1 at the larger")
     shaft_misalignment_m: float = of(
         "misalignment over the face by the shafts",
         "m",
         note=": f_ma, from the tilt of both gears; positive where the flanks stand apart at larger z",
-        form=".2e",
+        form="+.3f",
+        column="f_ma um",
     )
-    given_misalignment_m: float = of("misalignment over the face that the model gives", "m", form=".2e")
+    given_misalignment_m: float = of(
+        "misalignment over the face that the model gives", "m", form="+.3f", column="given um"
+    )
     fed_back: bool = of("whether the teeth feel the misalignment by the shafts", note="; what follows is `null` if not")
     face_load_factor: float | None = of(
-        "face load factor", note=" K_Hbeta: largest load per width over the mean one", form=".3f"
+        "face load factor", note=" K_Hbeta: largest load per width over the mean one", form=".3f", column="K_Hbeta"
     )
-    load_place_m: float | None = of("place of the resulting force", "m", note=" from the middle of the face along z")
-    peak_place_m: float | None = of("place of the largest load per width", "m", note=" from the middle of the face")
+    load_place_m: float | None = of(
+        "place of the resulting force",
+        "m",
+        note=" from the middle of the face along z",
+        form="+.3f",
+        column="F at z mm",
+    )
+    peak_place_m: float | None = of(
+        "place of the largest load per width",
+        "m",
+        note=" from the middle of the face",
+        form="+.2f",
+        column="peak at mm",
+    )
     peak_pressure_pa: float | None = of(
-        "largest contact pressure", "Pa", note=" of the mesh cycle; `null` where the teeth are not looked at"
+        "largest contact pressure",
+        "Pa",
+        note=" of the mesh cycle; `null` where the teeth are not looked at",
+        form=".1f",
+        column="p_max MPa",
     )
     tilt_stiffness_n_m: float | None = of(
         "stiffness against tilt", "N m", note=": moment for a tilt of the flanks in m/m, about the centre of stiffness"
@@ -118,12 +161,9 @@ class StaticResult(AboutEquilibrium, kind="static"):
     """
 
     speed: float | None = of(
-        "speed of the input shaft",
-        "rad/s",
-        json="speed_rpm",
-        note=", for flanks and bearings with tables; `null` without one",
+        "speed of the input shaft", "rad/s", note=", for flanks and bearings with tables; `null` without one"
     )
-    torque: dict[str, float] = of("applied torque", "N m", "TORQUE", json="torque_n_m", note=" about +z, by name")
+    torque: dict[str, float] = of("applied torque", "N m", "TORQUE", note=" about +z, by name")
     load_force: dict[str, np.ndarray] = of(
         "constant force and moment of each load",
         "N, N m",
@@ -277,3 +317,132 @@ class StaticResult(AboutEquilibrium, kind="static"):
     def contacts_of(self, mesh: str) -> list[int]:
         """Numbers of the contacts of a mesh."""
         return [k for k, name in enumerate(self.contact_mesh) if name == mesh]
+
+    def tables(self, *, sensitivity: bool = False) -> Iterator[Block]:
+        """Forces of meshes, faces and supports, load sharing, loops, displacements and notes; sensitivities where asked for."""
+        at = "" if self.speed is None else f", {self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
+        yield heading(f"{self.model.title or 'Model'}: statics{at}")
+        if self.torque:
+            yield f"torques about z: {'; '.join(f'{name} {value:.2f} N m' for name, value in self.torque.items())}"
+        for name, load in self.load_force.items():
+            if load.any():
+                yield f"{name}: {_triple(load[:3])} N, {_triple(load[3:])} N m"
+        if self.contact_mesh:
+            yield from ("", self._meshes())
+        if self.faces:
+            given = Column("", "given_misalignment_m", where=lambda face: bool(face.given_misalignment_m))
+            where = ("face_load_factor", "load_place_m", "peak_place_m", "peak_pressure_pa")
+            named = Column("along the face", lambda face: self._helix(face.mesh, face.helix))
+            yield from ("", table_of(self, "faces", named, "shaft_misalignment_m", given, *where))
+        if self.shares:
+            by = Column("", "decided_by", left=False)
+            shares = table_of(self, "shares", "gear", "mesh", "share", "factor", by)
+            factor = Cell(f"{self.sharing_factor:.4f}", ("sharing_factor",), number=True)
+            shares.rows.append((Cell("sharing factor"), Cell(""), Cell("", number=True), factor, Cell("K_gamma")))
+            yield from ("", shares)
+            if sensitivity:
+                yield from ("", *self._sensitivities())
+        for loop in self.assembly:
+            if loop.gear:
+                closes = (
+                    f"with all teeth aligned to the shafts' marks {loop.rest_pitches:+.4f} pitches are missing; "
+                    f"{loop.gear} clocked by {loop.clocking_deg:+.4f} deg closes it"
+                )
+                yield f"Loop: {loop.mesh} closes a loop: {closes}"
+            else:
+                missing = f"{loop.rest_pitches:+.4f} pitches missing"
+                yield f"Loop: {loop.mesh} closes a loop with the clockings given: {missing}"
+        if self.bearing_force or self.support_force:
+            held = [*self.bearing_force.items()]
+            held += [(f"support {name}", load) for name, load in self.support_force.items() if load.any()]
+            rows = [
+                (name, *(written(x, ".1f") for x in load[:3]), *(written(x, ".2f") for x in load[3:]))
+                for name, load in held
+            ]
+            heads = ("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
+            yield from ("", grid(rows, *heads, caption="Forces and moments on the shafts"))
+        if self.casing_seat_force:
+            yield from ("", self._on_casings())
+        if self.laws:
+            yield from ("", self.operating_points())
+        yield from ("", self._moves(), "")
+        yield "tilts and twist in urad; L and R: helix at the smaller and the larger z"
+        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        if self.faces:
+            agreed = (
+                f"; shafts and faces agreed in {self.passes} pass{'es'[: 2 * (self.passes != 1)]}"
+                if self.passes
+                else ""
+            )
+            yield (
+                "f_ma: misalignment by the shafts, + where flanks stand apart at larger z; z from the middle of the "
+                f"face{agreed}"
+            )
+        for name, load in self.casing_force.items():
+            yield f"ground on casing {name}: {_triple(load[:3])} N, {_triple(load[3:])} N m about the origin"
+        yield (
+            f"error: forces change by {error_words(self.error_estimate)} when every element is halved; "
+            f"residual {error_words(self.imbalance)}"
+        )
+        yield from (*self.remarks(), "")
+
+    def _helix(self, mesh: str, helix: int) -> str:
+        """A mesh, and its helix where it has two."""
+        return f"{mesh} {'LR'[int(helix)]}" if len(self.contacts_of(mesh)) == 2 else mesh
+
+    def _meshes(self) -> Table:
+        two = [len(self.contacts_of(mesh)) == 2 for mesh in self.contact_mesh]
+        columns = (
+            Column("mesh", lambda k: self._helix(self.contact_mesh[k], self.contact_helix[k])),
+            Column("driver", lambda k: self.driver[k] if self.carries[k] else "open"),
+            Column("F_n N", "mesh_force", ".1f"),
+            Column("helix %", "helix_share", ".2f", "%", where=lambda k: two[k]),
+            Column("press um", "mesh_deflection", ".3f", "um"),
+            *(Column(f"F{x} N", "mesh_force_on_gear", ".0f", entry=(j,)) for j, x in enumerate("xyz")),
+            Column("phase", lambda k: self.mesh_phase.get(self.contact_mesh[k]), ".4f"),
+        )
+        return table_over(self, "contact", *columns, caption="Forces between the teeth")
+
+    def _sensitivities(self) -> Iterator[Block]:
+        """Change of the first branch's share in percentage points, largest first."""
+        rows = []
+        for name, change in zip(self.parameter, self.share_derivative, strict=True):
+            part, _, key = name.rpartition(".")
+            step, words = _STEPS["index_error" if key.endswith("index_error") else key]
+            helix = " at the larger z" if key == "helix_index_error" else ""
+            rows.append((step * change[0], part, f"{words}{helix}"))
+        rows.sort(
+            key=lambda row: -float(f"{abs(row[0]):.6g}")
+        )  # mirrored parts are equal but for rounding: as in the file
+        cut = f" (the {_MOST_SENSITIVE} largest of {len(rows)}; --json has all)" if len(rows) > _MOST_SENSITIVE else ""
+        first = self.shares[0]
+        yield heading(f"Share of {first.mesh} in {first.gear}", f", change in percentage points{cut}")
+        shown = [(part, words, f"{100.0 * change:+.3f}") for change, part, words in rows[:_MOST_SENSITIVE]]
+        yield grid(shown, "what changes", "by", "share, points", left=2, caption="Sensitivity of the load sharing")
+
+    def _on_casings(self) -> Table:
+        """Forces on casings: of what stands in their seats, and of the ground at their held sets and mounts."""
+        loads = [(address, "seat", load) for address, load in self.casing_seat_force.items()]
+        loads += [(address, "ground", load) for address, load in self.casing_ground_force.items()]
+        # What is rounding of the largest is shown as 0.
+        rows = [
+            (address, what, *(written(x if abs(x) > 1e-9 * np.abs(load).max() else 0.0, ".1f") for x in load))
+            for address, what, load in loads
+        ]
+        heads = ("on casing", "of", "Fx N", "Fy N", "Fz N", "Mx Nm", "My Nm", "Mz Nm")
+        return grid(rows, *heads, left=2, caption="Forces and moments on the casings")
+
+    def _moves(self) -> Table:
+        rows = [
+            (
+                place.partition(".")[2].replace(" left", " L").replace(" right", " R"),
+                *(written(1e6 * x, ".3f") for x in value[:3]),
+                *(written(1e6 * x, ".1f") for x in value[3:]),
+            )
+            for place, value in self.place_displacement.items()
+        ]
+        return grid(rows, "moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist", caption="Displacements")
+
+
+def _triple(values: np.ndarray) -> str:
+    return ", ".join(written(value, ".2f") for value in values)

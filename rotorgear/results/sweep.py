@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.old_names import warn_old
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, written
+
+# Lines of a spectrum in a row, with the columns before them.
+_LINES = 5
+# Lines of a table and stretches of a route that are shown at most; the rest is in the files.
+_MOST = 60
+_STRETCHES = 16
 
 
 class Reduction(Record):
@@ -27,7 +36,7 @@ class Reduction(Record):
     apart: float = of(
         "FRF error: largest relative error of the receptances at the contacts, all of them open", json="error_apart"
     )
-    up_to: float = of("frequency up to which they were compared", "Hz", json="up_to_hz")
+    up_to: float = of("frequency up to which they were compared", "Hz")
     frequencies: int = of("at how many frequencies")
     bases: int = of("how many bases there are")
     seconds: float = of("wall time", "s", note=" to find and check them")
@@ -76,14 +85,10 @@ class SweepContact(Record):
         note=": displacement along their normal less the error of the teeth",
     )
     peak_to_peak_transmission_error_m: float = of(
-        "transmission error, peak to peak",
-        "m",
-        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2",
+        "transmission error, peak to peak", "m", note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2"
     )
     peak_to_peak_approach_m: float = of(
-        "approach, peak to peak",
-        "m",
-        note=" of the flanks in the transverse plane, bending and axial motion included",
+        "approach, peak to peak", "m", note=" of the flanks in the transverse plane, bending and axial motion included"
     )
     rms_approach_m: float = of("root mean square of the approach about its mean", "m")
     mean_force_n: float = of("mean force", "N")
@@ -322,3 +327,88 @@ class SweepResult(ModelResult, kind="sweep"):
             else:
                 stretches.append((kind, p, p))
         return stretches
+
+    def tables(self) -> Iterator[Block]:
+        """The route, the points, the lines of the trajectories that are kept, and notes."""
+        yield heading(f"{self.model.title or 'Sweep'}: {len(self.values)} points over {' and '.join(self.address)}")
+        yield ""
+        if len(self.shape) == 1:
+            yield from (self._route(r) for r in range(len(self.run)))
+            yield ""
+        runs = [(p, r) for p in range(len(self.values)) for r in range(len(self.run))]
+        yield self._points(runs[:_MOST])
+        if len(runs) > _MOST:
+            yield f"... {len(runs) - _MOST} more lines: see --json, --save and --plot"
+        if self.portraits is not None:
+            yield from self._strongest_lines(self.portraits)
+        columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: of the worst contact"
+        if self.lyapunov.shape[2]:
+            columns = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {columns}"
+        steps = self.steps[self.steps > 0]  # a point that failed has none
+        fewest, most = int(steps.min()), int(steps.max())
+        yield from ("", columns, f"p-p: penetration of the flanks; TE: {TRANSMISSION_WORDS}; all three peak to peak")
+        yield (
+            f"T is {self.period_words}; {self.settle} periods discarded, {self.count} sampled; repeats within "
+            f"{100.0 * self.tolerance:g} % of the peak to peak; chaotic: LE > {self.chaos:g}"
+        )
+        a_period = f"{fewest if fewest == most else f'{fewest} to {most}'} steps a mesh period"
+        yield from (f"{self.dofs} dofs, {a_period}, {self.seconds['total']:.2f} s", self.method)
+        if self.reduction:
+            yield self.reduction.sentence
+        yield from (*self.remarks(), "")
+
+    def _route(self, run: int) -> str:
+        """Response types along the parameter: "1T 4600 to 4900, chaotic from 4950"."""
+        values = [f"{x:.6g}" for x in self.values[:, 0]]
+        parts = [f"{kind} {values[a]}" + (f" to {values[b]}" if b > a else "") for kind, a, b in self.route(run)]
+        if len(parts) > _STRETCHES:
+            parts = [*parts[:_STRETCHES], f"... and {len(parts) - _STRETCHES} more changes"]
+        label = f"route ({self.run[run]})" if len(self.run) > 1 else "route"
+        unit = f" ({self.unit[0]})" if self.unit[0] else ""
+        return f"{label}{unit}: " + ", ".join(parts)
+
+    def _heads(self) -> list[str]:
+        """Headings of the parameters, and of the start of a run where there are several."""
+        names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(self.address, self.unit, strict=True)]
+        return names + ["start"] * (len(self.run) > 1)
+
+    def _cells(self, p: int, r: int) -> list[str]:
+        """Values of the parameters, start where there are several, and response type of a run."""
+        return [f"{x:.6g}" for x in self.values[p]] + [self.run[r]] * (len(self.run) > 1) + [self.motion_at(p, r)]
+
+    def _points(self, runs: list[tuple[int, int]]) -> Table:
+        exponents = bool(self.lyapunov.shape[2])
+        worst = (
+            ("p-p\num", self.peak_to_peak, 1e6, ".2f"),
+            ("TE\num", self.peak_to_peak_transmission_error, 1e6, ".2f"),
+            ("appr.\num", self.peak_to_peak_approach, 1e6, ".2f"),
+            ("K_dyn", self.dynamic_factor, 1.0, ".2f"),
+            ("loss\n%", self.apart, 100.0, ".1f"),
+            ("coast\n%", self.back, 100.0, ".1f"),
+        )
+        rows = []
+        for p, r in runs:
+            cells = self._cells(p, r)
+            if exponents:
+                cells += [written(self.lyapunov[p, r, 0], "+.3f"), written(self.lyapunov_error[p, r, 0], ".3f")]
+            for _, values, factor, form in worst:
+                known = [factor * x for x in values[p, r] if x == x]
+                cells.append(written(max(known, default=None), form))
+            rows.append(cells)
+        heads = [*self._heads(), "response", *(["LE", "+-"] if exponents else []), *(head for head, *_ in worst)]
+        return grid(rows, *heads, left=0, caption="Points", tight=True)
+
+    def _strongest_lines(self, kept: Portraits) -> Iterator[Block]:
+        """The strongest lines in the spectra of the points that keep their trajectory."""
+        most = _LINES - len(self.address) - (len(kept.run) > 1)
+        several = len(kept.run) > 1
+        rows = []
+        for k, p in enumerate(kept.point.tolist()):
+            for j, r in enumerate(kept.run.tolist()):
+                worst = int(np.nanargmax(np.nan_to_num(self.peak_to_peak[p, r])))
+                lines = [f"{f:.3g}: {1e6 * a:.3g}" for f, a in kept.lines(k, j, worst)[:most]] or ["-"]
+                cells = [f"{x:.6g}" for x in self.values[p]] + [self.run[r]] * several + [self.motion_at(p, r)]
+                rows.append([*cells, *lines, *[""] * (most - len(lines))])
+        heads = self._heads()[: len(self.address)] + ["start"] * several
+        yield from ("", heading("Strongest lines of the displacement: f over the mesh frequency, amplitude"))
+        yield grid(rows, *heads, "response", *["f: um"] * most, left=0, caption="Strongest lines")

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
+from rotorgear.results.table import Block, Column, heading, table_of
 
 
 class ToothField(Record):
@@ -22,7 +25,10 @@ class ToothField(Record):
     von_mises: np.ndarray = of("von Mises stress", "Pa", "node", json=None)
     largest_principal: np.ndarray = of("largest principal stress", "Pa", "node", json=None)
     root_stress: float = of(
-        "largest principal stress in the fillet on the loaded side of all teeth", "Pa", json="root_stress_pa"
+        "largest principal stress in the fillet on the loaded side of all teeth",
+        "Pa",
+        form=".4g",
+        column="root stress MPa",
     )
 
 
@@ -30,9 +36,9 @@ class ContactField(Record):
     """The n slices that carry load."""
 
     ends: np.ndarray = of("ends of each slice on the flanks", "m", "slice", "end", "xyz", json=None)
-    line_load: np.ndarray = of("force per length of contact line", "N/m", "slice", json="line_load_n_per_m")
-    half_width: np.ndarray = of("half-width of the contact", "m", "slice", json="half_width_m")
-    pressure: np.ndarray = of("largest contact pressure", "Pa", "slice", json="pressure_pa")
+    line_load: np.ndarray = of("force per length of contact line", "N/m", "slice")
+    half_width: np.ndarray = of("half-width of the contact", "m", "slice")
+    pressure: np.ndarray = of("largest contact pressure", "Pa", "slice")
     pair: np.ndarray = of("number of the tooth pair", "", "slice")
 
 
@@ -43,3 +49,12 @@ class ToothFields(Result, kind="tooth_field"):
     position: float = of("position", note=" in mesh periods")
     gears: tuple[ToothField, ToothField] = of("both gears", "", "pinion_and_gear", record=ToothField)
     contact: ContactField = of("slices that carry load", record=ContactField)
+
+    def tables(self) -> Iterator[Block]:
+        """The largest stresses and pressure."""
+        yield heading(f"Mesh '{self.mesh}' at {self.position:g} mesh periods")
+        nodes = Column("nodes", lambda gear: len(gear.points))
+        cells = Column("cells", lambda gear: len(gear.cells))
+        yield table_of(self, "gears", Column("gear", "name"), nodes, cells, "root_stress")
+        pressure = 1e-6 * self.contact.pressure.max(initial=0.0)
+        yield from (f"{len(self.contact.pair)} loaded slices, largest pressure {pressure:.4g} MPa", "")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.old_names import warn_old
@@ -9,6 +12,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, short, table_of
 
 # What a history of a contact is called, and the table it stands in; the last one by its former name.
 _OF_CONTACTS = {
@@ -17,6 +21,12 @@ _OF_CONTACTS = {
     "approach": "approach",
     "deflection": "deflection",
 }
+
+
+# Channels that are kept, saved and drawn, but not listed.
+_UNSHOWN = "gears."
+# Below this share of the largest component of its vector a component is what rounding and iterations leave of a zero.
+_ROUNDING = 1e-9
 
 
 def _at_end(key: str, label: str) -> Written:
@@ -64,33 +74,43 @@ class EnergyLedger(Record):
 class ContactStatistics(Record):
     """A contact in the time that counts."""
 
-    name: str = of("name", note=": mesh and helix")
+    name: str = of("name", note=": mesh and helix", column="contact")
     static_force_n: float = of(
-        "static force", "N", note=" along the flank normal, in static equilibrium, without excitation"
+        "static force",
+        "N",
+        note=" along the flank normal, in static equilibrium, without excitation",
+        form=short,
+        column="static\nN",
     )
-    mean_force_n: float = of("mean force", "N", note=" in the time that counts")
-    rms_force_n: float = of("root mean square of the force about its mean", "N")
-    largest_force_n: float = of("largest force", "N")
+    mean_force_n: float = of("mean force", "N", note=" in the time that counts", form=short, column="mean")
+    rms_force_n: float = of("root mean square of the force about its mean", "N", form=short, column="rms")
+    largest_force_n: float = of("largest force", "N", form=short, column="largest")
     smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
     driving_impulse_n_s: float = of(
         "impulse on the working flank", "N s", note=": the integral of its force over that time"
     )
     back_impulse_n_s: float = of("impulse on the coast flank", "N s", note=", positive")
-    dynamic_factor: float = of("dynamic factor", note=": largest over static force; `null` without load", form=".3f")
+    dynamic_factor: float = of(
+        "dynamic factor", note=": largest over static force; `null` without load", form=".3f", column="K_dyn"
+    )
     peak_to_peak_transmission_error_m: float = of(
         "transmission error, peak to peak",
         "m",
         note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, at all steps in the time that counts",
+        form=".2f",
+        column="TE\num",
     )
     peak_to_peak_approach_m: float = of(
         "approach, peak to peak",
         "m",
         note=" of the flanks in the transverse plane, bending and axial motion included, at all steps in the time that counts",
+        form=".2f",
+        column="appr.\num",
     )
     driving_share: float = of("share of the time on the working flank")
-    apart_share: float = of("contact-loss ratio")
-    back_share: float = of("share of the time on the coast flank")
-    losses: int = of("contact losses", note=": how often contact was lost")
+    apart_share: float = of("contact-loss ratio", form=".1f", column="loss\n%")
+    back_share: float = of("share of the time on the coast flank", form=".1f", column="coast\n%")
+    losses: int = of("contact losses", note=": how often contact was lost", column="losses")
 
     @property
     def peak_to_peak_dte_m(self) -> float:
@@ -151,13 +171,11 @@ class TransientResult(ModelResult, kind="transient"):
             Written("records", lambda result, time: len(time), "", (), "number of recorded instants"),
         ),
     )
-    settle: float = of("time from which statistics count", "s", json="settle_s")
-    step: float = of("time step", "s", json="step_s")
+    settle: float = of("time from which statistics count", "s")
+    step: float = of("time step", "s")
     steps: int = of("steps", note=" done")
     every: int = of("steps from one record to the next", json=None)
-    mesh_frequency: dict[str, float] = of(
-        "mesh frequency", "Hz", "MESH", json="mesh_frequency_hz", note=" of each mesh, at the first speed"
-    )
+    mesh_frequency: dict[str, float] = of("mesh frequency", "Hz", "MESH", note=" of each mesh, at the first speed")
     contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
     transmission_error: np.ndarray = of("transmission error", "m", "record", "contact", json=None)
     approach: np.ndarray = of("approach", "m", "record", "contact", json=None)
@@ -292,3 +310,46 @@ class TransientResult(ModelResult, kind="transient"):
             table = getattr(self, _OF_CONTACTS[what])
             return np.asarray(table[:, self.contact.index(contact)])
         raise KeyError(name)
+
+    def tables(self) -> Iterator[Block]:
+        """Contacts, channels and notes."""
+        rpm = [f"{w * RPM_PER_RAD_S:.5g}" for w in (self.speed[0], self.speed[-1])]
+        turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
+        counted = f"{self.time[-1] - self.settle:.4g} s after {self.settle:.4g} s"
+        if self.time[-1] <= self.settle:
+            counted = (
+                f"ended at {self.time[-1]:.4g} s, before the {self.settle:.4g} s that are discarded: nothing counts"
+            )
+        yield heading(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
+        yield from (table_of(self, "contacts", tight=True), "")
+        if self.channel:
+            yield self._channels()
+        yield ""
+        if self.contact:
+            yield f"TE: {TRANSMISSION_WORDS}; both peak to peak"
+        cost = f"{self.dofs} dofs, {self.steps} steps of {self.step:.4g} s, {self.seconds['total']:.2f} s"
+        yield f"{cost}; {self.method} ({self.reason})"
+        if self.error_estimate == self.error_estimate:
+            more_modes = ", and one of more modes" if "modes with" in self.method else ""
+            yield f"error: statistics within {self.error_estimate:.1e}, from a run of twice the step{more_modes}"
+        yield f"energy error: {self.energy.share:.1e} of the largest term"
+        yield from (*self.remarks(), "")
+
+    def _channels(self) -> Table:
+        """Statistics of the channels, but of those that are only kept."""
+        shown = [row for row in self.channels if not row.name.startswith(_UNSHOWN)]
+        scale: dict[str, float] = {}
+        for row in shown:
+            vector = row.name.rpartition(" ")[0] or row.name
+            sizes = [abs(value) for value in (row.largest, row.smallest) if math.isfinite(value)]
+            scale[vector] = max([scale.get(vector, 0.0), *sizes])
+        rows = []
+        for row in shown:
+            if row.name.startswith("bearings.") and " displacement " in row.name:
+                continue
+            least = _ROUNDING * scale[row.name.rpartition(" ")[0] or row.name]
+            values = (row.mean, row.rms, row.largest, row.smallest)
+            cells = ("0" if abs(value) < least else short(value) for value in values)
+            rows.append((row.name.partition(".")[2], *cells, row.unit))
+        heads = ("channel", "mean", "rms", "largest", "smallest", "unit")
+        return grid(rows, *heads, last=True, caption="Channels in the time that counts")

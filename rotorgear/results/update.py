@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import free_numbers
-from rotorgear.results.comparison import IDENTIFIED, LearntParameter, RigLine
+from rotorgear.results.comparison import IDENTIFIED, LearntParameter, RigLine, learnt_words
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.table import Block, Column, Form, grid, heading, table_of
 
 # Rarer than this by chance, the misfit is the model's: no numbers of it fit the lines.
 MISFIT = 0.01
 # Two estimates that move together beyond this are one piece of knowledge.
 TIED = 0.7
+
+
+def _percent(form: str) -> Form:
+    return lambda value: f"{value:{form}} %"
+
+
+def _error_of(head: str, frequency: str) -> Column:
+    """A frequency of the model beside the measured one."""
+
+    def error(line: UpdatedLine) -> float:
+        return 100.0 * (float(getattr(line, frequency)) / line.rig.frequency_hz - 1.0)
+
+    return Column(head, error, _percent("+.2f"))
 
 
 class UpdatedParameter(LearntParameter):
@@ -31,14 +47,18 @@ class UpdatedLine(Record):
     """One measured line and its mode; the held-out frequency is predicted from the others, to first order about the estimate."""
 
     rig: RigLine = of("rig line", record=RigLine)
-    campaign: str = of("name of the campaign that measured it", note="; empty where there is one only")
-    mode_number: int = of("number of the mode", note=", from 1, elastic modes counted")
-    before_hz: float = of("frequency of the model before the update", "Hz")
-    after_hz: float = of("frequency after the update", "Hz")
-    held_out_hz: float = of("frequency predicted from the other lines alone", "Hz")
+    campaign: str = of(
+        "name of the campaign that measured it", note="; empty where there is one only", column="campaign"
+    )
+    mode_number: int = of("number of the mode", note=", from 1, elastic modes counted", column="mode")
+    before_hz: float = of("frequency of the model before the update", "Hz", column="before")
+    after_hz: float = of("frequency after the update", "Hz", column="after")
+    held_out_hz: float = of("frequency predicted from the other lines alone", "Hz", column="held out")
     held_out_sigma: float = of("relative standard deviation of that prediction, noise of the line included")
-    mac_before: float | None = of("MAC of the shape before the update", note="; `null` without shapes", form=".3f")
-    mac_after: float | None = of("MAC after the update", note="; `null` without shapes", form=".3f")
+    mac_before: float | None = of(
+        "MAC of the shape before the update", note="; `null` without shapes", form=".3f", column="MAC before"
+    )
+    mac_after: float | None = of("MAC after the update", note="; `null` without shapes", form=".3f", column="after")
 
 
 class UpdatedResponse(Record):
@@ -94,6 +114,46 @@ class UpdateResult(ModelResult, kind="update"):
     def _rms(self, found_hz: list[float]) -> float:
         errors = np.log([hz / row.rig.frequency_hz for hz, row in zip(found_hz, self.lines, strict=True)])
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else float("nan")
+
+    def tables(self) -> Iterator[Block]:
+        """The numbers, lines and frequency responses before and after, and what the update is worth."""
+        if self.title:
+            yield heading(self.title)
+        columns = (
+            Column("number", "address"),
+            Column("prior", "prior", lambda value: f"±{value:.3g} %", "%"),
+            Column("times", "factor", ".4f"),
+            Column("after", "sigma", lambda value: f"±{value:.2g} %", "%"),
+            Column("learnt", "learnt", _percent(".0f"), "%"),
+            Column(" ", lambda row: "" if row.identified else "not identified", left=False),
+        )
+        yield from (table_of(self, "parameters", *columns), "")
+        if self.lines:
+            error = (
+                _error_of("before", "before_hz"),
+                _error_of("after", "after_hz"),
+                _error_of("held out", "held_out_hz"),
+            )
+            several = ("campaign",) if any(line.campaign for line in self.lines) else ()
+            shapes = ("mac_before", "mac_after") if self.points else ()
+            rig = Column("rig Hz", "rig.frequency_hz", ".2f")
+            yield table_of(self, "lines", *several, rig, "mode_number", *error, *shapes)
+        if self.responses:
+            if self.lines:
+                yield ""
+            rows = [
+                (
+                    f"{one.campaign}: " * bool(one.campaign) + f"{one.response} over {one.reference}",
+                    *(f"{value:.3f}" for value in (one.frac_before, one.frac_after, one.frac_held_out)),
+                )
+                for one in self.responses
+            ]
+            yield grid(rows, "response over force", "FRAC before", "after", "held out", caption="Frequency responses")
+        what = "measured values" if self.points or self.responses else "matched lines"
+        yield from ("", learnt_words(self.parameters, self.measured_values, what), *self.findings)
+        if self.unmatched:
+            yield f"Without a mode: {', '.join(f'{line.frequency_hz:.1f}' for line in self.unmatched)} Hz."
+        yield from (*self.remarks(), f"{self.modal_solutions} modal solutions of {self.dofs} dofs.")
 
 
 def _findings(result: UpdateResult) -> list[str]:

@@ -6,15 +6,11 @@ An import inside a function counts like one at the top: it may save time, but it
 from __future__ import annotations
 
 import ast
-import inspect
 from collections.abc import Iterator
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-from rotorgear.results.kinds import kinds
-from rotorgear.results.result import Result
 from tests.paths import ROOT
 
 # The face (rotorgear/__init__.py) stands just below the command line, which uses it as any user does; __main__ stands above
@@ -85,7 +81,6 @@ ROOMS = {
         "": {"geometry", "loaded", "stiffness", "tooth_fe"},
     },
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
-    "results": {"": set(), "tables": {""}},
     "solvers": {
         "": set(),
         "sparse": set(),
@@ -97,15 +92,13 @@ ROOMS = {
         "lanes": {"contact", "time"},
     },
 }
-# Modules that load others by a name which no walk can read in their source, and the package that the name may lead to. A table
-# knows its result, so the arrow from a result to its table is the one that leads back: no class of results imports a table.
+# Modules that load others by a name which no walk can read in their source, and the package that the name may lead to.
 BY_NAME = {
     "rotorgear.forces.registry": "rotorgear.forces",
     "rotorgear.gears.stiffness_models": "rotorgear.gears",
     "rotorgear.cli.commands": "rotorgear.cli",
     "rotorgear.lazy": "rotorgear",  # the loader of the face, which is where its names are listed
     "rotorgear.results.kinds": "rotorgear.results",
-    "rotorgear.results.result": "rotorgear.results.tables",
     "rotorgear.analysis.sweep.cluster": "rotorgear",  # versions of packages, asked for on a worker
 }
 Arrows = dict[str, dict[str, int]]  # importing module -> imported module -> line
@@ -308,20 +301,6 @@ def test_what_loads_modules_by_a_name_is_declared(house: Arrows) -> None:
     # The ground's loader and the cluster's look at versions serve the face; all others stay on their own floor.
     for module, package in BY_NAME.items():
         assert package == "rotorgear" or floor_of(package) == floor_of(module)
-
-
-def test_every_result_finds_its_table_in_the_room_of_tables_and_every_table_has_a_result() -> None:
-    of_kinds = set()
-    for kind, result in kinds().items():
-        place = result.__module__.removeprefix("rotorgear.results.")
-        module = import_module(f"{BY_NAME[Result.__module__]}.{place}")
-        table = getattr(module, f"{kind}_table")
-        assert table.__module__ == module.__name__, f"the table of {kind} is made elsewhere"
-        first = next(iter(inspect.signature(table).parameters.values()))
-        assert first.annotation == result.__name__
-        of_kinds.add(Path(str(module.__file__)).stem)
-    tables = {file.stem for file in (ROOT / "rotorgear" / "results" / "tables").rglob("*.py")}
-    assert tables - {"__init__", "common"} == of_kinds
 
 
 def build(root: Path, files: dict[str, str]) -> Arrows:

@@ -25,6 +25,7 @@ from rotorgear.results.kinds import keys_of, kinds
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.spectrum import SpectralLines
+from rotorgear.results.table import Table, error_words, exact, html_table, written
 from tests.models import pair_file
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS
@@ -164,7 +165,9 @@ def test_the_text_of_a_result_fits_on_a_screen_and_is_the_commands_table(kind: s
     whole = result.text().splitlines()
     assert lines[:39] == whole[:39]
     assert len(whole) <= 40 or lines[-1].startswith(f"... and {len(whole) - 39} more")
-    assert result._repr_html_().startswith("<pre>")
+    html = result._repr_html_()
+    assert html.count("<table>") == html.count("</table>") == sum(isinstance(one, Table) for one in result.tables())
+    assert html.startswith(("<p>", "<table>"))
 
 
 def test_markup_in_names_is_shown_as_it_is() -> None:
@@ -294,6 +297,52 @@ def test_a_field_appears_everywhere_from_one_line(tmp_path: Any) -> None:
         assert replace(toy, phase=np.array([0.0, 1.0])) != toy
     finally:
         del Result.kinds["toy"], Record.known["Toy"]
+
+
+def test_a_result_of_declared_fields_has_its_tables_and_a_label_is_said_once() -> None:
+    class Wear(Record):
+        part: str = of("worn part", column="part")
+        depth: float = of("depth of wear", "m", form=".1f", column="deep um")
+
+    class Trial(Result, kind="trial"):
+        spots: tuple[Wear, ...] = of("worn spots", "", "spot", record=Wear)
+        heat: np.ndarray = of("temperature", "K", "place", form=".0f", column="K")
+
+    try:
+        trial = Trial(spots=(Wear("gears.a", 2e-6),), heat=np.array([300.0, 310.0]))
+        text = trial.text()
+        assert "part     deep um" in text
+        assert "gears.a      2.0" in text
+        assert "310" in text
+        html = trial._repr_html_()
+        assert '<th scope="col" class=number>depth of wear, um</th>' in html
+        spots = next(one for one in trial.tables() if isinstance(one, Table) and one.caption == "Worn spots")
+        assert 'data-key="/trial/spots/0/depth_m"' in html_table(spots, top=("trial",))
+        assert trial.to_dict()["spots"] == [{"part": "gears.a", "depth_m": 2e-6}]
+        assert ("spots[].depth_m", "m", "depth of wear") in [(key.path, key.unit, key.text) for key in keys_of(Trial)]
+        assert trial.rows("spots") == [{"part": "gears.a", "depth": 2e-6}]
+    finally:
+        for name in ("Wear", "Trial"):
+            Record.known = {known: cls for known, cls in Record.known.items() if cls.__name__ != name}
+        del Result.kinds["trial"]
+
+
+def test_the_terminal_and_the_page_write_a_number_alike() -> None:
+    assert [written(value, ".1f") for value in (None, -0.0, float("nan"), -0.04, float("inf"))] == [
+        "-",
+        "0.0",
+        "-",
+        "0.0",
+        "-",
+    ]
+    assert [error_words(value) for value in (0.0, 1e-23, 2e-9, 0.011)] == ["<1e-9", "<1e-9", "2e-09", "1e-02"]
+    assert [exact(".4f")(value) for value in (3.2e-5, -3e-6, 1e-12, 0.0, 12.5)] == [
+        "3e-05",
+        "-3e-06",
+        "0.0000",
+        "0.0000",
+        "12.5000",
+    ]
 
 
 def test_a_changed_value_changes_the_hash_of_a_model_and_the_order_of_its_tables_does_not() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.results.tables import campbell as table
+from rotorgear.results import campbell as table
 from tests.paths import ROOT
 
 

@@ -10,12 +10,11 @@ from rich.console import Console
 
 from rotorgear.analysis.rig.compare import compare_lines as compare
 from rotorgear.results.comparison import ExcitationLine, RigLine
-from rotorgear.results.tables.comparison import compare_table
 
 
 def render(comparison, encoding="utf-8"):
     stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
-    Console(file=stream, width=80).print(compare_table(comparison))
+    Console(file=stream, width=80).print(comparison.table())
     stream.seek(0)
     return stream.read()
 
@@ -61,5 +60,5 @@ def test_a_comparison_without_matches_has_no_empty_table():
 
 
 def test_the_module_imports_without_rich_or_numpy():
-    code = "import sys, rotorgear.results.tables.comparison; sys.exit(any(n in sys.modules for n in ('rich', 'numpy')))"
+    code = "import sys, rotorgear.results.comparison; sys.exit(any(n in sys.modules for n in ('rich', 'numpy')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
