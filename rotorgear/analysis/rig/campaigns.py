@@ -1,7 +1,7 @@
 """Several campaigns of one rig: measured at other speeds, or in other states of the gearbox, with the same uncertain numbers.
 
 Each campaign has a model of its own, the file's with some values changed and its speed; all share the logs of the free factors.
-Their modes stand one after the other, and a line is only ever paired with a mode of its own campaign.
+A line is only ever paired with a mode of its own campaign.
 """
 
 from __future__ import annotations
@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.measured import Measured, MeasuredFrf
-from rotorgear.errors import ModelError, Problem
+from rotorgear.analysis.rig.compare import rig_lines_of
+from rotorgear.analysis.rig.measured import Measured, MeasuredFrf, read_rig_frf, read_rig_shapes
+from rotorgear.errors import AnalysisError, ModelError, Problem
+from rotorgear.model.model import Model
 from rotorgear.results.comparison import RigLine
 
 _KEYS = ("name", "rig", "shapes", "frf", "points", "speed", "changes")
@@ -44,6 +46,36 @@ class Campaign:
     changes: Mapping[str, Any] = field(default_factory=dict)
     name: str = ""
     frf: str | Path | MeasuredFrf | None = None
+
+    def measured(self, model: Model) -> tuple[Measured, MeasuredFrf | None]:
+        """Lines and shapes, and frequency responses, by the model in the state of the campaign.
+
+        Raises:
+            AnalysisError: nothing was measured, a line twice, points that the model has not.
+            ModelError: a file that can't be read.
+        """
+        rig = self.rig
+        if (rig is not None and self.shapes is not None) or (rig is None and self.shapes is None and self.frf is None):
+            raise AnalysisError(
+                "give what was measured: --rig lines.csv or --shapes rig.uff, --frf rig.uff beside one of them or alone, and "
+                "where the sensors are: --points sensors.csv"
+            )
+        if self.shapes is not None:
+            given = read_rig_shapes(self.shapes, self.points, model)
+        elif self.points is not None and self.frf is None:
+            raise AnalysisError("--points belongs to --shapes or --frf: the table of sensors says where each node is")
+        elif rig is None:
+            given = Measured(())
+        else:
+            given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
+        hz = [line.frequency_hz for line in given.lines]
+        if not given.points and len(set(hz)) < len(hz):
+            twice = next(f for f in hz if hz.count(f) > 1)
+            raise AnalysisError(f"the rig line {twice:g} Hz is given twice: keep one of them")
+        given.check_points(model)
+        if self.frf is None or isinstance(self.frf, MeasuredFrf):
+            return given, self.frf
+        return given, read_rig_frf(self.frf, self.points, model)
 
 
 def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:

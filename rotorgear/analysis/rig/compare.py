@@ -15,7 +15,6 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +46,10 @@ from rotorgear.solvers.eigen.assignment import ROUNDING, assign, covered_share, 
 
 # A random list that does as well to the last digit is a hit; rounding must not decide it.
 TIE = 1e-12
+# A rig line that states no uncertainty is not trusted beyond this when two modes compete for it.
+READING_ACCURACY = 1e-3
+# Modes of a model are found up to this much above the highest line of the rig, so that every line meets all its candidates.
+ABOVE_RIG = 1.15
 
 
 def estimate_chance(
@@ -107,10 +110,6 @@ def _significance(hits: NDArray[np.bool_]) -> float:
     return float((1 + np.count_nonzero(hits)) / (1 + hits.size))
 
 
-# A rig line that states no uncertainty is not trusted beyond this when two modes compete for it.
-READING_ACCURACY = 1e-3
-
-
 @recorded
 def compare_lines(
     frequency_hz: ArrayLike,
@@ -150,7 +149,18 @@ def compare_lines(
         AnalysisError: no rig lines, the same line twice, arrays of different length, tolerances, band or samples that
             make no sense.
     """
-    modes = _Modes.of(frequency_hz, descriptions, rigid, damping_ratio)
+    frequency = np.asarray(frequency_hz, dtype=float)
+    is_rigid = np.zeros(frequency.shape, dtype=bool) if rigid is None else np.asarray(rigid, dtype=bool)
+    damping = np.full(frequency.shape, np.nan) if damping_ratio is None else np.asarray(damping_ratio, dtype=float)
+    sizes = {"frequency_hz": frequency.shape, "descriptions": (len(descriptions),)}
+    sizes |= {"rigid": is_rigid.shape, "damping_ratio": damping.shape}
+    if frequency.ndim != 1 or len(set(sizes.values())) > 1:
+        raise AnalysisError(f"the modes to compare need one entry a mode in every list, got shapes {sizes}")
+    if not np.all(np.isfinite(frequency) & (frequency >= 0.0)):
+        raise AnalysisError("the natural frequencies to compare must be finite and not negative")
+    # The modes that may be matched, ascending in frequency.
+    elastic = np.flatnonzero(~is_rigid & (frequency > 0.0))
+    elastic = elastic[np.argsort(frequency[elastic], kind="stable")]
     lines = sorted(rig_lines, key=lambda line: line.frequency_hz)
     rig_hz = np.array([line.frequency_hz for line in lines])
     if rig_hz.size == 0:
@@ -158,120 +168,6 @@ def compare_lines(
     repeated = rig_hz[1:][np.diff(rig_hz) == 0.0]
     if repeated.size:
         raise AnalysisError(f"the rig line {repeated[0]:g} Hz is given twice: keep one of them")
-    _check_settings(tolerance, excitation_tolerance, samples)
-    limits = _band(rig_hz, tolerance, band)
-    pairs = {row: int(modes.elastic[column]) for row, column in assign(rig_hz, modes.elastic_hz, tolerance)}
-    near = _Neighbourhood(modes, tuple(excitations), frozenset(pairs.values()), tolerance, excitation_tolerance)
-    matched = [lines[row] for row in pairs]
-    return Comparison(
-        matches=tuple(near.match(lines[row], mode) for row, mode in pairs.items()),
-        unmatched_rig=tuple(near.unmatched(line) for row, line in enumerate(lines) if row not in pairs),
-        unmatched_modes=near.unmatched_modes(limits),
-        tolerance=tolerance,
-        excitation_tolerance=excitation_tolerance,
-        chance=estimate_chance(rig_hz, modes.elastic_hz, tolerance, limits, samples=samples, seed=seed),
-        stiffnesses=learnt_stiffnesses(strain_energy or {}, list(pairs.values()), matched),
-        warnings=tuple(_warnings(rig_hz, modes.elastic_hz, limits, band, known_to_hz)),
-    )
-
-
-@dataclass(frozen=True)
-class _Modes:
-    """The modes by index; `elastic` are the indices that may be matched, ascending in frequency."""
-
-    frequency_hz: NDArray[np.float64]
-    descriptions: Sequence[str]
-    damping_ratio: NDArray[np.float64]
-    elastic: NDArray[np.intp]
-
-    @classmethod
-    def of(
-        cls,
-        frequency_hz: ArrayLike,
-        descriptions: Sequence[str],
-        rigid: ArrayLike | None,
-        damping_ratio: ArrayLike | None,
-    ) -> _Modes:
-        frequency = np.asarray(frequency_hz, dtype=float)
-        is_rigid = np.zeros(frequency.shape, dtype=bool) if rigid is None else np.asarray(rigid, dtype=bool)
-        damping = np.full(frequency.shape, np.nan) if damping_ratio is None else np.asarray(damping_ratio, dtype=float)
-        sizes = {"frequency_hz": frequency.shape, "descriptions": (len(descriptions),)}
-        sizes |= {"rigid": is_rigid.shape, "damping_ratio": damping.shape}
-        if frequency.ndim != 1 or len(set(sizes.values())) > 1:
-            raise AnalysisError(f"the modes to compare need one entry a mode in every list, got shapes {sizes}")
-        if not np.all(np.isfinite(frequency) & (frequency >= 0.0)):
-            raise AnalysisError("the natural frequencies to compare must be finite and not negative")
-        usable = np.flatnonzero(~is_rigid & (frequency > 0.0))
-        return cls(frequency, descriptions, damping, usable[np.argsort(frequency[usable], kind="stable")])
-
-    @property
-    def elastic_hz(self) -> NDArray[np.float64]:
-        return self.frequency_hz[self.elastic]
-
-
-@dataclass(frozen=True)
-class _Neighbourhood:
-    """What lies near a rig line or a mode."""
-
-    modes: _Modes
-    excitations: tuple[ExcitationLine, ...]
-    taken: frozenset[int]
-    tolerance: float
-    excitation_tolerance: float
-
-    def match(self, line: RigLine, mode: int) -> Match:
-        frequency = float(self.modes.frequency_hz[mode])
-        damping = float(self.modes.damping_ratio[mode])
-        miss = abs(frequency - line.frequency_hz)
-        uncertainty = line.uncertainty_hz
-        return Match(
-            rig=line,
-            mode_number=mode + 1,
-            mode_frequency_hz=frequency,
-            mode_description=self.modes.descriptions[mode],
-            error_percent=100.0 * (frequency / line.frequency_hz - 1.0),
-            within_uncertainty=None if uncertainty is None else miss <= uncertainty + ROUNDING * frequency,
-            runner_up=self._runner_up(line, mode),
-            mode_damping_ratio=None if np.isnan(damping) else damping,
-            excitations=self._driving(line.frequency_hz, uncertainty or 0.0),
-            mode_excitations=self._driving(frequency),
-        )
-
-    def unmatched(self, line: RigLine) -> UnmatchedRigLine:
-        return UnmatchedRigLine(line, self._nearest(line), self._driving(line.frequency_hz, line.uncertainty_hz or 0.0))
-
-    def unmatched_modes(self, band: tuple[float, float]) -> tuple[UnmatchedMode, ...]:
-        free = [int(mode) for mode in self.modes.elastic if mode not in self.taken]
-        found = [(mode, float(self.modes.frequency_hz[mode])) for mode in free]
-        return tuple(
-            UnmatchedMode(mode + 1, frequency, self.modes.descriptions[mode], self._driving(frequency))
-            for mode, frequency in found
-            if band[0] <= frequency <= band[1]
-        )
-
-    def _runner_up(self, line: RigLine, chosen: int) -> Candidate | None:
-        """Return the next mode where it could as well be the partner (the criterion is stated in `Match`)."""
-        other = self._nearest(line, without=chosen)
-        if other is None or abs(other.error_percent) > 100.0 * (self.tolerance + ROUNDING):
-            return None
-        accuracy = READING_ACCURACY * line.frequency_hz if line.uncertainty_hz is None else line.uncertainty_hz
-        twice = 2.0 * abs(float(self.modes.frequency_hz[chosen]) - line.frequency_hz)
-        return other if abs(other.frequency_hz - line.frequency_hz) <= max(twice, accuracy) else None
-
-    def _nearest(self, line: RigLine, without: int = -1) -> Candidate | None:
-        others = self.modes.elastic[self.modes.elastic != without]
-        if others.size == 0:
-            return None
-        mode = int(others[np.argmin(np.abs(np.log(self.modes.frequency_hz[others] / line.frequency_hz)))])
-        frequency = float(self.modes.frequency_hz[mode])
-        return Candidate(mode + 1, frequency, 100.0 * (frequency / line.frequency_hz - 1.0), mode in self.taken)
-
-    def _driving(self, frequency: float, uncertainty: float = 0.0) -> tuple[ExcitationLine, ...]:
-        reach = max(self.excitation_tolerance * frequency, uncertainty) + ROUNDING * frequency
-        return tuple(line for line in self.excitations if abs(line.frequency_hz - frequency) <= reach)
-
-
-def _check_settings(tolerance: float, excitation_tolerance: float, samples: int) -> None:
     if not 0.0 < tolerance < 1.0:
         raise AnalysisError(
             f"the tolerance of the rig comparison must lie between 0 and 1 (0.05 is 5 %), got {tolerance:g}"
@@ -283,46 +179,82 @@ def _check_settings(tolerance: float, excitation_tolerance: float, samples: int)
     check_whole("the number of random lists (samples)", samples, 0)
     if samples == 0:
         raise AnalysisError("the chance needs at least one random list, got samples = 0")
-
-
-def _band(rig_hz: NDArray[np.float64], tolerance: float, band: tuple[float, float] | None) -> tuple[float, float]:
-    if band is None:
-        return float(rig_hz[0]) / (1.0 + tolerance), float(rig_hz[-1]) * (1.0 + tolerance)
-    low = float(band[0])
-    high = float(band[1])
+    low, high = map(float, band or (rig_hz[0] / (1.0 + tolerance), rig_hz[-1] * (1.0 + tolerance)))
     if not (0.0 < low < high < np.inf and low <= rig_hz[0] and rig_hz[-1] <= high):
-        lines = f"{rig_hz[0]:g} to {rig_hz[-1]:g} Hz"
+        between = f"{rig_hz[0]:g} to {rig_hz[-1]:g} Hz"
         raise AnalysisError(
-            f"the band must be positive and contain the rig lines ({lines}), got {low:g} to {high:g} Hz"
+            f"the band must be positive and contain the rig lines ({between}), got {low:g} to {high:g} Hz"
         )
-    return low, high
+    pairs = {row: int(elastic[column]) for row, column in assign(rig_hz, frequency[elastic], tolerance)}
+    taken = frozenset(pairs.values())
 
+    def nearest(line: RigLine, without: int = -1) -> Candidate | None:
+        others = elastic[elastic != without]
+        if others.size == 0:
+            return None
+        mode = int(others[np.argmin(np.abs(np.log(frequency[others] / line.frequency_hz)))])
+        hz = float(frequency[mode])
+        return Candidate(mode + 1, hz, 100.0 * (hz / line.frequency_hz - 1.0), mode in taken)
 
-def _warnings(
-    rig_hz: NDArray[np.float64],
-    mode_hz: NDArray[np.float64],
-    limits: tuple[float, float],
-    band: tuple[float, float] | None,
-    known_to: float | None,
-) -> list[str]:
-    """Return sentences on what weakens the comparison."""
-    found = []
-    if mode_hz.size == 0:
-        found.append("there are no elastic modes to compare with")
-    elif max(mode_hz[-1], known_to or 0.0) < limits[1]:
-        found.append(
-            f"the elastic modes given end at {mode_hz[-1]:.1f} Hz: if the model has more, compute them up to "
-            f"{limits[1]:.1f} Hz, so that every rig line meets all its candidates and the chance is not underestimated"
+    def driving(hz: float, uncertainty: float = 0.0) -> tuple[ExcitationLine, ...]:
+        reach = max(excitation_tolerance * hz, uncertainty) + ROUNDING * hz
+        return tuple(line for line in excitations if abs(line.frequency_hz - hz) <= reach)
+
+    def match(line: RigLine, mode: int) -> Match:
+        hz = float(frequency[mode])
+        miss = abs(hz - line.frequency_hz)
+        # The next mode where it could as well be the partner (the criterion is stated in `Match`).
+        other = nearest(line, without=mode)
+        accuracy = READING_ACCURACY * line.frequency_hz if line.uncertainty_hz is None else line.uncertainty_hz
+        if other and (
+            abs(other.error_percent) > 100.0 * (tolerance + ROUNDING)
+            or abs(other.frequency_hz - line.frequency_hz) > max(2.0 * miss, accuracy)
+        ):
+            other = None
+        return Match(
+            rig=line,
+            mode_number=mode + 1,
+            mode_frequency_hz=hz,
+            mode_description=descriptions[mode],
+            error_percent=100.0 * (hz / line.frequency_hz - 1.0),
+            within_uncertainty=None if line.uncertainty_hz is None else miss <= line.uncertainty_hz + ROUNDING * hz,
+            runner_up=other,
+            mode_damping_ratio=None if np.isnan(damping[mode]) else float(damping[mode]),
+            excitations=driving(line.frequency_hz, line.uncertainty_hz or 0.0),
+            mode_excitations=driving(hz),
+        )
+
+    warnings = []
+    known_to = max(float(frequency[elastic[-1]]) if elastic.size else 0.0, known_to_hz or 0.0)
+    if elastic.size == 0:
+        warnings.append("there are no elastic modes to compare with")
+    elif known_to < high:
+        warnings.append(
+            f"the elastic modes given end at {frequency[elastic[-1]]:.1f} Hz: if the model has more, compute them up to "
+            f"{high:.1f} Hz, so that every rig line meets all its candidates and the chance is not underestimated"
         )
     if rig_hz.size == 1 and band is None:
-        found.append(
+        warnings.append(
             "a single rig line spans no band of its own: give the band that was measured to make the chance meaningful"
         )
-    return found
-
-
-# Modes of a model are found up to this much above the highest line of the rig, so that every line meets all its candidates.
-ABOVE_RIG = 1.15
+    return Comparison(
+        matches=tuple(match(lines[row], mode) for row, mode in pairs.items()),
+        unmatched_rig=tuple(
+            UnmatchedRigLine(line, nearest(line), driving(line.frequency_hz, line.uncertainty_hz or 0.0))
+            for row, line in enumerate(lines)
+            if row not in pairs
+        ),
+        unmatched_modes=tuple(
+            UnmatchedMode(int(mode) + 1, float(frequency[mode]), descriptions[mode], driving(float(frequency[mode])))
+            for mode in elastic
+            if mode not in taken and low <= frequency[mode] <= high
+        ),
+        tolerance=tolerance,
+        excitation_tolerance=excitation_tolerance,
+        chance=estimate_chance(rig_hz, frequency[elastic], tolerance, (low, high), samples=samples, seed=seed),
+        stiffnesses=learnt_stiffnesses(strain_energy or {}, list(pairs.values()), [lines[row] for row in pairs]),
+        warnings=tuple(warnings),
+    )
 
 
 def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, ...]:

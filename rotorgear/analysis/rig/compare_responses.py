@@ -30,12 +30,18 @@ from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.comparison import ExcitationLine, RigLine
+from rotorgear.results.comparison import RigLine
 from rotorgear.results.frf_comparison import FrfComparison, FrfMatch, OrderComparison, OrderMatch
 from rotorgear.results.spectrum import RigSpectrum, SpectralLines
 from rotorgear.results.transient import TransientResult
 from rotorgear.uff.datasets import DERIVATIVES, RPM
 from rotorgear.uff.read import read_universal
+
+# Two orders are the same where their ratios agree to this; orders are read from a display.
+_SAME_ORDER = 2e-3
+# Spectral lines within this share of a rig line are that line.
+TOLERANCE = 0.01
+_TINY = 1e-300
 
 
 @recorded
@@ -110,10 +116,6 @@ def compare_frf(
 
 # The verb's own argument is called as its option, --frf.
 _model_frf = frf
-
-
-# Two orders are the same where their ratios agree to this; orders are read from a display.
-_SAME_ORDER = 2e-3
 
 
 @dataclass(frozen=True)
@@ -214,7 +216,19 @@ def compare_orders(
         at = np.searchsorted(speeds, cut.speed_rpm)
         rig = np.full(len(speeds), np.nan)
         rig[at] = cut.amplitude
-        rows.append((_match(cut, found.orders[order], own[at]), rig, own))
+        levels = 20.0 * np.log10(np.maximum(np.array([cut.amplitude, own[at]]), _TINY))
+        varies = float(np.std(levels, axis=1).min()) > 0.0
+        sizes = [max(float(np.linalg.norm(values)), _TINY) for values in (own[at], cut.amplitude)]
+        match = OrderMatch(
+            cut.point,
+            found.orders[order],
+            cut.ratio,
+            float(20.0 * np.log10(sizes[0] / sizes[1])),
+            float(np.asarray(np.corrcoef(levels))[0, 1]) if varies else float("nan"),
+            float(cut.speed_rpm[np.argmax(cut.amplitude)]),
+            float(cut.speed_rpm[np.argmax(own[at])]),
+        )
+        rows.append((match, rig, own))
     if not rows:
         have = ", ".join(f"{ratio:g}" for ratio in found.ratio) or "none"
         raise AnalysisError(f"the model excites none of the measured orders ({'; '.join(without)}); it has {have}")
@@ -229,22 +243,6 @@ def compare_orders(
         left_out=found.left_out,
         warnings=found.warnings,
         method="response at the speeds of the rig",
-    )
-
-
-def _match(cut: OrderCut, order: str, own: NDArray[np.float64]) -> OrderMatch:
-    rig = cut.amplitude
-    tiny = 1e-300
-    levels = 20.0 * np.log10(np.maximum(np.array([rig, own]), tiny))
-    varies = float(np.std(levels, axis=1).min()) > 0.0
-    return OrderMatch(
-        cut.point,
-        order,
-        cut.ratio,
-        float(20.0 * np.log10(max(float(np.linalg.norm(own)), tiny) / max(float(np.linalg.norm(rig)), tiny))),
-        float(np.asarray(np.corrcoef(levels))[0, 1]) if varies else float("nan"),
-        float(cut.speed_rpm[np.argmax(rig)]),
-        float(cut.speed_rpm[np.argmax(own)]),
     )
 
 
@@ -283,9 +281,6 @@ def _cuts_of_csv(file: Path) -> tuple[OrderCut, ...]:
     return tuple(found)
 
 
-TOLERANCE = 0.01
-
-
 @recorded
 def compare_spectrum(
     result: TransientResult, lines: SpectralLines, rig: Sequence[RigLine], tolerance: float = TOLERANCE
@@ -311,27 +306,24 @@ def compare_spectrum(
         found = best >= 0 and error[best] <= tolerance
         near.append((lines.frequency_hz[best], lines.amplitude[best]) if found else (np.nan, np.nan))
         sources.append(lines.source[best] if found else "")
-        reasons.append("" if found else _reason(line.frequency_hz, excitations, tolerance))
-    f, a = np.array(near).T if near else np.zeros((2, 0))
+        # Whether anything in the model shakes at the frequency.
+        reason = "nothing turns"
+        if excitations:
+            orders = [(abs(e.frequency_hz / line.frequency_hz - 1.0), e.name, e.frequency_hz) for e in excitations]
+            off, name, f = min(orders)
+            reason = f"no shaft or mesh order: the nearest is {name} at {f:.2f} Hz; a forced response has no line here"
+            if off <= tolerance:
+                reason = f"{name} at {f:.2f} Hz is there, but too weak at this place, or not excited by the model"
+        reasons.append("" if found else reason)
+    hz, amplitude = np.array(near).T if near else np.zeros((2, 0))
     return RigSpectrum(
         lines.name,
         lines.unit,
         np.array([line.frequency_hz for line in rig]),
         tuple(line.label or "" for line in rig),
-        f,
-        a,
+        hz,
+        amplitude,
         tuple(sources),
         tuple(reasons),
         tolerance,
     )
-
-
-def _reason(frequency: float, excitations: Sequence[ExcitationLine], tolerance: float) -> str:
-    """Whether anything in the model shakes at a frequency."""
-    orders = [(abs(e.frequency_hz / frequency - 1.0), e.name, e.frequency_hz) for e in excitations]
-    if not orders:
-        return "nothing turns"
-    error, name, f = min(orders)
-    if error <= tolerance:
-        return f"{name} at {f:.2f} Hz is there, but too weak at this place, or not excited by the model"
-    return f"no shaft or mesh order: the nearest is {name} at {f:.2f} Hz; a forced response has no line here"

@@ -148,10 +148,10 @@ def compare_shapes(
     if not 0.0 < tolerance < 1.0 or samples < 1:
         raise AnalysisError("the tolerance lies between 0 and 1 (0.05 is 5 %), and there is at least one random list")
     given.check_points(model)
+    # A line may have a mode that softer springs than the model's have brought down.
+    highest = ABOVE_RIG * (1.0 + 0.5 * DEFAULT_PRIOR) * max(line.frequency_hz for line in given.lines)
     if isinstance(source, Model):
-        result = modal(
-            source, speed=speed, fmax=_highest(given), accuracy=accuracy, elements=elements, progress=progress
-        )
+        result = modal(source, speed=speed, fmax=highest, accuracy=accuracy, elements=elements, progress=progress)
     elif speed is not None or accuracy is not None or elements is not None:
         raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
     else:
@@ -160,7 +160,18 @@ def compare_shapes(
     alike = modes.likeness(given.shapes)
     rig_hz = np.array([line.frequency_hz for line in given.lines])
     spread = np.hypot(tolerance / _DEVIATIONS, modes.spread)
-    pairs = _pairs(result, modes, given, alike, spread, tolerance)
+    # At standstill by what springs of 30 % may do, else by frequency and shape as they are.
+    found = None
+    if result.speed is None and result.dofs <= _MOST_DOFS:
+        found = identified_pairs(model, mesh_of(result), highest, given, tolerance)
+    pairs = [(line, mode) for line, mode in found or () if mode < len(modes.hz)]
+    # Lines that no springs bring to a mode, because a sensor is wrong or the model is, go by the modes that are left as they are.
+    lines = np.setdiff1d(np.arange(len(rig_hz)), [line for line, _ in pairs])
+    left = np.setdiff1d(np.arange(len(modes.hz)), [mode for _, mode in pairs])
+    if len(lines) and len(left):
+        others = pairs_by_both(rig_hz[lines], modes.hz[left], spread[left], alike[np.ix_(lines, left)])
+        pairs += [(int(lines[line]), int(left[mode])) for line, mode in others]
+    pairs.sort()
     chance = _chance(modes, rig_hz, alike, spread, tolerance, samples, seed)
     operation = model.operation
     turning = result.speed if result.speed is not None else (operation.speed if operation else None)
@@ -169,6 +180,9 @@ def compare_shapes(
     for line, mode in pairs:
         rig = given.lines[line]
         shape = given.shapes[line]
+        known = np.isfinite(shape)
+        own = modes.at_points[mode, known]
+        size = np.sum(np.abs(own) ** 2)
         reach = max(_EXCITED * rig.frequency_hz, rig.uncertainty_hz or 0.0)
         matches.append(
             ShapeMatch(
@@ -177,7 +191,7 @@ def compare_shapes(
                 mode_frequency_hz=float(modes.hz[mode]),
                 error_percent=float(100.0 * (modes.hz[mode] / rig.frequency_hz - 1.0)),
                 mac=float(alike[line, mode]),
-                scale=_scale(shape, modes.at_points[mode]),
+                scale=float(np.abs(np.vdot(own, shape[known])) / size) if size > 0.0 else float("nan"),
                 phase_collinearity=phase_collinearity(shape),
                 close_to=tuple(int(modes.number[k]) for k in modes.group[mode] if k != mode),
                 excitations=tuple(e for e in excitations if abs(e.frequency_hz - rig.frequency_hz) <= reach),
@@ -214,34 +228,6 @@ def compare_shapes(
         warnings=(*given.notes, *result.warnings),
         method="pairs by ln f and shape, springs known to 30 %",
     )
-
-
-def _highest(given: Measured) -> float:
-    """Frequency in Hz up to which a line may have its mode: one that softer springs than the model's have brought down."""
-    return ABOVE_RIG * (1.0 + 0.5 * DEFAULT_PRIOR) * max(line.frequency_hz for line in given.lines)
-
-
-def _pairs(
-    result: ModalResult,
-    modes: _Modes,
-    given: Measured,
-    alike: NDArray[np.float64],
-    spread: NDArray[np.float64],
-    tolerance: float,
-) -> list[tuple[int, int]]:
-    """Lines and modes: at standstill by what springs of 30 % may do, else by frequency and shape as they are."""
-    found = None
-    if result.speed is None and result.dofs <= _MOST_DOFS:
-        found = identified_pairs(result.model, mesh_of(result), _highest(given), given, tolerance)
-    pairs = [(line, mode) for line, mode in found or () if mode < len(modes.hz)]
-    # Lines that no springs bring to a mode, because a sensor is wrong or the model is, go by the modes that are left as they are.
-    rig_hz = np.array([line.frequency_hz for line in given.lines])
-    lines = np.setdiff1d(np.arange(len(rig_hz)), [line for line, _ in pairs])
-    left = np.setdiff1d(np.arange(len(modes.hz)), [mode for _, mode in pairs])
-    if len(lines) and len(left):
-        others = pairs_by_both(rig_hz[lines], modes.hz[left], spread[left], alike[np.ix_(lines, left)])
-        pairs += [(int(lines[line]), int(left[mode])) for line, mode in others]
-    return sorted(pairs)
 
 
 @dataclass(frozen=True)
@@ -281,7 +267,11 @@ class _Modes:
         springs = spring_shares(result.strain_energy, elastic)
         spread = np.hypot(LINE_NOISE, 0.5 * DEFAULT_PRIOR * np.sqrt(np.sum(springs**2, axis=0)))
         at_points = everywhere[:, np.arange(len(points)), axes]
-        return cls(elastic + 1, hz, spread, at_points, everywhere, axes, _groups(hz, error))
+        # Chains of modes, ascending, whose neighbours are closer than their errors, or than a line can be read.
+        near = np.diff(np.log(hz)) <= np.maximum(error[1:] + error[:-1], LINE_NOISE)
+        chain = np.concatenate([[0], np.cumsum(~near)])
+        group = tuple(tuple(map(int, np.flatnonzero(chain == number))) for number in chain)
+        return cls(elastic + 1, hz, spread, at_points, everywhere, axes, group)
 
     def likeness(self, shapes: NDArray[np.complex128]) -> NDArray[np.float64]:
         """MAC of shapes (n, s) and modes, (n, m); of close modes the share of the shape in their plane."""
@@ -295,38 +285,21 @@ class _Modes:
                 inside = np.sum(np.abs(shapes @ _basis(plane).conj()) ** 2, axis=1)
                 share = inside / np.maximum(np.sum(np.abs(shapes) ** 2, axis=1), 1e-300)
             else:
-                share = np.array([_share(shape, plane) for shape in shapes])
+                share = np.full(len(shapes), np.nan)
+                for k, shape in enumerate(shapes):
+                    known = np.isfinite(shape)
+                    size = float(np.sum(np.abs(shape[known]) ** 2))
+                    if size > 0.0:
+                        Q = _basis(plane[:, known])
+                        share[k] = np.sum(np.abs(Q.conj().T @ shape[known]) ** 2) / size
             found[:, list(group)] = share[:, None]
         return found
-
-
-def _groups(hz: NDArray[np.float64], error: NDArray[np.float64]) -> tuple[tuple[int, ...], ...]:
-    """Chains of modes, ascending, whose neighbours are closer than their errors, or than a line can be read."""
-    near = np.diff(np.log(hz)) <= np.maximum(error[1:] + error[:-1], LINE_NOISE)
-    chain = np.concatenate([[0], np.cumsum(~near)])
-    return tuple(tuple(int(i) for i in np.flatnonzero(chain == chain[k])) for k in range(len(hz)))
-
-
-def _share(shape: NDArray[np.complex128], plane: NDArray[np.complex128]) -> float:
-    """|P y|^2 / |y|^2 of the projection on the plane of modes (c, s), where both are known."""
-    known = np.isfinite(shape)
-    size = float(np.sum(np.abs(shape[known]) ** 2))
-    if size == 0.0:
-        return float("nan")
-    Q = _basis(plane[:, known])
-    return float(np.sum(np.abs(Q.conj().T @ shape[known]) ** 2) / size)
 
 
 def _basis(plane: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Orthonormal columns (s, r) of what modes (c, s) span; modes that are the same at the sensors count once."""
     left, singular, _ = np.linalg.svd(plane.T, full_matrices=False)
     return np.asarray(left[:, singular > 1e-9 * singular[0]])
-
-
-def _scale(shape: NDArray[np.complex128], mode: NDArray[np.complex128]) -> float:
-    known = np.isfinite(shape)
-    size = np.sum(np.abs(mode[known]) ** 2)
-    return float(np.abs(np.vdot(mode[known], shape[known])) / size) if size > 0.0 else float("nan")
 
 
 def phase_collinearity(shape: NDArray[np.complex128]) -> float:

@@ -18,7 +18,7 @@ from rotorgear.analysis.rig.sensor_table import Sensor, sensors_of
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
 from rotorgear.results.comparison import RigLine
-from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE, Function, Shape, UniversalFile
+from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE
 from rotorgear.uff.read import read_universal
 
 
@@ -108,7 +108,13 @@ def read_rig_shapes(path: str | Path, points: str | Path | None = None, model: M
     lines = []
     columns = []
     for number, shape in enumerate(file.shapes, start=1):
-        lines.append(_line(shape, number, path))
+        if not (math.isfinite(shape.frequency_hz) and shape.frequency_hz > 0.0):
+            raise AnalysisError(
+                f"{path}: shape {number} has the frequency {shape.frequency_hz:g} Hz; expected a positive one"
+            )
+        label = shape.names[3] if len(shape.names) > 3 else ""
+        damping = shape.damping_ratio if 0.0 < shape.damping_ratio < 1.0 else None
+        lines.append(RigLine(shape.frequency_hz, "" if label.lower() == "none" else label, None, damping))
         row = {int(node): values for node, values in zip(shape.nodes, shape.values, strict=True)}
         at = [row.get(sensor.node) for sensor in sensors]
         columns.append(
@@ -133,29 +139,12 @@ def read_rig_shapes(path: str | Path, points: str | Path | None = None, model: M
         notes.append(
             f"shape {number + 1} ({lines[number].frequency_hz:.4g} Hz) moves no sensor: taken as a line without shape"
         )
-    names = tuple(sensor.place for sensor in sensors)
-    return Measured(tuple(lines), names, table, (*file.notes, *notes, *_turned_systems(file)), tuple(sensors))
-
-
-def _line(shape: Shape, number: int, path: str | Path) -> RigLine:
-    if not (math.isfinite(shape.frequency_hz) and shape.frequency_hz > 0.0):
-        raise AnalysisError(
-            f"{path}: shape {number} has the frequency {shape.frequency_hz:g} Hz; expected a positive one"
+    if file.nodes is not None and {18, 2420} & set(file.others) and file.nodes.systems.any():
+        notes.append(
+            "displacements are in local coordinate systems (datasets 18, 2420), which are not read: all are taken as global"
         )
-    label = shape.names[3] if len(shape.names) > 3 else ""
-    damping = shape.damping_ratio
-    return RigLine(
-        shape.frequency_hz, "" if label.lower() == "none" else label, None, damping if 0.0 < damping < 1.0 else None
-    )
-
-
-def _turned_systems(file: UniversalFile) -> list[str]:
-    """A warning where displacements may stand in local coordinate systems, which are not read."""
-    if file.nodes is None or not ({18, 2420} & set(file.others)) or not file.nodes.systems.any():
-        return []
-    return [
-        "displacements stand in local coordinate systems (datasets 18, 2420), which are not read: all are taken as global"
-    ]
+    names = tuple(sensor.place for sensor in sensors)
+    return Measured(tuple(lines), names, table, (*file.notes, *notes), tuple(sensors))
 
 
 @dataclass(frozen=True)
@@ -223,7 +212,9 @@ def read_rig_frf(path: str | Path, points: str | Path | None = None, model: Mode
         if response is None or reference is None:
             left += 1
             continue
-        rows.append((response.place, reference.place, sign * other * _receptance(function)))
+        w = 2.0 * np.pi * function.x
+        receptance = function.values / np.where(w > 0.0, (1j * w) ** DERIVATIVES[function.numerator], 1.0)
+        rows.append((response.place, reference.place, sign * other * np.asarray(receptance, dtype=complex)))
     if not rows:
         raise AnalysisError(f"{path}: none of its frequency responses is between two sensors of the table")
     if left:
@@ -240,9 +231,3 @@ def _sensor(freedom: tuple[int, int], sensors: dict[tuple[int, int], Sensor]) ->
     node, direction = freedom
     sensor = sensors.get((node, abs(direction) - 1))
     return sensor, (1.0 if direction > 0 else -1.0) * (sensor.sign if sensor else 1.0)
-
-
-def _receptance(function: Function) -> NDArray[np.complex128]:
-    w = 2.0 * np.pi * function.x
-    power = DERIVATIVES[function.numerator]
-    return np.asarray(function.values / np.where(w > 0.0, (1j * w) ** power, 1.0), dtype=complex)

@@ -110,6 +110,7 @@ class ReceptanceModel:
         from scipy.sparse.linalg import splu
 
         system = here.system
+        speed = self.model.speed
         P_i = self._ports(system, self.inputs)
         P_o = self._ports(system, self.outputs)
         damped = self._modal_damping(system, *self._stiffness_and_mass(system, here.V), self._zeta(x))
@@ -121,7 +122,8 @@ class ReceptanceModel:
         worst = 0.0
         for k in at:
             w = 2.0 * np.pi * float(self.frequency_hz[k])
-            Z = _stiffness(system, self.model.speed) + 1j * w * _damping(system, self.model.speed) - w**2 * system.mass
+            Z = system.stiffness(speed) + system.circulatory(speed)
+            Z = Z + 1j * w * _damping(system, speed) - w**2 * system.mass
             solve = splu(sp.csc_array(Z)).solve
             answers = solve(np.hstack([P_i, B]).astype(complex))
             a, b = answers[:, : P_i.shape[1]], answers[:, P_i.shape[1] :]
@@ -216,10 +218,6 @@ class ReceptanceModel:
         # Damping in proportion to the stiffness has its part in the spring.
         beta = self.model.numbers.model.damping.rayleigh_beta
         return np.array([spring, (above - below) / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
-
-
-def _stiffness(system: System, speed: float) -> sp.csc_array:
-    return sp.csc_array(system.stiffness(speed) + system.circulatory(speed))
 
 
 def _damping(system: System, speed: float) -> sp.csc_array:

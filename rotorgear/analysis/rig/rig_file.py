@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from rotorgear.errors import ModelError, Problem
@@ -71,14 +70,6 @@ _EXPECTED = {
 _DECIMAL = re.compile(r"([+-]?[0-9]+)([.,])([0-9]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z/%]*)\Z")
 
 
-@dataclass(frozen=True)
-class _Column:
-    """A column by its meaning, with the unit of its plain numbers."""
-
-    name: str
-    unit: str
-
-
 def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
     """Return the rig lines of a CSV file in the order of the file; frequencies and uncertainties in Hz.
 
@@ -96,26 +87,102 @@ def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
     file = Path(path)
     delimiter, rows = csv_rows(file, "a readable CSV file in UTF-8")
     if not rows:
-        raise _one_problem(file, "", "a header row and at least one line, such as 'frequency_hz' and below it '361'")
+        raise _one_problem(file, "a header row and at least one line, such as 'frequency_hz' and below it '361'")
     (header_line, header), *body = rows
-    table = _Table(file.name, _columns(header, f"{file.name}:{header_line}", file), delimiter)
-    lines = [table.read(number, cells) for number, cells in body]
+    columns = _columns(header, f"{file.name}:{header_line}", file)
     if not body:
-        raise _one_problem(file, "", "at least one rig line below the header")
-    if table.problems:
-        raise ModelError(table.problems, str(file))
-    return tuple(line for line in lines if line)
-
-
-def _one_problem(file: Path, value: str, expected: str, hint: str = "") -> ModelError:
-    return ModelError([Problem(file.name, value, expected, hint)], str(file))
-
-
-def _columns(header: list[str], where: str, file: Path) -> list[_Column | None]:
-    """Return the meaning of every column; an unnamed one is None."""
+        raise _one_problem(file, "at least one rig line below the header")
     problems: list[Problem] = []
-    columns = [_column(name, where, problems) if name else None for name in header]
-    names = [column.name for column in columns if column]
+    signs: dict[str, int] = {}  # decimal sign -> the line that has it first
+    first_line: dict[str, int] = {}
+    lines = []
+
+    def note(name: str, value: str, expected: str, hint: str = "") -> None:
+        address = ":".join(filter(None, (file.name, str(number), name)))
+        problems.append(Problem(address, value, expected, hint))
+
+    for number, cells in body:
+        known = len(problems)
+        filled = [pair for pair in zip(columns + [None] * len(cells), cells, strict=False) if pair[1]]
+        stray = [cell for column, cell in filled if column is None]
+        given = {column[0]: (cell, column[1]) for column, cell in filled if column}
+        if stray:
+            hint = "a decimal comma needs semicolons between the cells; a label with a comma needs quotes"
+            note("", repr(stray[0]), "no cell without a column in the header", hint)
+        elif "frequency" not in given:
+            note("frequency", "nothing", _EXPECTED["frequency"])
+        values: dict[str, float] = {}
+        for name in (name for name in _EXPECTED if name in given):
+            cell, unit = given[name]
+            found = _DECIMAL.match(cell)
+            if found is not None and found[2] != delimiter:
+                # A decimal comma is written as a point; a file that has both may mean a thousand by 1,234.
+                signs.setdefault(found[2], number)
+                first = next(iter(signs))
+                if found[2] != first:
+                    note(name, repr(cell), "one decimal sign in a file", f"line {signs[first]} has '{first}'")
+                cell = f"{found[1]}.{found[3]}"
+            plain = _is_plain(cell)
+            share = unit == "%" if plain else cell.endswith("%")
+            try:
+                dimension = "ratio" if share or name == "damping" else "frequency"
+                values[name] = parse_quantity(f"{cell} {unit}" if plain else cell, dimension)
+            except QuantityError:
+                note(name, repr(cell), _EXPECTED[name])
+                continue
+            if name == "uncertainty" and share:
+                values[name] *= values.get("frequency", 0.0)
+        if len(problems) > known:
+            continue
+        try:
+            label = given.get("label", ("", ""))[0]
+            lines.append(RigLine(values["frequency"], label, values.get("uncertainty"), values.get("damping")))
+        except ModelError as error:
+            for problem in error.problems:
+                name = _FIELDS[problem.address]
+                note(name, repr(given[name][0]), problem.expected)
+            continue
+        before = first_line.setdefault(f"{values['frequency']:.9g}", number)
+        if before != number:
+            note("frequency", repr(given["frequency"][0]), "every frequency once", f"it is in line {before}")
+    if problems:
+        raise ModelError(problems, str(file))
+    return tuple(lines)
+
+
+def _one_problem(file: Path, expected: str) -> ModelError:
+    return ModelError([Problem(file.name, "", expected)], str(file))
+
+
+def _columns(header: list[str], where: str, file: Path) -> list[tuple[str, str] | None]:
+    """Meaning of every column, and the unit of its plain numbers; an unnamed one is None."""
+    problems: list[Problem] = []
+    columns: list[tuple[str, str] | None] = []
+    for text in header:
+        key = re.sub(r"[\s_]*[\[(]\s*(.*?)\s*[\])]\Z", r"_\1", text).strip().replace(" ", "_").lower()
+        name, _, unit = _ALIASES.get(key, key).partition("_")
+        units = _UNITS.get(name)
+        known = {candidate.lower(): candidate for candidate in units or ()}
+        if units is not None and not unit:
+            columns.append((name, units[0] if units else ""))
+        elif unit in known:
+            columns.append((name, known[unit]))
+        else:
+            columns.append(None)
+            if text:
+                valid = [
+                    "frequency",
+                    "frequency_hz",
+                    "label",
+                    "uncertainty",
+                    "uncertainty_hz",
+                    "damping",
+                    "damping_ratio",
+                ]
+                close = nearest(text, valid)
+                expected = "one of the columns frequency, label, uncertainty, damping"
+                problems.append(Problem(f"{where}:{text}", "", expected, f"did you mean '{close}'?" if close else ""))
+    names = [column[0] for column in columns if column]
     problems += [
         Problem(where, f"{names.count(name)} columns for {name}", "one") for name in _UNITS if names.count(name) > 1
     ]
@@ -125,104 +192,6 @@ def _columns(header: list[str], where: str, file: Path) -> list[_Column | None]:
     if problems:
         raise ModelError(problems, str(file))
     return columns
-
-
-def _column(text: str, where: str, problems: list[Problem]) -> _Column | None:
-    key = re.sub(r"[\s_]*[\[(]\s*(.*?)\s*[\])]\Z", r"_\1", text).strip().replace(" ", "_").lower()
-    name, _, unit = _ALIASES.get(key, key).partition("_")
-    units = _UNITS.get(name)
-    if units is not None and not unit:
-        return _Column(name, units[0] if units else "")
-    known = {candidate.lower(): candidate for candidate in units or ()}
-    if unit in known:
-        return _Column(name, known[unit])
-    valid = ["frequency", "frequency_hz", "label", "uncertainty", "uncertainty_hz", "damping", "damping_ratio"]
-    close = nearest(text, valid)
-    hint = f"did you mean '{close}'?" if close else ""
-    problems.append(Problem(f"{where}:{text}", "", "one of the columns frequency, label, uncertainty, damping", hint))
-    return None
-
-
-@dataclass
-class _Table:
-    """The rows below the header: what they give, and the problems met on the way."""
-
-    file: str
-    columns: list[_Column | None]
-    delimiter: str
-    problems: list[Problem] = field(default_factory=list)
-    first_line: dict[str, int] = field(default_factory=dict)
-    decimal_sign: tuple[str, int] | None = None  # and the line that has it first
-
-    def read(self, number: int, cells: list[str]) -> RigLine | None:
-        """Return the rig line in line `number` of the file, or None with its problems noted."""
-        before = len(self.problems)
-        given = self._given(number, cells)
-        values = {name: self._number(number, name, *given[name]) for name in _EXPECTED if name in given}
-        if len(self.problems) > before:
-            return None
-        return self._line(number, given, values)
-
-    def _note(self, number: int, name: str, value: str, expected: str, hint: str = "") -> None:
-        address = ":".join(filter(None, (self.file, str(number), name)))
-        self.problems.append(Problem(address, value, expected, hint))
-
-    def _given(self, number: int, cells: list[str]) -> dict[str, tuple[str, str]]:
-        """Return column name -> (cell, unit of a plain number) of the cells that are filled in."""
-        columns = self.columns + [None] * len(cells)
-        filled = [(column, cell) for column, cell in zip(columns, cells, strict=False) if cell]
-        stray = [cell for column, cell in filled if column is None]
-        given = {column.name: (cell, column.unit) for column, cell in filled if column}
-        if stray:
-            hint = "a decimal comma needs semicolons between the cells; a label with a comma needs quotes"
-            self._note(number, "", repr(stray[0]), "no cell without a column in the header", hint)
-        elif "frequency" not in given:
-            self._note(number, "frequency", "nothing", _EXPECTED["frequency"])
-        return given
-
-    def _number(self, number: int, name: str, cell: str, unit: str) -> tuple[float, bool]:
-        """Return the value in SI, and whether it is a share (given in %)."""
-        cell = self._with_decimal_point(number, name, cell)
-        plain = _is_plain(cell)
-        is_share = unit == "%" if plain else cell.endswith("%")
-        dimension = "ratio" if is_share or name == "damping" else "frequency"
-        try:
-            return parse_quantity(f"{cell} {unit}" if plain else cell, dimension), is_share
-        except QuantityError:
-            self._note(number, name, repr(cell), _EXPECTED[name])
-            return 0.0, is_share
-
-    def _with_decimal_point(self, number: int, name: str, cell: str) -> str:
-        """The cell with a decimal comma written as a point; a file that has both may mean a thousand by 1,234."""
-        found = _DECIMAL.match(cell)
-        if found is None or found[2] == self.delimiter:
-            return cell
-        first, line = self.decimal_sign = self.decimal_sign or (found[2], number)
-        if found[2] != first:
-            self._note(number, name, repr(cell), "one decimal sign in a file", f"line {line} has '{first}'")
-        return f"{found[1]}.{found[3]}"
-
-    def _line(
-        self, number: int, given: dict[str, tuple[str, str]], values: dict[str, tuple[float, bool]]
-    ) -> RigLine | None:
-        frequency = values["frequency"][0]
-        uncertainty, is_share = values.get("uncertainty", (None, False))
-        if uncertainty is not None and is_share:
-            uncertainty *= frequency
-        label = given.get("label", ("", ""))[0]
-        damping = values.get("damping", (None, False))[0]
-        try:
-            line = RigLine(frequency, label, uncertainty, damping)
-        except ModelError as error:
-            for problem in error.problems:
-                name = _FIELDS[problem.address]
-                self._note(number, name, repr(given[name][0]), problem.expected)
-            return None
-        first = self.first_line.setdefault(f"{frequency:.9g}", number)
-        if first != number:
-            hint = f"it stands in line {first}"
-            self._note(number, "frequency", repr(given["frequency"][0]), "every frequency once", hint)
-        return line
 
 
 def _is_plain(cell: str) -> bool:

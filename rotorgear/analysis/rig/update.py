@@ -18,17 +18,17 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.rig.campaigns import Campaign, joined, read_campaigns
-from rotorgear.analysis.rig.compare import ABOVE_RIG, rig_lines_of
+from rotorgear.analysis.rig.compare import ABOVE_RIG
 from rotorgear.analysis.rig.frf_misfit import FrfMisfit
 from rotorgear.analysis.rig.likeness import frac, mac
-from rotorgear.analysis.rig.measured import Measured, MeasuredFrf, read_rig_frf, read_rig_shapes
-from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, Pair, approach, first_fit, most_probable
+from rotorgear.analysis.rig.measured import Measured, MeasuredFrf
+from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, approach, first_fit, most_probable
 from rotorgear.analysis.rig.posterior import LINE_NOISE, Posterior, line_noise
 from rotorgear.analysis.rig.receptance_model import CARRIED
 from rotorgear.analysis.rig.rig_model import CampaignModel, RigModel, plan_of
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
-from rotorgear.model.numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
+from rotorgear.model.numbers import DEFAULT_PRIOR, free_numbers
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import RigLine
 from rotorgear.results.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
@@ -101,23 +101,35 @@ def update(
         )
     if not 0.0 <= modal_damping < 1.0:
         raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
-    several = _campaigns(Campaign(rig, shapes, points, speed, frf=frf), campaigns)
+    several: Sequence[Campaign] = (Campaign(rig, shapes, points, speed, frf=frf),)
+    if campaigns is not None:
+        if several[0] != Campaign():
+            raise AnalysisError(
+                "campaigns have their own rig, shapes, frf, points and speed: give these in each of them"
+            )
+        several = read_campaigns(campaigns) if isinstance(campaigns, str | Path) else tuple(campaigns)
+        if not several:
+            raise AnalysisError("there are no campaigns to update by")
     numbers = free_numbers(model, free, prior)
     progress(0.05, "mesh")
     measured = []
     models = []
     responses = {}
+    # A stiffness that is a third too low hides a line's mode a sixth below it: all modes are wanted that may belong to it.
+    reach = ABOVE_RIG * (1.0 + 0.5 * float(numbers.prior.max()))
     for number, campaign in enumerate(several):
         own = model.with_(campaign.changes) if campaign.changes else model
-        given = _measured(own, campaign)
-        heard = _responses(own, campaign)
+        given, receptances = campaign.measured(own)
         measured.append(given)
-        top = float(heard.frequency_hz[-1]) if heard else 0.0
-        models.append(
-            _rig_model(free_numbers(own, numbers.addresses, prior), given, top, campaign.speed, accuracy, elements)
-        )
-        if heard:
-            responses[number] = FrfMisfit(models[-1], heard, frf_noise, modal_damping)
+        top = float(receptances.frequency_hz[-1]) if receptances else 0.0
+        fmax = max(CARRIED * top, reach * max((line.frequency_hz for line in given.lines), default=0.0))
+        least = min((line_noise(line) for line in given.lines), default=LINE_NOISE)
+        wanted = accuracy or float(np.clip(0.1 * least, *_MESH_ERROR))
+        plan = Plan(elements) if elements else plan_of(own, fmax, wanted)
+        there = free_numbers(own, numbers.addresses, prior)
+        models.append(RigModel(there, plan, fmax, given.points, speed_in_si(campaign.speed) or 0.0))
+        if receptances:
+            responses[number] = FrfMisfit(models[-1], receptances, frf_noise, modal_damping)
     every, owner = joined(measured)
     problem = Misfit(CampaignModel(tuple(models), every.points), every, owner, shape_noise, tolerance, responses)
     start = first_fit(problem)
@@ -126,83 +138,17 @@ def update(
     doubts = [doubt for number, one in responses.items() for doubt in one.doubts(start.x, start.modes.parts[number])]
     try:
         near = approach(problem, start, progress)
-        state, posterior = most_probable(problem, near, progress)
+        end, posterior = most_probable(problem, near, progress)
     except ConvergenceError as error:
         raise ConvergenceError("; ".join([str(error), *doubts])) from None
-    result = _result(model, [one.name for one in several], problem, start, state, posterior)
-    return replace(result, warnings=(*result.warnings, *doubts, *_changed_numbers(numbers, several)))
-
-
-def _campaigns(one: Campaign, several: str | Path | Sequence[Campaign] | None) -> tuple[Campaign, ...]:
-    """The campaigns as they are given, or the one that the other arguments describe."""
-    if several is None:
-        return (one,)
-    if one != Campaign():
-        raise AnalysisError("campaigns have their own rig, shapes, frf, points and speed: give these in each of them")
-    found = read_campaigns(several) if isinstance(several, str | Path) else tuple(several)
-    if not found:
-        raise AnalysisError("there are no campaigns to update by")
-    return found
-
-
-def _changed_numbers(numbers: FreeNumbers, several: Sequence[Campaign]) -> list[str]:
-    """Warnings on campaigns that change a number that is free."""
-    return [
+    result = _result(model, [one.name for one in several], problem, start, end, posterior)
+    changed = [
         f"campaign {one.name or number}: {address} is free and has another value there; its factor is that of both values"
         for number, one in enumerate(several, start=1)
         for address in numbers.addresses
         if any(address == name or address.startswith(f"{name}.") for name in one.changes)
     ]
-
-
-def _measured(model: Model, campaign: Campaign) -> Measured:
-    """Lines and shapes of a campaign, by the model in its state."""
-    rig = campaign.rig
-    only_responses = campaign.frf is not None and rig is None and campaign.shapes is None
-    if (rig is None) == (campaign.shapes is None) and not only_responses:
-        raise AnalysisError(
-            "give what was measured: --rig lines.csv or --shapes rig.uff, --frf rig.uff beside one of them or alone, and where "
-            "the sensors are: --points sensors.csv"
-        )
-    if campaign.shapes is not None:
-        given = read_rig_shapes(campaign.shapes, campaign.points, model)
-    elif campaign.points is not None and campaign.frf is None:
-        raise AnalysisError("--points belongs to --shapes or --frf: the table of sensors says where each node is")
-    elif rig is None:
-        given = Measured(())
-    else:
-        given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
-    hz = [line.frequency_hz for line in given.lines]
-    if not given.points and len(set(hz)) < len(hz):
-        twice = next(f for f in hz if hz.count(f) > 1)
-        raise AnalysisError(f"the rig line {twice:g} Hz is given twice: keep one of them")
-    given.check_points(model)
-    return given
-
-
-def _responses(model: Model, campaign: Campaign) -> MeasuredFrf | None:
-    """Frequency responses of a campaign, by the model in its state."""
-    if campaign.frf is None or isinstance(campaign.frf, MeasuredFrf):
-        return campaign.frf
-    return read_rig_frf(campaign.frf, campaign.points, model)
-
-
-def _rig_model(
-    numbers: FreeNumbers,
-    given: Measured,
-    top: float,
-    speed: float | str | None,
-    accuracy: float | None,
-    elements: int | None,
-) -> RigModel:
-    """The model of a campaign, with frequency responses up to `top` Hz, on a mesh that is finer than its noise."""
-    # A stiffness that is a third too low hides a line's mode a sixth below it: all modes are wanted that may belong to it.
-    reach = ABOVE_RIG * (1.0 + 0.5 * float(numbers.prior.max()))
-    fmax = max(CARRIED * top, reach * max((line.frequency_hz for line in given.lines), default=0.0))
-    least = min((line_noise(line) for line in given.lines), default=LINE_NOISE)
-    wanted = accuracy or float(np.clip(0.1 * least, *_MESH_ERROR))
-    plan = Plan(elements) if elements else plan_of(numbers.model, fmax, wanted)
-    return RigModel(numbers, plan, fmax, given.points, speed_in_si(speed) or 0.0)
+    return replace(result, warnings=(*result.warnings, *doubts, *changed))
 
 
 def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, state: Fit, p: Posterior) -> UpdateResult:
@@ -219,7 +165,11 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
     for pair in state.pairs:
         line = pair.line
         mode = pair.mode
-        held_out, sigma = _held_out(state, p, pair)
+        # As the other lines predict it, with the noise of the line.
+        row = int(np.flatnonzero(state.owner == line)[0])
+        rest, x = _without(state, p, state.owner == line)
+        slope = p.jacobian[row]
+        spread = float(rest.spread_of(slope[None])[0])
         old = first.get(line, mode)
         has_shape = bool(len(problem.shape_points(line)))
         lines.append(
@@ -229,8 +179,8 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
                 mode_number=int(mode - offset[problem.owner[line]]) + 1,
                 before_hz=float(start.modes.frequency_hz[min(old, len(start.modes.eigenvalues) - 1)]),
                 after_hz=float(state.modes.frequency_hz[mode]),
-                held_out_hz=held_out,
-                held_out_sigma=sigma,
+                held_out_hz=float(state.modes.frequency_hz[mode] * np.exp(slope @ (x - state.x))),
+                held_out_sigma=float(np.hypot(p.noise[row], spread)),
                 mac_before=float(before_mac[line, old]) if has_shape else None,
                 mac_after=float(after_mac[line, mode]) if has_shape else None,
             )
@@ -243,6 +193,20 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
         if len(problem.shape_points(pair.line))
     )
     count = len(state.residual) - sum(fitted)
+    left_out = []
+    if problem.given.lines:
+        left_out.append(
+            "damping: lines are undamped natural frequencies at the speeds of the campaigns"
+            if problem.turning
+            else "damping and rotation: lines are undamped natural frequencies at standstill"
+        )
+        left_out.append("the spread of lines predicted from the others is that of the linear model about the estimate")
+    for number, response in problem.responses.items():
+        left_out += response.notes
+        error = response.basis_error(state.x, state.modes.parts[number])
+        left_out.append(
+            f"shapes above those that carry the responses: within {error:.0e} of the whole system's at 3 peaks"
+        )
     rows = zip(numbers.addresses, p.prior, p.sigma, p.learnt, np.exp(state.x), strict=True)
     return UpdateResult(
         model=model,
@@ -261,36 +225,17 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
         modal_solutions=problem.model.solutions,
         dofs=state.modes.system.n,
         method="Gauss-Newton on ln f, shapes and ln H, derivatives from the modes",
-        left_out=_left_out(problem, state),
+        left_out=tuple(left_out),
         warnings=(
             *problem.given.notes,
-            *_shape_warnings(problem),
+            *(
+                ("shapes at a single sensor have a size and no direction to compare: the frequencies alone are used",)
+                if len(problem.given.points) == 1
+                else ()
+            ),
             *(note for one in problem.responses.values() for note in one.warnings),
         ),
     )
-
-
-def _shape_warnings(problem: Misfit) -> list[str]:
-    """What measured shapes can't do."""
-    if len(problem.given.points) == 1:
-        return ["shapes at a single sensor have a size and no direction to compare: the frequencies alone are used"]
-    return []
-
-
-def _left_out(problem: Misfit, state: Fit) -> tuple[str, ...]:
-    said = []
-    if problem.given.lines:
-        said.append(
-            "damping: lines are undamped natural frequencies at the speeds of the campaigns"
-            if problem.turning
-            else "damping and rotation: lines are undamped natural frequencies at standstill"
-        )
-        said.append("the spread of lines predicted from the others is that of the linear model about the estimate")
-    for number, response in problem.responses.items():
-        said += response.notes
-        error = response.basis_error(state.x, state.modes.parts[number])
-        said.append(f"shapes above those that carry the responses: within {error:.0e} of the whole system's at 3 peaks")
-    return tuple(said)
 
 
 def _response_rows(
@@ -304,7 +249,7 @@ def _response_rows(
         pairs = zip(one.given.responses, one.given.references, one.measured, before, after, strict=True)
         for response, reference, rig, first, last in pairs:
             own = state.owner == owner
-            moved = p.jacobian[own] @ (_without(state, p, own) - state.x)
+            moved = p.jacobian[own] @ (_without(state, p, own)[1] - state.x)
             half = len(moved) // 2
             yield UpdatedResponse(
                 campaign=campaigns[number] if len(campaigns) > 1 else "",
@@ -317,19 +262,7 @@ def _response_rows(
             owner -= 1
 
 
-def _without(state: Fit, p: Posterior, own: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """The numbers that all other rows make most probable, to first order about the estimate."""
-    linear = state.residual + p.jacobian @ state.x
-    return Posterior(p.jacobian[~own], p.noise[~own], p.prior).estimate(linear[~own])
-
-
-def _held_out(state: Fit, p: Posterior, pair: Pair) -> tuple[float, float]:
-    """Frequency of a line in Hz as the other lines predict it, and its relative standard deviation with the noise of the line."""
-    belongs = state.owner == pair.line
-    rest = Posterior(p.jacobian[~belongs], p.noise[~belongs], p.prior)
-    own = int(np.flatnonzero(belongs)[0])
-    slope = p.jacobian[own]
-    x = _without(state, p, belongs)
-    predicted = float(state.modes.frequency_hz[pair.mode] * np.exp(slope @ (x - state.x)))
-    spread = float(rest.spread_of(slope[None])[0])
-    return predicted, float(np.hypot(p.noise[own], spread))
+def _without(state: Fit, p: Posterior, own: NDArray[np.bool_]) -> tuple[Posterior, NDArray[np.float64]]:
+    """What all other rows teach, and the numbers that they make most probable, to first order about the estimate."""
+    rest = Posterior(p.jacobian[~own], p.noise[~own], p.prior)
+    return rest, rest.estimate((state.residual + p.jacobian @ state.x)[~own])

@@ -81,7 +81,7 @@ def test_every_bad_row_is_reported_at_once_with_its_line_and_column(problems):
 def test_a_frequency_given_twice_names_both_lines(problems):
     found = problems("frequency\n361\n834\n0.834 kHz\n")
     assert list(found) == ["rig.csv:4:frequency"]
-    assert found["rig.csv:4:frequency"].endswith("got '0.834 kHz', expected every frequency once (it stands in line 3)")
+    assert found["rig.csv:4:frequency"].endswith("got '0.834 kHz', expected every frequency once (it is in line 3)")
 
 
 def test_a_missing_frequency_column_is_said_and_the_nearest_name_offered(problems):
