@@ -65,7 +65,19 @@ def sensors_of(
         ModelError: mistakes in the table; no coordinates of a node without a place.
         AnalysisError: nodes that are nowhere near the model; none at all.
     """
-    found = read_sensor_table(Path(table)) if table is not None else _every_freedom(file)
+    if table is not None:
+        found = read_sensor_table(Path(table))
+    else:
+        # All nodes and directions in which a shape or function moves, by node.
+        moving: set[tuple[int, int]] = set()
+        for shape in file.shapes:
+            for node, row in zip(shape.nodes, np.abs(shape.values), strict=True):
+                moving |= {(int(node), int(axis)) for axis in np.flatnonzero(row > 0.0)}
+        for function in file.functions:
+            for node, direction in (function.response, function.reference):
+                if node and direction:
+                    moving.add((node, abs(direction) - 1))
+        found = [Sensor("", node, axis, 1.0) for node, axis in sorted(moving)]
     if not found:
         raise AnalysisError(f"{name}: no node of it moves in any direction")
     return _placed(found, file.nodes, name, model)
@@ -120,19 +132,6 @@ def place_text(point: str, axis: int) -> str:
     if not is_part or point.rpartition(":")[2] in DOF_NAMES:
         return point
     return f"{point}:{DOF_NAMES[axis]}"
-
-
-def _every_freedom(file: UniversalFile) -> list[Sensor]:
-    """All nodes and directions in which a shape or function moves, by node."""
-    moving: set[tuple[int, int]] = set()
-    for shape in file.shapes:
-        for node, row in zip(shape.nodes, np.abs(shape.values), strict=True):
-            moving |= {(int(node), int(axis)) for axis in np.flatnonzero(row > 0.0)}
-    for function in file.functions:
-        for node, direction in (function.response, function.reference):
-            if node and direction:
-                moving.add((node, abs(direction) - 1))
-    return [Sensor("", node, axis, 1.0) for node, axis in sorted(moving)]
 
 
 def _placed(

@@ -79,7 +79,22 @@ def sensors(
     looks = [f"{names[k]}:{axis}" for k in kept for axis in directions]
     if modes is not None:
         check_whole("the number of modes", modes, 2)
-    hz, numbers, shapes, dofs = _shapes(model, looks, modes or count, fmax, accuracy, elements)
+    most = None if fmax is not None else modes or count
+    if fmax is None:
+        # A first look at the modes says how far up so many of them reach.
+        first = solve(linear_system(model, [None], Plan(elements or 2)), Wanted(None, (modes or count) + 12, None))
+        elastic = np.sort(np.abs(first.eigenvalues[~first.rigid]))
+        if not elastic.size:
+            raise AnalysisError("the model has no elastic modes to tell apart")
+        fmax = ABOVE_RIG * float(elastic[min(modes or count, len(elastic)) - 1]) / (2.0 * np.pi)
+    system = linear_system(model, [None], Plan(elements) if elements else plan_of(model, fmax, accuracy))
+    solved = solve(system, Wanted(None, None, 2.0 * np.pi * fmax))
+    elastic = np.flatnonzero(~solved.rigid & (np.abs(solved.eigenvalues) > 0.0))[:most]
+    if len(elastic) < 2:
+        raise AnalysisError(f"there are {len(elastic)} elastic modes up to {fmax:.5g} Hz: nothing to tell apart")
+    hz = np.abs(solved.eigenvalues[elastic]) / (2.0 * np.pi)
+    numbers = elastic + 1
+    shapes = np.asarray(point_rows(system, looks) @ np.real(solved.vectors[:, elastic]))
     size = np.abs(shapes).max(axis=0)
     seen = size > _STILL * size.max()
     if not seen.any():
@@ -112,35 +127,11 @@ def sensors(
         model_auto_mac=mac(shapes[chosen].T, shapes[chosen].T),
         candidates=len(moving),
         all_auto_mac=float(np.max(np.triu(everywhere, 1), initial=0.0)),
-        dofs=dofs,
+        dofs=system.n,
         warnings=(f"modes {unseen} move along none of these directions: no sensor there sees them",) if unseen else (),
         left_out=("damping and rotation: shapes are those at standstill", "mass of the sensors"),
         method="effective independence, then AutoMAC",
     )
-
-
-def _shapes(
-    model: Model, places: list[str], count: int, fmax: float | None, accuracy: float | None, elements: int | None
-) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64], int]:
-    """Frequencies in Hz (m,) and numbers (m,) of the elastic modes wanted, their motion at places (n, m), and the dofs."""
-    if fmax is None:
-        # A first look at the modes says how far up so many of them reach.
-        first = solve(linear_system(model, [None], Plan(elements or 2)), Wanted(None, count + 12, None))
-        elastic = np.sort(np.abs(first.eigenvalues[~first.rigid]))
-        if not elastic.size:
-            raise AnalysisError("the model has no elastic modes to tell apart")
-        fmax = ABOVE_RIG * float(elastic[min(count, len(elastic)) - 1]) / (2.0 * np.pi)
-        most: int | None = count
-    else:
-        most = None
-    plan = Plan(elements) if elements else plan_of(model, fmax, accuracy)
-    system = linear_system(model, [None], plan)
-    found = solve(system, Wanted(None, None, 2.0 * np.pi * fmax))
-    elastic_at = np.flatnonzero(~found.rigid & (np.abs(found.eigenvalues) > 0.0))[:most]
-    if len(elastic_at) < 2:
-        raise AnalysisError(f"there are {len(elastic_at)} elastic modes up to {fmax:.5g} Hz: nothing to tell apart")
-    shapes = np.asarray(point_rows(system, places) @ np.real(found.vectors[:, elastic_at]))
-    return np.abs(found.eigenvalues[elastic_at]) / (2.0 * np.pi), elastic_at + 1, shapes, system.n
 
 
 def best_rows(shapes: NDArray[np.float64], count: int) -> NDArray[np.intp]:
