@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.static.state_at import linear_system
@@ -14,7 +15,6 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.modal import Piece
 from rotorgear.system.plan import PieceKey, Plan
 from rotorgear.system.system import System, flow_system
 
@@ -64,12 +64,3 @@ def system_for_speeds(
         cuts.append(cut_of(found.discretisation))
     finest = {key: max(cut[key] for cut in cuts) for key in cuts[0]}
     return cut(Plan(cut=finest))
-
-
-def cut_of(pieces: Iterable[Piece]) -> dict[PieceKey, tuple[int, int]]:
-    """Elements and order of every piece, by shaft and number from the left."""
-    found: dict[PieceKey, tuple[int, int]] = {}
-    for piece in pieces:
-        number = sum(shaft == piece.shaft for shaft, _ in found)
-        found[piece.shaft, number] = (piece.elements, piece.order)
-    return found

@@ -1,9 +1,12 @@
-"""How shafts are cut for analyses in time: alike in a transient and a sweep, so that both solve the same system."""
+"""How shafts are cut: as modes were found, or for analyses in time, alike in a transient and a sweep."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from rotorgear.analysis.common.request import check_whole
-from rotorgear.system.plan import Plan
+from rotorgear.results.modal import Piece
+from rotorgear.system.plan import PieceKey, Plan
 
 
 def plan_in_time(elements: int | None = None) -> Plan:
@@ -18,3 +21,12 @@ def plan_in_time(elements: int | None = None) -> Plan:
     if elements is not None:
         check_whole("the number of elements", elements)
     return Plan(elements) if elements else Plan(elements=1, order=2)
+
+
+def cut_of(pieces: Iterable[Piece]) -> dict[PieceKey, tuple[int, int]]:
+    """Elements and order of every piece that modes were found on, by shaft and number from the left."""
+    found: dict[PieceKey, tuple[int, int]] = {}
+    for piece in pieces:
+        number = sum(shaft == piece.shaft for shaft, _ in found)
+        found[piece.shaft, number] = (piece.elements, piece.order)
+    return found

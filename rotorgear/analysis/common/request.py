@@ -42,6 +42,17 @@ def direction_of(speed: float | None) -> int | None:
     return None if not speed else int(np.sign(speed))
 
 
+def share_of(given: float | str, what: str, example: str = "'15 %'") -> float:
+    """A share between 0 and 1 from a number or a text such as "15 %"."""
+    try:
+        share = parse_quantity(given, "ratio")
+    except QuantityError:
+        share = -1.0
+    if not 0.0 < share < 1.0:
+        raise AnalysisError(f"{what}: got '{given}', expected a share between 0 and 1, such as {example}")
+    return share
+
+
 def check_whole(name: str, value: object, least: int = 1) -> None:
     """Refuse a count that is no whole number of at least `least`.
 

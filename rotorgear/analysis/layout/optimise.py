@@ -17,14 +17,13 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, share_of, speed_in_si
 from rotorgear.analysis.layout.modes_at_speed import MARGINS, ModesAtSpeed, kept_deviations, total_mass
 from rotorgear.analysis.layout.problem import Problem, bounds_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import numbers_of
 from rotorgear.progress import Progress, silent
-from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.optimise import LayoutMargin, LayoutMode, LayoutNumber, OptimiseResult
 from rotorgear.solvers.sampling import unit_points
 from rotorgear.solvers.sparse.factor import single_thread
@@ -112,7 +111,7 @@ def optimise(
     Raises:
         AnalysisError: a request that makes no sense, no speed, no excitation. ModelError: addresses that lead nowhere.
     """
-    asked = _share(margin)
+    asked = share_of(margin, "margin")
     if objective not in OBJECTIVES:
         raise AnalysisError(f"objective: got '{objective}', expected {' or '.join(OBJECTIVES)}")
     if objective == "scatter" and not model.scatter:
@@ -120,10 +119,15 @@ def optimise(
             "objective 'scatter': nothing scatters; give [scatter] in the model file, such as "
             "\"bearings.*.stiffness\" = { sigma = '10 %' }"
         )
-    if not 0.0 < participation < 1.0:
-        raise AnalysisError(f"participation: got {participation:g}, expected a share between 0 and 1, such as 0.01")
+    share_of(participation, "participation", "0.01")
     check_whole("the number of searches", searches)
-    at = _speeds(model, speeds)
+    operating = model.operation.speed if model.operation else None
+    if speeds is None and not operating:
+        raise AnalysisError("no speed: give --speeds, or [operation] speed in the model file")
+    wanted = [speed_in_si(speed) for speed in ([operating] if speeds is None else speeds)]
+    at = tuple(dict.fromkeys(speed for speed in wanted if speed))
+    if not at:
+        raise AnalysisError("speeds: expected at least one other than 0")
     check_request(at[0], None, None, elements, None)
     lines = excitation_orders(model, shaft_orders, mesh_orders)
     if not lines:
@@ -136,8 +140,21 @@ def optimise(
     beyond = 1.0 + MARGINS * asked if objective == "scatter" else (1.0 + asked) * _BEYOND
     problem = Problem(numbers, low, high, at, lines, plan, top * beyond, _MORE * asked, asked, participation)
     with single_thread(0):
-        ends = _searched(problem, searches, seed, progress)
-        best = min(ends, key=lambda end: (not end.reached, _cost(problem, objective, end)))
+        # From the file, then from Sobol points of the bounds.
+        points = [problem.start, *unit_points("sobol", max(searches - 1, 1), len(low), seed)][:searches]
+        ends = []
+        for number, t in enumerate(points):
+            progress(0.05 + 0.7 * number / searches, f"start {number + 1} of {searches}")
+            ends.append(_descended(problem, t))
+
+        def cost(end: _End) -> float:
+            if not end.reached:
+                return end.penalty
+            if objective == "mass":
+                return total_mass(problem.states(end.t)[0].system)
+            return float(np.sum((end.t - problem.start) ** 2))
+
+        best = min(ends, key=lambda end: (not end.reached, cost(end)))
         if best.reached:
             improve = {"mass": _lightened, "scatter": _steadied, "change": _nearer}[objective]
             best = improve(problem, best, progress)
@@ -146,39 +163,6 @@ def optimise(
     progress(1.0, "done")
     left = ("damping: frequencies are those of the undamped rotating system", *notes)
     return replace(result, searches=searches, searches_reached=reached, left_out=left)
-
-
-def _share(margin: float | str) -> float:
-    try:
-        share = parse_quantity(margin, "ratio")
-    except QuantityError:
-        share = -1.0
-    if not 0.0 < share < 1.0:
-        raise AnalysisError(f"margin: got '{margin}', expected a share between 0 and 1, such as '15 %'")
-    return share
-
-
-def _speeds(model: Model, speeds: Sequence[float | str] | None) -> tuple[float, ...]:
-    if speeds is None:
-        own = model.operation.speed if model.operation else None
-        if not own:
-            raise AnalysisError("no speed: give --speeds, or [operation] speed in the model file")
-        return (own,)
-    found = tuple(dict.fromkeys(float(value) for value in map(speed_in_si, speeds) if value))
-    if not found:
-        raise AnalysisError("speeds: expected at least one other than 0")
-    return found
-
-
-def _searched(problem: Problem, searches: int, seed: int, progress: Progress) -> list[_End]:
-    """Where the searches lead: the file, then Sobol points of the bounds."""
-    others = unit_points("sobol", max(searches - 1, 1), len(problem.low), seed)
-    points = [problem.start, *others][:searches]
-    ends = []
-    for number, t in enumerate(points):
-        progress(0.05 + 0.7 * number / searches, f"start {number + 1} of {searches}")
-        ends.append(_descended(problem, t))
-    return ends
 
 
 def _descended(problem: Problem, t: NDArray[np.float64]) -> _End:
@@ -210,14 +194,6 @@ def _descended(problem: Problem, t: NDArray[np.float64]) -> _End:
     except _ReachedError as reached:
         return _End(reached.t, 0.0, True)
     return best
-
-
-def _cost(problem: Problem, objective: str, end: _End) -> float:
-    if not end.reached:
-        return end.penalty
-    if objective == "mass":
-        return total_mass(problem.states(end.t)[0].system)
-    return float(np.sum((end.t - problem.start) ** 2))
 
 
 def _nearer(problem: Problem, end: _End, progress: Progress) -> _End:
@@ -295,7 +271,10 @@ def _scattering(problem: Problem, deviations: float = 0.0) -> Problem:
 def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
     numbers = problem.numbers
     scatters = bool(numbers.model.scatter)
-    finer = _on_finer_mesh(_scattering(problem) if scatters else problem)
+    # The layout is judged on a finer mesh and on maps of its own.
+    plan = problem.plan
+    plan = Plan(2 * plan.elements, plan.order) if plan.order == 1 else Plan(plan.elements, plan.order + 1)
+    finer = replace(_scattering(problem) if scatters else problem, plan=plan, own_maps=True, solutions=0, gradients=0)
     before = finer.states(problem.start)
     after = finer.states(end.t)
     pull = np.zeros(len(end.t)) if end.reached else problem.slopes(end.t, problem.states(end.t))
@@ -325,7 +304,17 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
     return OptimiseResult(
         model=numbers.model,
         numbers=tuple(rows),
-        lines=tuple(_margin_rows(problem, before, after)),
+        lines=tuple(
+            LayoutMargin(
+                line.name,
+                one.speed,
+                float(one.line_hz[k]),
+                *_nearest(one, k, problem),
+                *_nearest(other, k, problem),
+            )
+            for one, other in zip(before, after, strict=True)
+            for k, line in enumerate(problem.lines)
+        ),
         modes_before=tuple(_near_rows(problem, before)),
         modes_after=tuple(_near_rows(problem, after)),
         least_margin=problem.asked,
@@ -347,13 +336,6 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
     )
 
 
-def _on_finer_mesh(problem: Problem) -> Problem:
-    """The problem on a finer mesh and on maps of its own, by which it is judged."""
-    plan = problem.plan
-    finer = Plan(2 * plan.elements, plan.order) if plan.order == 1 else Plan(plan.elements, plan.order + 1)
-    return replace(problem, plan=finer, own_maps=True, solutions=0, gradients=0)
-
-
 def _change_of_mesh(
     problem: Problem, layouts: Iterable[tuple[NDArray[np.float64], list[ModesAtSpeed]]]
 ) -> tuple[float, str]:
@@ -369,16 +351,6 @@ def _change_of_mesh(
                 if min(one, other) < _NEAR * problem.asked:
                     largest = max(largest, (abs(one - other), line.name))
     return largest
-
-
-def _margin_rows(problem: Problem, before: list[ModesAtSpeed], after: list[ModesAtSpeed]) -> list[LayoutMargin]:
-    rows = []
-    for first, second in zip(before, after, strict=True):
-        for k, line in enumerate(problem.lines):
-            one = _nearest(first, k, problem)
-            other = _nearest(second, k, problem)
-            rows.append(LayoutMargin(line.name, first.speed, float(first.line_hz[k]), *one, *other))
-    return rows
 
 
 def _near_rows(problem: Problem, states: list[ModesAtSpeed]) -> list[LayoutMode]:

@@ -56,7 +56,16 @@ def bounds_of(
     for j, address in enumerate(numbers.addresses):
         place = address.endswith(".at")
         if j in texts or not place:
-            low[j], high[j] = _parsed(numbers, j, texts.get(j, DEFAULT_BOUNDS))
+            text = texts.get(j, DEFAULT_BOUNDS)
+            if text.count(":") != 1:
+                raise AnalysisError(f"bounds of {address}: got '{text}', expected LOW:HIGH such as '-20 %:20 %'")
+            ends = []
+            for end in map(str.strip, text.split(":")):
+                # A share is added to the value.
+                share = end.endswith("%")
+                size = numbers.size(j, end.lstrip("+-") if share else end, "bounds")
+                ends.append(numbers.start[j] + (-size if end.startswith("-") else size) if share else size)
+            low[j], high[j] = ends
         else:
             reach = _OF_SHAFT * _length(numbers.model, address)
             low[j] = numbers.start[j] - reach
@@ -87,20 +96,6 @@ def bounds_of(
     return low, high, tuple(notes)
 
 
-def _parsed(numbers: Numbers, j: int, text: str) -> tuple[float, float]:
-    ends = text.split(":")
-    if len(ends) != 2:
-        raise AnalysisError(f"bounds of {numbers.addresses[j]}: got '{text}', expected LOW:HIGH such as '-20 %:20 %'")
-    found = []
-    for end in ends:
-        own = end.strip()
-        share = own.endswith("%")
-        sign = -1.0 if own.startswith("-") and share else 1.0
-        size = numbers.size(j, own.lstrip("+-") if share else own, "bounds")
-        found.append(float(numbers.start[j]) + sign * size if share else size)
-    return found[0], found[1]
-
-
 def _length(model: Model, address: str) -> float:
     shaft = _shaft(model, address)
     return float(sum(section.length for section in model.shafts[shaft].sections))
@@ -125,7 +120,11 @@ def _room(model: Model, address: str, here: float) -> tuple[float, float]:
         for name, other in getattr(model, table).items():
             if f"{table}.{name}" == own or other.shaft != shaft:
                 continue
-            z, half = _span(other, first, last)
+            at = getattr(other, "at", 0.0)
+            z = first if at == "start" else last if at == "end" else float(at)
+            half = 0.5 * (getattr(other, "width", None) or 0.0)
+            if getattr(other, "kind", "") == "herringbone":
+                half = 2.0 * half + 0.5 * (getattr(other, "gap", None) or 0.0)
             if z - half <= here <= z + half:
                 continue  # it stands there already, as a disk on a bearing's place
             if z < here:
@@ -133,15 +132,6 @@ def _room(model: Model, address: str, here: float) -> tuple[float, float]:
             else:
                 high = min(high, max(z - half - apart, here))
     return low, high
-
-
-def _span(part: object, first: float, last: float) -> tuple[float, float]:
-    at = getattr(part, "at", 0.0)
-    z = first if at == "start" else last if at == "end" else float(at)
-    width = getattr(part, "width", None) or 0.0
-    if getattr(part, "kind", "") == "herringbone":
-        width = 2.0 * width + (getattr(part, "gap", None) or 0.0)
-    return z, 0.5 * width
 
 
 def _taken(numbers: Numbers, j: int, bound: float) -> float:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.request import FINEST
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
@@ -50,12 +51,7 @@ def aims(accuracy: float | None) -> Iterator[float | None]:
 
 def plan_of(result: ModalResult) -> Plan:
     """The plan that a modal result was refined to."""
-    number: dict[str, int] = {}
-    cut = {}
-    for piece in result.discretisation:
-        k = number[piece.shaft] = number.get(piece.shaft, -1) + 1
-        cut[piece.shaft, k] = (piece.elements, piece.order)
-    return Plan(START.elements, START.order, cut)
+    return Plan(START.elements, START.order, cut_of(result.discretisation))
 
 
 def at_speed(state: State, speed: float) -> State:

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.points import point_node
 from rotorgear.analysis.common.recorded import recorded
@@ -27,7 +28,7 @@ from rotorgear.analysis.rig.likeness import UNPAIRED, costs, mac, pairs_by_both
 from rotorgear.analysis.rig.measured import Measured, read_rig_shapes
 from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Misfit, approach, first_fit
 from rotorgear.analysis.rig.posterior import DEFAULT_PRIOR, LINE_NOISE, learnt_stiffnesses, spring_shares
-from rotorgear.analysis.rig.rig_model import CampaignModel, CampaignModes, RigModel, mesh_of
+from rotorgear.analysis.rig.rig_model import CampaignModel, CampaignModes, RigModel
 from rotorgear.analysis.rig.sensor_errors import sensor_doubts
 from rotorgear.analysis.sensitivity.derivatives import SPRINGS
 from rotorgear.errors import AnalysisError
@@ -163,7 +164,7 @@ def compare_shapes(
     # At standstill by what springs of 30 % may do, else by frequency and shape as they are.
     found = None
     if result.speed is None and result.dofs <= _MOST_DOFS:
-        found = identified_pairs(model, mesh_of(result), highest, given, tolerance)
+        found = identified_pairs(model, Plan(cut=cut_of(result.discretisation)), highest, given, tolerance)
     pairs = [(line, mode) for line, mode in found or () if mode < len(modes.hz)]
     # Lines that no springs bring to a mode, because a sensor is wrong or the model is, go by the modes that are left as they are.
     lines = np.setdiff1d(np.arange(len(rig_hz)), [line for line, _ in pairs])

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.modal.solve import Wanted, solve
@@ -18,25 +19,13 @@ from rotorgear.analysis.sensitivity.forms import Shapes
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import FreeNumbers
-from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 
 def plan_of(model: Model, fmax: float, accuracy: float | None) -> Plan:
     """The mesh on which all modes up to `fmax` are within an accuracy."""
-    return mesh_of(modal(model, fmax=fmax, accuracy=accuracy))
-
-
-def mesh_of(result: ModalResult) -> Plan:
-    """The mesh that modes were found on."""
-    cut = {}
-    counted: dict[str, int] = {}
-    for piece in result.discretisation:
-        number = counted.get(piece.shaft, 0)
-        counted[piece.shaft] = number + 1
-        cut[piece.shaft, number] = (piece.elements, piece.order)
-    return Plan(cut=cut)
+    return Plan(cut=cut_of(modal(model, fmax=fmax, accuracy=accuracy).discretisation))
 
 
 @dataclass(frozen=True)

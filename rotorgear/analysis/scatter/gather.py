@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.samples import Study, nearest_margin
+from rotorgear.analysis.scatter.samples import Study, frequency_slopes, nearest_margin, share_slopes, shares_at
 from rotorgear.analysis.sensitivity.forms import participations
 from rotorgear.results.scatter import (
     HIGH,
@@ -24,33 +22,33 @@ from rotorgear.solvers.sampling import SobolIndices, sobol_indices
 Values = dict[str, NDArray[np.float64]]
 
 
-@dataclass(frozen=True)
-class Sampled:
-    """Samples and slopes.
+def gathered(
+    study: Study, Z: NDArray[np.float64], values: Values, samples: int, seed: int, least_margin: float
+) -> ScatterResult:
+    """Return the result, without what the verb alone knows.
 
-    Attributes:
+    Args:
+        study: what every sample was asked.
         Z: points (N, p): first those of the bands, then those of the Sobol indices.
         values: of each point: see `run_samples`.
         samples: how many points are of the bands.
-        slopes: d ln w / dz (m, p).
-        share_slopes: d share / dz (s, p).
         seed: of the bootstrap.
+        least_margin: for the share of samples below it.
     """
-
-    Z: NDArray[np.float64]
-    values: Values
-    samples: int
-    slopes: NDArray[np.float64]
-    share_slopes: NDArray[np.float64]
-    seed: int
-
-
-def gathered(study: Study, sampled: Sampled, least_margin: float, error: float) -> ScatterResult:
-    """Return the result, without what the verb alone knows."""
     spreads = study.family.spreads
-    of_bands = {name: value[: sampled.samples] for name, value in sampled.values.items()}
-    shares = _variance_shares(np.vstack([sampled.slopes, sampled.share_slopes]))
-    ranks = _ranks(sampled, len(spreads))
+    of_bands = {name: value[:samples] for name, value in values.items()}
+    slopes = np.vstack([frequency_slopes(study), share_slopes(study)])
+    # Shares of the numbers in the variance to first order.
+    square = slopes**2
+    total = square.sum(axis=1, keepdims=True)
+    shares = np.asarray(np.where(total > 0.0, square / np.where(total > 0.0, total, 1.0), 0.0))
+    # Sobol indices of ln f and of the shares; a mode that is not found at some point has none.
+    ranked = np.hstack([np.log(values["followed_hz"][samples:]), values["shares"][samples:]])
+    nothing = np.zeros((0, len(spreads)))
+    ranks = SobolIndices(nothing, nothing, nothing, nothing)
+    if len(ranked):
+        ranks = sobol_indices(ranked, len(spreads), seed)
+    how = "each sample assembled" if study.family.terms is None else "forms summed over the numbers"
     rows = zip(
         spreads.numbers.addresses,
         spreads.numbers.start,
@@ -66,13 +64,13 @@ def gathered(study: Study, sampled: Sampled, least_margin: float, error: float) 
         model=spreads.numbers.model,
         speed=study.family.speed,
         numbers=numbers,
-        bands=_bands(study, of_bands, sampled.slopes, shares, numbers),
+        bands=_bands(study, of_bands, slopes, shares, numbers),
         groups=_group_bands(study, of_bands),
         margins=_margin_bands(study, of_bands, least_margin),
-        shares=_share_bands(study, of_bands, sampled.share_slopes, shares[study.count :], numbers),
+        shares=_share_bands(study, of_bands, slopes[study.count :], shares[study.count :], numbers),
         least_margin=least_margin,
         sampling="",
-        z=sampled.Z[: sampled.samples],
+        z=Z[:samples],
         sample_hz=of_bands["followed_hz"],
         sample_margin=of_bands["margin"],
         sample_share=of_bands["shares"],
@@ -82,23 +80,12 @@ def gathered(study: Study, sampled: Sampled, least_margin: float, error: float) 
         sobol_first_error=ranks.first_error,
         sobol_total_error=ranks.total_error,
         basis_size=study.family.V.shape[1],
-        frequency_basis_error=error,
+        frequency_basis_error=0.0,
         checked_samples=0,
         failed=int(np.sum(np.all(np.isnan(of_bands["hz"]), axis=1))),
         dofs=study.family.V.shape[0],
-        method=_method(study),
+        method=f"modes in a basis of nominal modes and their derivatives, {how}",
     )
-
-
-def _method(study: Study) -> str:
-    how = "each sample assembled" if study.family.terms is None else "forms summed over the numbers"
-    return f"modes in a basis of nominal modes and their derivatives, {how}"
-
-
-def _variance_shares(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
-    square = slopes**2
-    total = square.sum(axis=1, keepdims=True)
-    return np.asarray(np.where(total > 0.0, square / np.where(total > 0.0, total, 1.0), 0.0))
 
 
 def _leading(shares: NDArray[np.float64], numbers: tuple[ScatteredNumber, ...]) -> tuple[str, float]:
@@ -172,8 +159,6 @@ def _share_bands(
     shares: NDArray[np.float64],
     numbers: tuple[ScatteredNumber, ...],
 ) -> tuple[ShareBand, ...]:
-    from rotorgear.analysis.scatter.samples import shares_at
-
     if not study.shared:
         return ()
     nominal = shares_at(study, np.zeros(len(study.family.spreads)))
@@ -187,13 +172,3 @@ def _share_bands(
         leading = _leading(shares[k], numbers)
         found.append(ShareBand(gear, mesh, float(nominal[k]), first, spread, float(low), float(high), *leading))
     return tuple(found)
-
-
-def _ranks(sampled: Sampled, numbers: int) -> SobolIndices:
-    """Sobol indices of ln f and of the shares; a mode that is not found at some point has none."""
-    at = slice(sampled.samples, None)
-    values = np.hstack([np.log(sampled.values["followed_hz"][at]), sampled.values["shares"][at]])
-    if not len(values):
-        nothing = np.zeros((0, numbers))
-        return SobolIndices(nothing, nothing, nothing, nothing)
-    return sobol_indices(values, numbers, sampled.seed)

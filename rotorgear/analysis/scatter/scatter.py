@@ -8,21 +8,27 @@ that holds nominal modes and what the numbers add to them, at a small share of t
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from itertools import chain
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.pool import Pool, in_order
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
+from rotorgear.analysis.common.request import (
+    check_request,
+    check_speed_is_fixed,
+    check_whole,
+    share_of,
+    speed_or_operating,
+)
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.scatter.family import Family, basis_of, family_of, nominal_modes, whole_modes
-from rotorgear.analysis.scatter.gather import Sampled, gathered
-from rotorgear.analysis.scatter.samples import SPARE, Study, frequency_slopes, groups_of, run_samples, share_slopes
+from rotorgear.analysis.scatter.family import basis_of, family_of, nominal_modes, whole_modes
+from rotorgear.analysis.scatter.gather import gathered
+from rotorgear.analysis.scatter.samples import SPARE, Study, groups_of, run_samples
 from rotorgear.analysis.sensitivity.forms import FormNames, modes_of, with_shapes
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import linear_system, state_at
@@ -52,27 +58,6 @@ _PILOTS = 64
 _WIDE = 2
 # An elastic motion lies above this share of the first elastic frequency.
 _LEAST = 1e-3
-
-
-@dataclass(frozen=True)
-class Request:
-    """How a scatter is sampled: see `scatter`."""
-
-    samples: int
-    sampling: str
-    seed: int
-    sobol: int
-
-    def __post_init__(self) -> None:
-        check_whole("the number of samples", self.samples)
-        check_whole("the number of base points (sobol)", self.sobol, 0)
-        check_whole("the seed", self.seed, 0)
-        if not 2 <= self.samples <= _MOST_SAMPLES:
-            raise AnalysisError(f"samples: got {self.samples}, expected 2 to {_MOST_SAMPLES}")
-        if self.sampling not in SAMPLINGS:
-            raise AnalysisError(f"sampling: got '{self.sampling}', expected {', '.join(SAMPLINGS)}")
-        if not (self.sobol == 0 or 8 <= self.sobol <= _MOST_SAMPLES):
-            raise AnalysisError(f"sobol: got {self.sobol}, expected 0 (none) or 8 and more base points")
 
 
 @recorded
@@ -129,35 +114,60 @@ def scatter(
         AnalysisError: a request that makes no sense; numbers that move a place past another one.
         ModelError: addresses that lead nowhere, sizes that a number can't have.
     """
-    request = Request(samples, sampling, seed, sobol)
-    at = speed_in_si(speed)
-    if at is None and model.operation:
-        at = model.operation.speed
+    check_whole("the number of samples", samples)
+    check_whole("the number of base points (sobol)", sobol, 0)
+    check_whole("the seed", seed, 0)
+    if not 2 <= samples <= _MOST_SAMPLES:
+        raise AnalysisError(f"samples: got {samples}, expected 2 to {_MOST_SAMPLES}")
+    if sampling not in SAMPLINGS:
+        raise AnalysisError(f"sampling: got '{sampling}', expected {', '.join(SAMPLINGS)}")
+    if not (sobol == 0 or 8 <= sobol <= _MOST_SAMPLES):
+        raise AnalysisError(f"sobol: got {sobol}, expected 0 (none) or 8 and more base points")
+    at = speed_or_operating(speed, model)
     check_request(at, modes, None, elements, accuracy)
-    least_margin = _share(margin, "margin")
-    if not 0.0 < participation < 1.0:
-        raise AnalysisError(f"participation: got {participation:g}, expected a share between 0 and 1, such as 0.01")
+    least_margin = share_of(margin, "margin")
+    share_of(participation, "participation", "0.01")
     spreads = spreads_of(model, _given(model, free, sigma, tolerance, distribution, sharing))
     check_speed_is_fixed(spreads.numbers.addresses, "--speed, and compare runs")
     begun = clock.perf_counter()
     with single_thread(0):
-        plan = Plan(elements) if elements else _plan_of(model, at, modes + SPARE, accuracy)
-        Z = np.vstack([_points(spreads, request), _ranking_points(spreads, request)])
+        plan = Plan(elements or 1)
+        if not elements:
+            # All these modes are to be within the accuracy, beside all rigid ones where these are more than the spare ones.
+            asked = modes + SPARE
+            found = modal(model, modes=asked, speed=at, accuracy=accuracy)
+            while len(found.rigid) == asked and np.count_nonzero(~found.rigid) < modes:
+                asked = 2 * asked
+                found = modal(model, modes=asked, speed=at, accuracy=accuracy)
+            plan = Plan(cut=cut_of(found.discretisation))
+        count = len(spreads)
+        Z = spreads.coordinates(unit_points(sampling, samples, count, seed))
+        if sobol:
+            # Points of the Sobol indices are from a sequence of their own.
+            Z = np.vstack([Z, spreads.coordinates(design(unit_points("sobol", sobol, 2 * count, seed + 1)))])
         study, error, checked, lines_left = _study(
-            spreads, at, plan, modes, participation, sharing, Z[: request.samples], part_of(progress, 0.05, 0.3)
+            spreads, at, plan, modes, participation, sharing, Z[:samples], part_of(progress, 0.05, 0.3)
         )
         laps = {"basis": clock.perf_counter() - begun}
         settings = {
             "model": model_hash(model),
-            "run": f"{request} {spreads.size} {spreads.numbers.addresses} {modes} {at} {plan} "
+            "run": f"{samples} {sampling} {seed} {sobol} {spreads.size} {spreads.numbers.addresses} {modes} {at} {plan} "
             f"{spreads.distribution} {participation} {sharing}",
         }
-        values = _run(study, Z, settings, stream, workers, executor, part_of(progress, 0.3, 1.0))
+        # Blocks that an interrupted run kept are taken over.
+        blocks = list(stream.begin(settings)) if stream else []
+        starts = range(0, len(Z), _BLOCK)
+        tasks = ((study, Z[k : k + _BLOCK]) for k in starts[len(blocks) :])
+        for block in in_order(run_samples, tasks, workers, executor):
+            if stream:
+                stream.write(block)
+            blocks.append(block)
+            part_of(progress, 0.3, 1.0)(
+                len(blocks) / len(starts), f"{min(len(blocks) * _BLOCK, len(Z))} of {len(Z)} samples"
+            )
+        values = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
         laps["samples"] = clock.perf_counter() - begun - laps["basis"]
-        slopes = frequency_slopes(study)
-        sharing_slopes = share_slopes(study)
-    sampled = Sampled(Z, values, request.samples, slopes, sharing_slopes, request.seed)
-    result = gathered(study, sampled, least_margin, error)
+        result = gathered(study, Z, values, samples, seed, least_margin)
     laps["total"] = clock.perf_counter() - begun
     notes = (
         "damping: natural frequencies are those of the undamped rotating system",
@@ -169,7 +179,15 @@ def scatter(
         ),
     )
     progress(1.0, "done")
-    return replace(result, sampling=sampling, left_out=notes, seconds=laps, model=model, checked_samples=checked)
+    return replace(
+        result,
+        sampling=sampling,
+        left_out=notes,
+        seconds=laps,
+        model=model,
+        checked_samples=checked,
+        frequency_basis_error=error,
+    )
 
 
 def _given(
@@ -208,45 +226,6 @@ def _given(
     return found
 
 
-def _share(value: float | str, what: str) -> float:
-    from rotorgear.quantity import QuantityError, parse_quantity
-
-    try:
-        share = parse_quantity(value, "ratio")
-    except QuantityError:
-        share = -1.0
-    if not 0.0 < share < 1.0:
-        raise AnalysisError(f"{what}: got '{value}', expected a share between 0 and 1, such as '15 %'")
-    return share
-
-
-def _plan_of(model: Model, speed: float | None, modes: int, accuracy: float | None) -> Plan:
-    """The mesh on which so many modes are within an accuracy, beside all rigid ones where these are more than the spare ones."""
-    found = modal(model, modes=modes, speed=speed, accuracy=accuracy)
-    asked = modes
-    while len(found.rigid) == asked and np.count_nonzero(~found.rigid) < modes - SPARE:
-        asked = 2 * asked
-        found = modal(model, modes=asked, speed=speed, accuracy=accuracy)
-    cut = {}
-    counted: dict[str, int] = {}
-    for piece in found.discretisation:
-        number = counted.get(piece.shaft, 0)
-        counted[piece.shaft] = number + 1
-        cut[piece.shaft, number] = (piece.elements, piece.order)
-    return Plan(cut=cut)
-
-
-def _points(spreads: Spreads, request: Request) -> NDArray[np.float64]:
-    return spreads.coordinates(unit_points(request.sampling, request.samples, len(spreads), request.seed))
-
-
-def _ranking_points(spreads: Spreads, request: Request) -> NDArray[np.float64]:
-    """Points of the Sobol indices, from an own sequence."""
-    if not request.sobol:
-        return np.zeros((0, len(spreads)))
-    return spreads.coordinates(design(unit_points("sobol", request.sobol, 2 * len(spreads), request.seed + 1)))
-
-
 def _study(
     spreads: Spreads,
     speed: float | None,
@@ -272,10 +251,17 @@ def _study(
         family = family_of(spreads, speed, plan, V, part_of(progress, 0.2, 0.8))
         # What the basis was not made from: halves take turns, so that no sample that it grew by judges it.
         judges = outer[round_number % 2 :: 2]
-        error, shapes = _error_of(family, judges, modes, least, wide)
+        error = 0.0
+        shapes = []
+        for z in judges:
+            there = modes_of(family.at(z), modes, least, wide)
+            omega, whole = whole_modes(family, z, there)
+            error = max(error, float(np.max(np.abs(there.omega / omega - 1.0))))
+            shapes.append(whole)
         if error <= _REDUCTION_ERROR or round_number == _ROUNDS - 1:
             break
-        V = with_shapes(system.mass, V, np.hstack([shapes.real, shapes.imag]))
+        more = np.hstack(shapes)
+        V = with_shapes(system.mass, V, np.hstack([more.real, more.imag]))
     nominal = modes_of(family.nominal, modes + SPARE, least, wide)
     lines: tuple[ExcitationOrder, ...] = excitation_orders(model) if speed else ()
     top = float(nominal.omega[min(modes, len(nominal.omega)) - 1]) / (2.0 * np.pi)
@@ -303,47 +289,3 @@ def _study(
         shared,
     )
     return replace(study, groups=groups_of(study, Z[:_PILOTS])), error, len(judges), notes
-
-
-def _error_of(
-    family: Family, judges: NDArray[np.float64], modes: int, least: float, wide: int
-) -> tuple[float, NDArray[np.complex128]]:
-    """Largest relative error of a frequency at some samples, and the shapes of the whole system there (n, k)."""
-    worst = 0.0
-    shapes = []
-    for z in judges:
-        found = modes_of(family.at(z), modes, least, wide)
-        omega, whole = whole_modes(family, z, found)
-        worst = max(worst, float(np.max(np.abs(found.omega / omega - 1.0))))
-        shapes.append(whole)
-    return worst, np.hstack(shapes)
-
-
-def _run(
-    study: Study,
-    Z: NDArray[np.float64],
-    settings: dict[str, str],
-    stream: Stream | None,
-    workers: int | None,
-    executor: Pool | None,
-    progress: Progress,
-) -> dict[str, NDArray[np.float64]]:
-    """Values of all samples; blocks that an interrupted run kept are taken over."""
-    kept = stream.begin(settings) if stream else []
-    starts = range(0, len(Z), _BLOCK)
-    tasks = ((study, Z[k : k + _BLOCK]) for k in starts[len(kept) :])
-    fresh = _kept_as_they_come(in_order(run_samples, tasks, workers, executor), stream)
-    blocks = []
-    for block in chain(kept, fresh):
-        blocks.append(block)
-        progress(len(blocks) / len(starts), f"{min(len(blocks) * _BLOCK, len(Z))} of {len(Z)} samples")
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-
-
-def _kept_as_they_come(
-    blocks: Iterator[dict[str, NDArray[np.float64]]], stream: Stream | None
-) -> Iterator[dict[str, NDArray[np.float64]]]:
-    for block in blocks:
-        if stream:
-            stream.write(block)
-        yield block
