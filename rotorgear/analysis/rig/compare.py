@@ -245,7 +245,9 @@ def compare_lines(
             if row not in pairs
         ),
         unmatched_modes=tuple(
-            UnmatchedMode(int(mode) + 1, float(frequency[mode]), descriptions[mode], driving(float(frequency[mode])))
+            UnmatchedMode(
+                int(mode) + 1, float(frequency[mode]), descriptions[int(mode)], driving(float(frequency[mode]))
+            )
             for mode in elastic
             if mode not in taken and low <= frequency[mode] <= high
         ),
