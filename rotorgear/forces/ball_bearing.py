@@ -14,7 +14,7 @@ Several rows share the bearing: row r stands at l_r along the shaft and takes a 
     u = (x + l_r ty) cos phi + (y - l_r tx) sin phi,   A sin a0 -> sigma_r A sin a0
 
 so that two rows make a pair in O arrangement, where the lines of contact meet the axis outside of the pair, in X or in tandem
-(rows.py). A four-point bearing has both sides in one place; each ball then presses across either diagonal by itself.
+(rolling.py). A four-point bearing has both sides in one place; each ball then presses across either diagonal by itself.
 
 ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology 111 (1989) 142.
 """
@@ -27,24 +27,22 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.optimize import brentq
 
-from rotorgear.forces.hertz import point_contact, point_pressure
 from rotorgear.forces.inside import RollingLoads
-from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
-from rotorgear.forces.rows import rows_of
-from rotorgear.solvers.time.compiled import force_function, schedule_function
+from rotorgear.forces.law import parameter, refuse
+from rotorgear.forces.rolling import (
+    CAGE,
+    CAGE_SPEED,
+    TURN,
+    RollingElements,
+    point_contact,
+    point_pressure,
+    rows_of,
+    schedule,
+)
+from rotorgear.solvers.time.compiled import force_function
 
-_COMPONENTS = 5
-TURN = 2.0 * np.pi
-# Of the parameters; and of the state.
-BALLS, CONTACT, DISTANCE, RADIAL, AXIAL, ORDER, PHASE, ARM, ROWS, FIRST = range(10)  # then place and side of each row
-CAGE, CAGE_SPEED = range(2)
-
-
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Fill the angle of the first ball, and the speed of the cage."""
-    s[CAGE] = p[ORDER] * angle + p[PHASE]
-    s[CAGE_SPEED] = p[ORDER] * speed
+# Of the parameters behind those of the cage; then place and side of each row.
+BALLS, CONTACT, DISTANCE, RADIAL, AXIAL, ARM, ROWS, FIRST = range(2, 10)
 
 
 @force_function
@@ -110,11 +108,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True)
-class BallBearing(ForceLaw):
-    """Ball bearing with five relative displacements: x, y, z of the inner ring against the outer one, and tilts about x and y."""
+class BallBearing(RollingElements):
+    """Ball bearing of one or two rows, or of four points."""
 
     title: ClassVar[str] = "ball bearing"
-    conserves: ClassVar[bool] = True
 
     balls: int = parameter("", "number of balls Z", least=3)
     ball_diameter: float = parameter("m", "diameter D_w of a ball", above=0.0)
@@ -139,7 +136,7 @@ class BallBearing(ForceLaw):
         "m", "displacement along z by which the rings are pressed together when the shaft is at 0; with a sign", 0.0
     )
     reference: tuple[float, ...] = parameter(
-        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
+        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * 5
     )
     arrangement: str = parameter(
         "", "rows and the sides that they press to", "single", choices=("single", "O", "X", "tandem", "four-point")
@@ -156,9 +153,9 @@ class BallBearing(ForceLaw):
             raise refuse(self, "clearance", "less than what parts the grooves")
 
     @property
-    def components(self) -> int:
-        """Five."""
-        return _COMPONENTS
+    def elements(self) -> int:
+        """Z."""
+        return self.balls
 
     @property
     def distance(self) -> float:
@@ -168,9 +165,7 @@ class BallBearing(ForceLaw):
     @property
     def contact_constant(self) -> float:
         """c_p in N/m^1.5, as given or by Hertz."""
-        if self.contact:
-            return self.contact
-        return point_contact(*self._contacts)
+        return self.contact or point_contact(*self._contacts)
 
     @property
     def _contacts(self) -> tuple[float, ...]:
@@ -185,44 +180,26 @@ class BallBearing(ForceLaw):
             self.poisson_ratio,
         )
 
-    @property
-    def uses_velocity(self) -> bool:
-        """Deflections only."""
-        return False
-
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return schedule, force
 
-    def state_size(self) -> int:
-        """Angle and speed of the cage."""
-        return 2
-
     def parameters(self) -> np.ndarray:
-        """Z, c_p, A, A cos a0, A sin a0, order, phase, R_i, number of rows, and place and side of each."""
+        """Order, phase, Z, c_p, A, A cos a0, A sin a0, R_i, number of rows, and place and side of each."""
         A = self.distance
         a0 = self.contact_angle
         radial = A * np.cos(a0) - 0.5 * self.clearance
         axial = A * np.sin(a0)
         arm = 0.5 * self.pitch_diameter + (self.inner_groove - 0.5) * self.ball_diameter * radial / A
         rows = rows_of(self.arrangement, self.row_distance)
-        own = [
-            self.balls,
-            self.contact_constant,
-            A,
-            radial,
-            axial + self.preload,
-            self.order,
-            self.phase,
-            arm,
-            len(rows),
-        ]
-        return np.array([*own, *(value for row in rows for value in row)])
+        cage = [self.order, self.phase, self.balls]
+        own = [self.contact_constant, A, radial, axial + self.preload, arm, len(rows)]
+        return np.array([*cage, *own, *(value for row in rows for value in row)])
 
     def pressed_by(self, force: float) -> BallBearing:
         """The bearing with the preload that a force in N along its contact angle gives."""
         A = self.distance
-        radial = self.parameters()[3]
+        radial = self.parameters()[RADIAL]
         axial = A * np.sin(self.contact_angle)
         side = -1.0 if self.contact_angle < 0.0 else 1.0
 
@@ -233,25 +210,10 @@ class BallBearing(ForceLaw):
 
         return replace(self, preload=side * float(brentq(rest, 0.0, 2.0 * A, xtol=1e-16)))
 
-    def reference_stiffness(self) -> np.ndarray:
-        """The linear stiffness that is given with the bearing."""
-        return np.diag(self.reference)
-
-    def repeats(self) -> tuple[Repeats, ...]:
-        """The cage, which repeats with nothing else."""
-        return (Repeats(abs(self.order), common=False),) if self.order else ()
-
-    def cycle(self) -> float:
-        """From one ball to the next."""
-        return 2.0 * np.pi / (self.balls * abs(self.order)) if self.order else 0.0
-
     def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads:
         """Loads, contact angles and pressures of the balls at displacements d (5,), with the cage where it is at an angle."""
-        _, _, A, radial, axial, _, _, arm, _ = self.parameters()[:FIRST]
-        rows = rows_of(self.arrangement, self.row_distance)
-        one = np.mod(self.order * angle + self.phase + TURN * np.arange(self.balls) / self.balls, TURN)
-        phi = np.tile(one, len(rows))
-        place, side = np.repeat(np.array(rows), self.balls, axis=0).T
+        A, radial, axial, arm = self.parameters()[DISTANCE:ROWS]
+        row, phi, place, side = self.places(angle, rows_of(self.arrangement, self.row_distance))
         c = np.cos(phi)
         n = np.sin(phi)
         tilt = n * d[3] - c * d[4]
@@ -260,7 +222,6 @@ class BallBearing(ForceLaw):
         delta = np.hypot(across, along) - A
         load = self.contact_constant * np.maximum(delta, 0.0) ** 1.5
         inner, outer = point_pressure(load, *self._contacts)
-        row = np.repeat(np.arange(1, len(rows) + 1), self.balls)
         return RollingLoads(row, phi, np.where(delta > 0.0, np.arctan2(along, across), 0.0), load, delta, inner, outer)
 
     @classmethod

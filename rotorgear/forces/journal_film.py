@@ -14,12 +14,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.film_flow import power_loss, side_flow
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_oil import JournalOil
 from rotorgear.forces.journal_pressure import AROUND, FIRST, force, pad_film, schedule
 from rotorgear.forces.law import parameter, refuse
-from rotorgear.forces.oil_film import TURN
+from rotorgear.forces.oil_film import TURN, JournalOil, power_loss, side_flow
 
 
 @dataclass(frozen=True)

@@ -154,8 +154,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         k[2] += turned_y * -y / size
         k[3] += turned_y * x / size
     energy[0] = add_wall(d, place, p[WALL], film, k, F, Kd)
-    for i in range(4):
-        Kv[i] = c[i]
+    Kv[:] = c
     # What the film takes up: the journal turns it in at omega/2 beside the motion of its centre.
     turning = 0.5 * omega * (film[0] * y - film[1] * x)
     energy[1] = turning

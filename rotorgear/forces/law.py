@@ -62,7 +62,7 @@ from rotorgear.solvers.time.local_forces import Repeats
 if TYPE_CHECKING:
     from rotorgear.forces.inside import OilField, RollingLoads
 
-__all__ = ["ForceLaw", "LawValue", "LawValues", "Linearised", "Parameter", "Repeats", "parameter", "refuse"]
+__all__ = ["ForceLaw", "LawValue", "Linearised", "Parameter", "Repeats", "parameter", "refuse"]
 
 
 @dataclass(frozen=True)
@@ -141,28 +141,18 @@ def parameter(
 
 @dataclass(frozen=True)
 class LawValue:
-    """Force (k,), its tangents in d and v (k, k), stored energy, powers put in and dissipated, and the state of contact."""
+    """Force (k,), its tangents in d and v (k, k), stored energy, powers put in and dissipated, and the state of contact.
+
+    At r instants each of them has one axis more in front, (r, k) and so on.
+    """
 
     force: np.ndarray
     in_displacement: np.ndarray
     in_velocity: np.ndarray
-    stored: float
-    power_in: float
-    dissipated: float
-    contact: int
-
-
-@dataclass(frozen=True)
-class LawValues:
-    """The same at r instants: force (r, k), tangents (r, k, k), energies and powers (r,), state of contact (r,)."""
-
-    force: np.ndarray
-    in_displacement: np.ndarray
-    in_velocity: np.ndarray
-    stored: np.ndarray
-    power_in: np.ndarray
-    dissipated: np.ndarray
-    contact: np.ndarray
+    stored: Any
+    power_in: Any
+    dissipated: Any
+    contact: Any
 
 
 @dataclass(frozen=True)
@@ -391,7 +381,7 @@ class ForceLaw(ABC):
         stored, power_in, dissipated, contact = map(float, energy)
         return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), stored, power_in, dissipated, int(contact))
 
-    def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValues:
+    def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValue:
         """`evaluate` at r instants in one compiled loop: d and v (r, k); time, angle and speed (r,) or the same for all."""
         from rotorgear.solvers.time.arguments import Answer, Instants
         from rotorgear.solvers.time.kernel_contact import evaluate_instants, no_force, no_schedule
@@ -414,7 +404,7 @@ class ForceLaw(ABC):
             answer,
         )
         stored, power_in, dissipated, contact = answer.energy.T
-        return LawValues(
+        return LawValue(
             answer.F,
             answer.Kd.reshape(r, k, k),
             answer.Kv.reshape(r, k, k),

@@ -44,7 +44,7 @@ from rotorgear.forces.loaded_map import (
     TANGENT,
     LoadedMap,
 )
-from rotorgear.forces.mesh_contact import DAMPINGS
+from rotorgear.forces.mesh_contact import DAMPINGS, pairs
 from rotorgear.solvers.contact.gap_contact import curve_contact
 from rotorgear.solvers.contact.kinds import PENETRATION
 from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
@@ -85,6 +85,9 @@ FLANK_STATE = ABOUT + ROW * NEAREST
 # Of the tilts on both sides of one: number of the first, shares a of their energies and b of their moments in W, and what these
 # shares change by with the tilt, once and twice.
 Between = namedtuple("Between", "first a b a_slope b_slope a_bend b_bend")
+# Of the map: dW/dx and its slope, dW/d d_2 and its slopes in x and in the tilt, k_t and its slopes in x and in the tilt, W, and
+# the rate of W as the flanks pass.
+Mapped = namedtuple("Mapped", "force stiffness moment coupling against_tilt carries bend turn stored driven")
 
 
 @compiled(entry=False)
@@ -168,6 +171,57 @@ def between_tilts(p, tilts, count, tilt):  # type: ignore[no-untyped-def]
     return Between(k, a, b, a_slope, b_slope, a_bend, b_bend)
 
 
+@compiled(inner=True)
+def mapped(p, s, near, depth, tilts, steps, node):  # type: ignore[no-untyped-def]
+    """What the map has at a depth of x beyond the first touch: linear in x, cubic between positions and between tilts."""
+    h = p[SPACING]
+    i = min(int(depth / h), steps - 1) if depth < steps * h else steps - 1
+    past = depth - i * h
+    elastic = 0.0
+    stiffness = 0.0
+    moment = 0.0
+    coupling = 0.0
+    against_tilt = 0.0
+    carries = 0.0
+    bend = 0.0
+    turn = 0.0
+    stored = 0.0
+    driven = 0.0
+    for row in range(NEAREST):
+        about = ABOUT + ROW * row
+        weight = s[about + WEIGHT]
+        for k in range(2 if tilts else 1):
+            a = near.a[k]
+            b = near.b[k]
+            at = int(s[about + BEGIN]) + 1 + node * ((near.first + k) * (steps + 1) + i)
+            slope = (p[at + node + FORCE] - p[at + FORCE]) / h
+            pushed = p[at + FORCE] + slope * past
+            work = p[at + ENERGY] + p[at + FORCE] * past + 0.5 * slope * past * past
+            steeper = (p[at + node + TANGENT] - p[at + TANGENT]) / h if past <= h else 0.0
+            tangent = p[at + TANGENT] + steeper * past if past <= h else p[at + node + TANGENT]
+            lift = 0.0
+            lift_slope = 0.0
+            turned = 0.0
+            if tilts:
+                lift_slope = (p[at + node + LIFT] - p[at + LIFT]) / h if past <= h else 0.0
+                lift = p[at + LIFT] + lift_slope * past if past <= h else p[at + node + LIFT]
+                turned = p[at + MOMENT] + p[at + LIFT] * past + 0.5 * lift_slope * past * past
+                if past > h:
+                    turned = p[at + node + MOMENT] + lift * (past - h)
+                moment += weight * (near.a_slope[k] * work + near.b_slope[k] * turned)
+                coupling += weight * (near.a_slope[k] * pushed + near.b_slope[k] * lift)
+                against_tilt += weight * (near.a_bend[k] * work + near.b_bend[k] * turned)
+                turn += weight * near.a_slope[k] * tangent
+            elastic += weight * (a * pushed + b * lift)
+            stiffness += weight * (a * slope + b * lift_slope)
+            carries += weight * a * tangent
+            bend += weight * a * steeper
+            kept = a * work + b * turned
+            stored += weight * kept
+            driven += s[about + RATE] * kept
+    return Mapped(elastic, stiffness, moment, coupling, against_tilt, carries, bend, turn, stored, driven)
+
+
 def _force(tilts):  # type: ignore[no-untyped-def]
     """The compiled force of flanks that tilt, or of others: one text with other constants.
 
@@ -197,76 +251,31 @@ def _force(tilts):  # type: ignore[no-untyped-def]
                 place = p[behind + PLACE]
                 rate += place * (side * v[1])
                 near = between_tilts(p, behind + FIRST_TILT, int(p[behind + TILTS]), side * d[1])
-
             depth = max(x, 0.0)
-            h = p[SPACING]
-            i = min(int(depth / h), steps - 1) if depth < steps * h else steps - 1
-            past = depth - i * h
-            elastic = 0.0
-            stiffness = 0.0
-            moment = 0.0
-            coupling = 0.0
-            against_tilt = 0.0
-            carries = 0.0
-            bend = 0.0
-            turn = 0.0
-            stored = 0.0
-            driven = 0.0
-            for row in range(NEAREST):
-                about = ABOUT + ROW * row
-                weight = s[about + WEIGHT]
-                for k in range(2 if tilts else 1):
-                    a = near.a[k]
-                    b = near.b[k]
-                    at = int(s[about + BEGIN]) + 1 + node * ((near.first + k) * (steps + 1) + i)
-                    slope = (p[at + node + FORCE] - p[at + FORCE]) / h
-                    pushed = p[at + FORCE] + slope * past
-                    work = p[at + ENERGY] + p[at + FORCE] * past + 0.5 * slope * past * past
-                    steeper = (p[at + node + TANGENT] - p[at + TANGENT]) / h if past <= h else 0.0
-                    tangent = p[at + TANGENT] + steeper * past if past <= h else p[at + node + TANGENT]
-                    lift = 0.0
-                    lift_slope = 0.0
-                    turned = 0.0
-                    if tilts:
-                        lift_slope = (p[at + node + LIFT] - p[at + LIFT]) / h if past <= h else 0.0
-                        lift = p[at + LIFT] + lift_slope * past if past <= h else p[at + node + LIFT]
-                        turned = p[at + MOMENT] + p[at + LIFT] * past + 0.5 * lift_slope * past * past
-                        if past > h:
-                            turned = p[at + node + MOMENT] + lift * (past - h)
-                        moment += weight * (near.a_slope[k] * work + near.b_slope[k] * turned)
-                        coupling += weight * (near.a_slope[k] * pushed + near.b_slope[k] * lift)
-                        against_tilt += weight * (near.a_bend[k] * work + near.b_bend[k] * turned)
-                        turn += weight * near.a_slope[k] * tangent
-                    elastic += weight * (a * pushed + b * lift)
-                    stiffness += weight * (a * slope + b * lift_slope)
-                    carries += weight * a * tangent
-                    bend += weight * a * steeper
-                    kept = a * work + b * turned
-                    stored += weight * kept
-                    driven += s[about + RATE] * kept
+            at = mapped(p, s, near, depth, tilts, steps, node)
 
-            damping = p[PER_K] * carries
-            growth = p[PER_K] * bend
-            growth_tilt = p[PER_K] * turn
+            damping = p[PER_K] * at.carries
+            growth = p[PER_K] * at.bend
+            growth_tilt = p[PER_K] * at.turn
             if int(p[MODE]) == PENETRATION:
                 damping = p[C] * depth * p[PER_DEPTH]
                 growth = p[C] * p[PER_DEPTH]
                 growth_tilt = 0.0
-            now = curve_contact(int(p[MODE]), elastic, stiffness, damping, growth, x, rate)
+            now = curve_contact(int(p[MODE]), at.force, at.stiffness, damping, growth, x, rate)
             F[0] += side * now.force
             Kd[0] += now.stiffness
             Kv[0] += now.damping
-            energy[0] += stored
-            energy[1] += driven - now.force * s[E_RATE]
+            energy[0] += at.stored
+            energy[1] += at.driven - now.force * s[E_RATE]
             energy[2] += now.resisted * rate
             energy[3] += side * now.side
             if tilts:
                 holds = 1.0 if now.force != 0.0 else 0.0
-                in_tilt = holds * (coupling + growth_tilt * rate)
-                F[1] += side * (moment + place * (now.force - elastic))
+                in_tilt = holds * (at.coupling + growth_tilt * rate)
+                F[1] += side * (at.moment + place * (now.force - at.force))
                 Kd[1] += in_tilt
-                Kd[2] += coupling + place * (now.stiffness - stiffness)
-                Kd[3] += against_tilt + place * (in_tilt - coupling)
+                Kd[2] += at.coupling + place * (now.stiffness - at.stiffness)
+                Kd[3] += at.against_tilt + place * (in_tilt - at.coupling)
                 Kv[1] += now.damping * place
                 Kv[2] += now.damping * place
                 Kv[3] += now.damping * place * place
@@ -384,10 +393,7 @@ class LoadedTeeth(ForceLaw):
     @cached_property
     def _parameters(self) -> np.ndarray:
         # Kept: statics over a cycle evaluate one law a thousand times, and the whole map is copied into them.
-        count = max(len(self.error_cos), len(self.error_sin))
-        series = np.zeros((count, 2))
-        series[: len(self.error_cos), 0] = self.error_cos
-        series[: len(self.error_sin), 1] = self.error_sin
+        series = pairs(self.error_cos, self.error_sin)
         rows = self.loaded_map.rows
         head = np.zeros(SERIES)
         head[SPACING] = self.loaded_map.spacing
@@ -401,12 +407,12 @@ class LoadedTeeth(ForceLaw):
         head[FORWARD] = self.forward
         head[PERIODS] = self.periods
         head[ROWS], head[LENGTH] = rows.shape
-        head[HARMONICS] = count
+        head[HARMONICS] = len(series) // 2
         head[E_MEAN] = self.error_mean
         face = [self.place, len(self.tilt), *self.tilt] if self.tilt.size else []
         coast = np.zeros(0) if self.coast is None else self.coast.parameters()
-        head[COAST] = coast.size and SERIES + series.size + rows.size + len(face)
-        return np.concatenate([head, series.ravel(), rows.ravel(), face, coast])
+        head[COAST] = coast.size and SERIES + len(series) + rows.size + len(face)
+        return np.concatenate([head, series, rows.ravel(), face, coast])
 
     def parameters(self) -> np.ndarray:
         """Return head, series of e and rows of the map, place and tilts, and all these of the coast flanks behind."""

@@ -187,8 +187,8 @@ class MeshContact(ForceLaw):
 
     def parameters(self) -> np.ndarray:
         """Return head and tables in a row."""
-        k = _pairs(self.stiffness_cos, self.stiffness_sin)
-        e = _pairs(self.error_cos, self.error_sin)
+        k = pairs(self.stiffness_cos, self.stiffness_sin)
+        e = pairs(self.error_cos, self.error_sin)
         head = [
             self.stiffness,
             self.damping,
@@ -330,7 +330,7 @@ class MeshContact(ForceLaw):
         )
 
 
-def _pairs(cosines: tuple[float, ...], sines: tuple[float, ...]) -> list[float]:
+def pairs(cosines: tuple[float, ...], sines: tuple[float, ...]) -> list[float]:
     """a_1, b_1, a_2, b_2 ... with zeros for what is missing."""
     count = max(len(cosines), len(sines))
     padded = [(*series, *([0.0] * (count - len(series)))) for series in (cosines, sines)]

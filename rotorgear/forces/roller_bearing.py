@@ -13,22 +13,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.hertz import LINE_CONTACT, line_pressure
 from rotorgear.forces.inside import RollingLoads
-from rotorgear.forces.law import ForceLaw, Repeats, parameter
-from rotorgear.solvers.time.compiled import force_function, schedule_function
+from rotorgear.forces.law import parameter
+from rotorgear.forces.rolling import CAGE, CAGE_SPEED, LINE_CONTACT, TURN, RollingElements, line_pressure, schedule
+from rotorgear.solvers.time.compiled import force_function
 
-TURN = 2.0 * np.pi
-# Of the parameters; and of the state.
-ROLLERS, CONTACT, PLAY, ORDER, PHASE = range(5)
-CAGE, CAGE_SPEED = range(2)
-
-
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Fill the angle of the first roller, and the speed of the cage."""
-    s[CAGE] = p[ORDER] * angle + p[PHASE]
-    s[CAGE_SPEED] = p[ORDER] * speed
+# Of the parameters behind those of the cage.
+ROLLERS, CONTACT, PLAY = range(2, 5)
 
 
 @force_function
@@ -69,11 +60,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True)
-class RollerBearing(ForceLaw):
+class RollerBearing(RollingElements):
     """Cylindrical roller bearing with two relative displacements: x and y of the inner ring against the outer one."""
 
     title: ClassVar[str] = "cylindrical roller bearing"
-    conserves: ClassVar[bool] = True
 
     rollers: int = parameter("", "number of rollers Z", least=3)
     length: float = parameter("m", "effective length L of a roller", above=0.0)
@@ -85,51 +75,35 @@ class RollerBearing(ForceLaw):
     pitch_diameter: float = parameter("m", "pitch diameter, for the pressures; 0: not told", 0.0, least=0.0)
 
     @property
+    def elements(self) -> int:
+        """Z."""
+        return self.rollers
+
+    @property
     def components(self) -> int:
         """Two."""
         return 2
-
-    @property
-    def uses_velocity(self) -> bool:
-        """Deflections only."""
-        return False
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return schedule, force
 
-    def state_size(self) -> int:
-        """Angle and speed of the cage."""
-        return 2
-
     def parameters(self) -> np.ndarray:
-        """Z, c_l, s/2, order, phase."""
+        """Order, phase, Z, c_l, s/2."""
         constant = LINE_CONTACT * self.length ** (8.0 / 9.0)
-        return np.array([self.rollers, constant, 0.5 * self.clearance, self.order, self.phase])
-
-    def reference_stiffness(self) -> np.ndarray:
-        """The linear stiffness that is given with the bearing."""
-        return np.diag(self.reference)
-
-    def repeats(self) -> tuple[Repeats, ...]:
-        """The cage, which repeats with nothing else."""
-        return (Repeats(abs(self.order), common=False),) if self.order else ()
-
-    def cycle(self) -> float:
-        """From one roller to the next."""
-        return 2.0 * np.pi / (self.rollers * abs(self.order)) if self.order else 0.0
+        return np.array([self.order, self.phase, self.rollers, constant, 0.5 * self.clearance])
 
     def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads:
         """Loads and pressures of the rollers at displacements d (2,); pressures are NaN where the diameters are not told."""
-        _, constant, play, _, _ = self.parameters()
-        phi = np.mod(self.order * angle + self.phase + TURN * np.arange(self.rollers) / self.rollers, TURN)
+        constant, play = self.parameters()[CONTACT:]
+        row, phi, _, _ = self.places(angle, ((0.0, 1.0),))
         delta = d[0] * np.cos(phi) + d[1] * np.sin(phi) - play
         load = constant * np.maximum(delta, 0.0) ** (10.0 / 9.0)
         inner = outer = np.full(phi.size, np.nan)
         if self.roller_diameter and self.pitch_diameter:
             gamma = self.roller_diameter / self.pitch_diameter
             inner, outer = line_pressure(load, self.length, self.roller_diameter, gamma)
-        return RollingLoads(np.ones(phi.size), phi, np.zeros(phi.size), load, delta, inner, outer)
+        return RollingLoads(row, phi, np.zeros(phi.size), load, delta, inner, outer)
 
     @classmethod
     def examples(cls) -> tuple[RollerBearing, ...]:

@@ -12,8 +12,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.forces.rotating_force import force
 from rotorgear.solvers.lanes.columns import PRESCRIBED, PUSH, TABLE_ROWS, Column
-from rotorgear.solvers.time.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import schedule_function
 
 ORDER, OVER_ANGLE, COUNT, FIRST = range(4)  # of the parameters; then the places, then the values
 _TURN = 2.0 * np.pi
@@ -50,18 +51,6 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     s[0] = p[values + low] + (p[values + high] - p[values + low]) * share
 
 
-@force_function
-def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
-    """Prescribed force, whatever d and v are."""
-    F[0] = -s[0]
-    Kd[0] = 0.0
-    Kv[0] = 0.0
-    energy[0] = 0.0
-    energy[1] = s[0] * v[0]
-    energy[2] = 0.0
-    energy[3] = 0.0
-
-
 @dataclass(frozen=True)
 class TabulatedForce(ForceLaw):
     """Force along one direction from a table over time, or over the angle of a shaft."""
@@ -83,11 +72,6 @@ class TabulatedForce(ForceLaw):
             raise refuse(self, "values", "one for each place")
         if self.over_angle and not (self.places[0] >= 0.0 and self.places[-1] < _TURN):
             raise refuse(self, "places", "angles from 0 to below 2 pi")
-
-    @property
-    def uses_velocity(self) -> bool:
-        """Nothing but time or angle."""
-        return True
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""

@@ -7,9 +7,9 @@ along it, and presses with
     u = x_s cos phi + y_s sin phi,   psi = tx sin phi - ty cos phi,   Q = sum (c_l/n) delta^(10/9) where delta > 0
 
 for both rings together, c_l = 35948 L^(8/9) (N, mm; ISO/TS 16281:2008), R = D_pw/2, l and sigma the place of the row and the
-side of the push it takes (rows.py), s the radial play and p the preload. delta is linear in the displacements and F the gradient
-of the energy 9/19 sum (c_l/n) delta^(19/9): the law is conservative except for the motion of the rollers. With a = 0 it is the
-cylindrical bearing of roller_bearing.py, which resists tilting.
+side of the push it takes (rolling.py), s the radial play and p the preload. delta is linear in the displacements and F the
+gradient of the energy 9/19 sum (c_l/n) delta^(19/9): the law is conservative except for the motion of the rollers. With a = 0 it
+is the cylindrical bearing of roller_bearing.py, which resists tilting.
 """
 
 from __future__ import annotations
@@ -19,24 +19,22 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.hertz import LINE_CONTACT, line_pressure
 from rotorgear.forces.inside import RollingLoads
-from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
-from rotorgear.forces.rows import rows_of
-from rotorgear.solvers.time.compiled import force_function, schedule_function
+from rotorgear.forces.law import parameter, refuse
+from rotorgear.forces.rolling import (
+    CAGE,
+    CAGE_SPEED,
+    LINE_CONTACT,
+    TURN,
+    RollingElements,
+    line_pressure,
+    rows_of,
+    schedule,
+)
+from rotorgear.solvers.time.compiled import force_function
 
-_COMPONENTS = 5
-TURN = 2.0 * np.pi
-# Of the parameters, then place and side of each row; and of the state.
-ROLLERS, CONTACT, PLAY, COSINE, SINE, PRELOAD, ARM, LENGTH, SLICES, ORDER, PHASE, ROWS, FIRST = range(13)
-CAGE, CAGE_SPEED = range(2)
-
-
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Fill the angle of the first roller, and the speed of the cage."""
-    s[CAGE] = p[ORDER] * angle + p[PHASE]
-    s[CAGE_SPEED] = p[ORDER] * speed
+# Of the parameters behind those of the cage; then place and side of each row.
+ROLLERS, CONTACT, PLAY, COSINE, SINE, PRELOAD, ARM, LENGTH, SLICES, ROWS, FIRST = range(2, 13)
 
 
 @force_function
@@ -91,11 +89,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True)
-class TaperedBearing(ForceLaw):
-    """Roller bearing with five relative displacements: x, y, z of the inner ring against the outer one, tilts about x and y."""
+class TaperedBearing(RollingElements):
+    """Roller bearing of one or two rows, whose loads vary along its rollers."""
 
     title: ClassVar[str] = "tapered roller bearing"
-    conserves: ClassVar[bool] = True
 
     rollers: int = parameter("", "number of rollers Z of a row", least=3)
     length: float = parameter("m", "effective length L of a roller", above=0.0)
@@ -112,7 +109,7 @@ class TaperedBearing(ForceLaw):
     order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
     phase: float = parameter("rad", "angle of a roller at angle 0", 0.0)
     reference: tuple[float, ...] = parameter(
-        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
+        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * 5
     )
     arrangement: str = parameter(
         "", "rows and the sides that they press to", "single", choices=("single", "O", "X", "tandem")
@@ -127,14 +124,9 @@ class TaperedBearing(ForceLaw):
             raise refuse(self, "contact_angle", "above 0 where rows press to both sides or together")
 
     @property
-    def components(self) -> int:
-        """Five."""
-        return _COMPONENTS
-
-    @property
-    def uses_velocity(self) -> bool:
-        """Deflections only."""
-        return False
+    def elements(self) -> int:
+        """Z."""
+        return self.rollers
 
     @property
     def _rows(self) -> tuple[tuple[float, float], ...]:
@@ -146,46 +138,28 @@ class TaperedBearing(ForceLaw):
         """Return the compiled functions schedule and force."""
         return schedule, force
 
-    def state_size(self) -> int:
-        """Angle and speed of the cage."""
-        return 2
-
     def parameters(self) -> np.ndarray:
-        """Z, c_l, s/2, cos a, sin |a|, p, R, L, slices, order, phase, number of rows, and place and side of each."""
+        """Order, phase, Z, c_l, s/2, cos a, sin |a|, p, R, L, slices, number of rows, and place and side of each."""
         a = abs(self.contact_angle)
         constant = LINE_CONTACT * self.length ** (8.0 / 9.0)
-        own = [self.rollers, constant, 0.5 * self.clearance, np.cos(a), np.sin(a), self.preload]
-        own += [0.5 * self.pitch_diameter, self.length, self.slices, self.order, self.phase, len(self._rows)]
+        own = [self.order, self.phase, self.rollers, constant, 0.5 * self.clearance, np.cos(a), np.sin(a), self.preload]
+        own += [0.5 * self.pitch_diameter, self.length, self.slices, len(self._rows)]
         return np.array([*own, *(value for row in self._rows for value in row)])
 
     def pressed_by(self, force: float) -> TaperedBearing:
         """The bearing with the preload that an axial force in N on a row gives."""
-        _, constant, play, cosine, sine = self.parameters()[:5]
+        constant, play, cosine, sine = self.parameters()[CONTACT : SINE + 1]
         delta = (force / (self.rollers * sine * constant)) ** 0.9
         return replace(self, preload=float((delta + cosine * play) / sine))
-
-    def reference_stiffness(self) -> np.ndarray:
-        """The linear stiffness that is given with the bearing."""
-        return np.diag(self.reference)
 
     def left_out(self) -> tuple[str, ...]:
         """What the rollers leave out."""
         return ("crowning of rollers, the rib that guides them, and play that differs between its ends",)
 
-    def repeats(self) -> tuple[Repeats, ...]:
-        """The cage, which repeats with nothing else."""
-        return (Repeats(abs(self.order), common=False),) if self.order else ()
-
-    def cycle(self) -> float:
-        """From one roller to the next."""
-        return TURN / (self.rollers * abs(self.order)) if self.order else 0.0
-
     def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads:
         """Loads and pressures of the rollers at displacements d (5,): deflections in the middle, pressures of the worst slice."""
         constant, play, cosine, sine, preload, radius = self.parameters()[CONTACT : ARM + 1]
-        one = np.mod(self.order * angle + self.phase + TURN * np.arange(self.rollers) / self.rollers, TURN)
-        phi = np.tile(one, len(self._rows))
-        place, side = np.repeat(np.array(self._rows), self.rollers, axis=0).T
+        row, phi, place, side = self.places(angle, self._rows)
         psi = d[3] * np.sin(phi) - d[4] * np.cos(phi)
         arm = side * radius * sine - place * cosine
         across = cosine * (d[0] * np.cos(phi) + d[1] * np.sin(phi) - play)
@@ -195,7 +169,6 @@ class TaperedBearing(ForceLaw):
         load = each.mean(axis=1)
         gamma = self.roller_diameter * cosine / self.pitch_diameter
         inner, outer = line_pressure(each.max(axis=1), self.length, self.roller_diameter, gamma)
-        row = np.repeat(np.arange(1, len(self._rows) + 1), self.rollers)
         at = np.where(load > 0.0, side * abs(self.contact_angle), 0.0)
         return RollingLoads(row, phi, at, load, middle, inner, outer)
 

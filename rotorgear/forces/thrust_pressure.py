@@ -267,11 +267,9 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Force along z and moments about x and y of the collar on its films."""
     omega = s[SPEED]
-    for i in range(5):
-        F[i] = 0.0
-    for i in range(25):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
+    F[:] = 0.0
+    Kd[:] = 0.0
+    Kv[:] = 0.0
     G = np.zeros(4)
     K = np.zeros((4, 4))
     C = np.zeros((4, 4))
@@ -304,7 +302,6 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
                 Kd[5 * (2 + i) + 2 + j] += stiff
                 Kv[5 * (2 + i) + 2 + j] += damp
     # At a velocity the films take up v^T C v; what they give back as the collar leaves them comes from its rotation.
-    energy[0] = 0.0
+    energy[:] = 0.0
     energy[1] = taken - (F[2] * v[2] + F[3] * v[3] + F[4] * v[4])
     energy[2] = taken
-    energy[3] = 0.0

@@ -20,9 +20,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.film_flow import power_loss, side_flow
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_oil import JournalOil
 from rotorgear.forces.journal_pressure import (
     ALONG,
     AROUND,
@@ -37,7 +35,7 @@ from rotorgear.forces.journal_pressure import (
     schedule,
 )
 from rotorgear.forces.law import Linearised, parameter, refuse
-from rotorgear.forces.oil_film import TURN
+from rotorgear.forces.oil_film import TURN, JournalOil, power_loss, side_flow
 from rotorgear.forces.shell import add_wall, place_in_shell
 from rotorgear.solvers.time.compiled import compiled, force_function
 
@@ -109,8 +107,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     omega = s[SPEED]
     film = np.zeros(2)
     k = np.zeros(4)
-    for i in range(4):
-        Kv[i] = 0.0
+    Kv[:] = 0.0
     own_f = np.zeros(2)
     own_k = np.zeros(4)
     own_c = np.zeros(4)

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.elements.elastic_body import elastic_body
-from rotorgear.elements.gear_body import gear_body
+from rotorgear.elements.bodies import elastic_body, elastic_gear, gear_body, rigid_body
 from rotorgear.elements.gear_mesh import (
     ContactGeometry,
     Face,
@@ -21,7 +20,6 @@ from rotorgear.elements.gear_mesh import (
     gear_mesh,
 )
 from rotorgear.elements.matrices import ElementMatrices
-from rotorgear.elements.rigid_body import elastic_gear, rigid_body
 from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motions
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.elements.spring import grounded_spring, linking_spring, seated_spring

@@ -12,8 +12,8 @@ import scipy.integrate as integrate
 import scipy.linalg as la
 
 import rotorgear as rg
+from rotorgear.elements.bodies import rigid_body
 from rotorgear.elements.matrices import ElementMatrices
-from rotorgear.elements.rigid_body import rigid_body
 from rotorgear.elements.shaft import cowper, quarter_turn, shaft_elements
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.quantity import RPM_PER_RAD_S, parse_quantity

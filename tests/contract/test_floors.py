@@ -366,8 +366,8 @@ def test_the_walk_catches_a_circle_between_rooms_that_is_none_between_modules(tm
             "gears/tooth.py": "from rotorgear.forces import law",
             "gears/geometry/geometry.py": "",
             "forces/law.py": "",
-            "forces/oil.py": "from rotorgear.gears import geometry",
-            "cli/main.py": "import rotorgear.gears.tooth, rotorgear.forces.oil",
+            "forces/oil_film.py": "from rotorgear.gears import geometry",
+            "cli/main.py": "import rotorgear.gears.tooth, rotorgear.forces.oil_film",
         },
     )
     assert module_cycle(graph) == []

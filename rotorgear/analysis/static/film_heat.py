@@ -1,6 +1,6 @@
 """Oil films in heat balance: an equilibrium and the viscosities of its films agree.
 
-At one place of its shaft a film has one temperature (forces/oil.py), but the place follows from the viscosity. With x = ln mu of
+At one place of its shaft a film has one temperature, but the place follows from the viscosity. With x = ln mu of
 each film and phi(x) that of the place where the equilibrium with x puts its shaft, x = phi(x) is solved by a secant for each:
 thicker oil lifts the shaft, less oil leaves, the film is warmer, so that phi falls by less than it is given, -1 < phi' < 0.
 """

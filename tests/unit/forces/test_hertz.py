@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from rotorgear.forces.hertz import point_contact
+from rotorgear.forces.rolling import point_contact
 
 E = 210e9
 NU = 0.3

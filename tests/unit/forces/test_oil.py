@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.forces.oil import CELSIUS, film_temperature, oil_temperature, oil_viscosity
+from rotorgear.forces.oil_film import CELSIUS, film_temperature, oil_temperature, oil_viscosity
 from rotorgear.forces.thrust_film import ThrustFilm
 from rotorgear.forces.tilting_pads import TiltingPads
 from tests.unit.analysis.bearing.test_bearing import journal_rotor

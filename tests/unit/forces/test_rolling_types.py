@@ -10,8 +10,8 @@ import pytest
 import rotorgear as rg
 from rotorgear.forces.ball_bearing import BallBearing
 from rotorgear.forces.designations import inner_geometry
-from rotorgear.forces.hertz import LINE_CONTACT
 from rotorgear.forces.roller_bearing import RollerBearing
+from rotorgear.forces.rolling import LINE_CONTACT
 from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
 
 BALL = BallBearing(12, 14e-3, 77e-3, contact_angle=0.44, clearance=0.0, phase=0.1)

@@ -9,7 +9,7 @@ import pytest
 import scipy.linalg as la
 
 import rotorgear as rg
-from rotorgear.elements.rigid_body import elastic_gear
+from rotorgear.elements.bodies import elastic_gear
 from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.tooth_fe.blank_section import BlankSection, blank_torsion
 from rotorgear.system.rigid_motions import rigid_motions

@@ -153,7 +153,7 @@ class Oil(BearingGeometry):
 
     def oil_parameters(self) -> dict[str, Any]:
         """Parameters of a law of its film, which begins at the temperature of the inlet."""
-        from rotorgear.forces.oil import oil_viscosity
+        from rotorgear.forces.oil_film import oil_viscosity
 
         given = {"density": self.density, "specific_heat": self.specific_heat, "heat_share": self.heat_share}
         if self.viscosity is not None:

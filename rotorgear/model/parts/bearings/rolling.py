@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import ConfigDict, Field, model_validator
 
 from rotorgear.errors import Problem
-from rotorgear.forces.clearance_classes import class_clearance
-from rotorgear.forces.designations import SERIES, inner_geometry
+from rotorgear.forces.designations import SERIES, class_clearance, inner_geometry
 from rotorgear.model.parts.bearings.geometry import BearingGeometry, Judged
 from rotorgear.model.parts.fields import Angle, Force, NonNegativeLength, PositiveLength, PositiveRatio, Whole, refuse
 from rotorgear.quantity import millimetres

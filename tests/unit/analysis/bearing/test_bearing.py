@@ -8,8 +8,8 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
+from rotorgear.forces.rolling import line_pressure, point_pressure
 from rotorgear.system.local_parts import bearing_law
 from tests.models import disk_in_bearing
 from tests.paths import ROOT
