@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rotorgear.page.contents import Contents, error_of
-from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure
+from rotorgear.plots.figure import COLOURS, new_figure
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.standards import StandardsResult
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from rotorgear.page.cells import RESULTS, Cell, Figure, Numbers, Section, Table
 from rotorgear.page.figures import svg_of
-from rotorgear.plots.mesh_cycle import mesh as draw_mesh
+from rotorgear.plots.mesh import mesh as draw_mesh
 
 
 def teeth_section(made: dict[str, Any], numbers: Numbers, names: list[str]) -> Section:

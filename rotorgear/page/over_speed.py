@@ -11,7 +11,7 @@ from rotorgear.page.curves import draw_unbalance
 from rotorgear.page.figures import svg_of
 from rotorgear.plots.campbell import campbell as draw_campbell
 from rotorgear.plots.critical_map import critical_map as draw_map
-from rotorgear.plots.run_up import response as draw_response
+from rotorgear.plots.response import response as draw_response
 
 _LARGEST = 12
 

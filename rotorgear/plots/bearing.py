@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import figure_for
+from rotorgear.plots.figure import COLOURS, figure_for, name_axes, plain_axis
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.bearing import BearingSheet, OilState
 
@@ -37,13 +36,11 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
             width=0.5 * 360.0 / max(len(angle), 1),
             color=COLOURS[0],
         )
-        inside.set_ylabel("load, N")
-        inside.set_title("Loads of the rolling elements", fontsize=10)
+        name_axes(inside, "", "load, N", title="Loads of the rolling elements")
         for number, (key, label) in enumerate((("inner_pressure", "inner ring"), ("outer_pressure", "outer ring"))):
             pressure = [1e-6 * getattr(row, key) for row in result.rolling_elements]
             beside.plot(angle, pressure, "o", color=COLOURS[number], label=label)
-        beside.set_ylabel("largest Hertz pressure, MPa")
-        beside.legend(frameon=False, fontsize=8)
+        name_axes(beside, "", "largest Hertz pressure, MPa", legend=1)
     for axis in (inside, beside):
         axis.set_xlabel("angle from +x, deg")
     rpm = [row.speed * RPM_PER_RAD_S for row in result.over_speed]
@@ -55,9 +52,7 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
         for number, (i, j) in enumerate(pairs):
             values = [factor * float(getattr(row, key)[i, j]) for row in result.over_speed]
             axis.plot(rpm, values, "o-", ms=3, lw=1.4, color=COLOURS[number], label=f"{'xyz'[i]}{'xyz'[j]}")
-        axis.set_xlabel("speed of the input shaft, rpm")
-        axis.set_ylabel(label)
-        axis.legend(frameon=False, fontsize=8, ncols=2)
+        name_axes(axis, "speed of the input shaft, rpm", label, legend=2)
         if result.threshold_speed is not None:
             axis.axvline(result.threshold_speed * RPM_PER_RAD_S, color="#999999", lw=0.8, ls=":")
     stiffness.set_title(
@@ -66,9 +61,7 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
     damping.set_title("Damping", fontsize=10)
     axes = np.array([inside, beside, stiffness, damping])
     for axis in axes[1:]:
-        axis.grid(True, alpha=0.25)
-        for side in ("top", "right"):
-            axis.spines[side].set_visible(False)
+        plain_axis(axis)
     return axes
 
 
@@ -83,8 +76,6 @@ def _film(figure: Any, inside: Any, beside: Any, film: OilState) -> None:
         picture = inside.pcolormesh(angle, 1e3 * place, 1e-6 * pressure.T, cmap="viridis", **field)
         beside.plot(angle, 1e6 * gap, color=COLOURS[0], **line)
     figure.colorbar(picture, ax=inside, label="pressure, MPa")
-    inside.set_ylabel(f"{film.place}, mm")
-    inside.set_title(f"Pressure, at most {largest:.3g} MPa", fontsize=10)
+    name_axes(inside, "", f"{film.place}, mm", title=f"Pressure, at most {largest:.3g} MPa")
     beside.set_ylim(bottom=0.0)
-    beside.set_ylabel("gap, um")
-    beside.set_title(film.over_gap.format(film), fontsize=10)
+    name_axes(beside, "", "gap, um", title=film.over_gap.format(film))

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import axes_for
-from rotorgear.plots.labels import Labels, spread
+from rotorgear.plots.figure import axes_for, name_axes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder
 from rotorgear.results.modal import WHIRL_WORDS
@@ -83,9 +82,7 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
             zorder=6,
         )
-    axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
-    axis.set_ylabel("damped frequency, Hz")
-    axis.grid(True, alpha=0.15)
+    name_axes(axis, f"speed of {result.model.reference_shaft}, rpm", "damped frequency, Hz", grid=True)
     _legend(axis, result, colour)
     return axis
 
@@ -215,7 +212,14 @@ def _crossings(axis: Any, result: CampbellResult, height: _Height) -> None:
     axis.scatter(x, y, s=size, facecolors="none", edgecolors="black", lw=0.7, zorder=5)
     labels = Labels(axis.get_xlim(), (0.0, 1.0))
     labels.block(np.column_stack([x, height.share(y)]))
-    for item in sorted(met, key=lambda item: -_telling(item, result)):
+
+    def telling(item: Crossing) -> float:
+        """Participation, more the nearer to the operating speed."""
+        if not result.operating_speed:
+            return item.participation
+        return item.participation / (0.05 + abs(item.speed / result.operating_speed - 1.0))
+
+    for item in sorted(met, key=telling, reverse=True):
         if labels.count >= _MOST_LABELS:
             break
         place = labels.place(item.speed * RPM_PER_RAD_S, float(height.share(item.frequency_hz)))
@@ -230,14 +234,6 @@ def _crossings(axis: Any, result: CampbellResult, height: _Height) -> None:
                 ha="center",
                 bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6},
             )
-
-
-def _telling(item: Crossing, result: CampbellResult) -> float:
-    """Participation, more the nearer to the operating speed."""
-    if not result.operating_speed:
-        return item.participation
-    away = abs(item.speed / result.operating_speed - 1.0)
-    return item.participation / (0.05 + away)
 
 
 def _legend(axis: Any, result: CampbellResult, colour: str) -> None:
@@ -259,3 +255,66 @@ def _legend(axis: Any, result: CampbellResult, colour: str) -> None:
             Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm")
         )
     axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=6, frameon=False, fontsize=8)
+
+
+# Size of a short label, and distances at which it is tried, as shares of the axes.
+_WIDTH = 0.046
+_HEIGHT = 0.026
+_TRIALS = tuple((r * np.cos(a), r * np.sin(a)) for r in (0.03, 0.045) for a in np.radians((60, 120, -60, -120, 0, 180)))
+
+
+def spread(places: list[float], least: float) -> list[float]:
+    """Places moved apart by the least amounts that keep their order and a distance of `least` between neighbours."""
+    order = np.argsort(places, kind="stable")
+    moved = np.array([places[k] for k in order], float)
+    for _ in range(200):
+        gaps = np.diff(moved)
+        tight = np.flatnonzero(gaps < least * 0.999)
+        if not tight.size:
+            break
+        for k in tight:
+            push = 0.5 * (least - (moved[k + 1] - moved[k]))
+            if push > 0.0:
+                moved[k] -= push
+                moved[k + 1] += push
+    back = np.empty(len(moved))
+    back[order] = moved
+    return [float(value) for value in back]
+
+
+class Labels:
+    """Boxes taken so far in axes of given limits."""
+
+    def __init__(self, x: tuple[float, float], y: tuple[float, float]) -> None:
+        self._low = np.array([x[0], y[0]])
+        self._span = np.array([x[1] - x[0], y[1] - y[0]])
+        self._boxes: list[np.ndarray] = []
+        self._points = np.zeros((0, 2))
+
+    @property
+    def count(self) -> int:
+        """How many labels have a place."""
+        return len(self._boxes)
+
+    def block(self, points: np.ndarray) -> None:
+        """Keep points (k, 2) in data units free."""
+        self._points = (points - self._low) / self._span
+
+    def place(self, x: float, y: float) -> tuple[float, float] | None:
+        """Centre of a free box beside a point in data units, or None."""
+        at = (np.array([x, y]) - self._low) / self._span
+        for offset in _TRIALS:
+            centre = at + offset
+            if self._is_free(centre):
+                self._boxes.append(centre)
+                where = self._low + centre * self._span
+                return float(where[0]), float(where[1])
+        return None
+
+    def _is_free(self, centre: np.ndarray) -> bool:
+        size = np.array([_WIDTH, _HEIGHT])
+        if np.any(centre - 0.5 * size < 0.0) or np.any(centre + 0.5 * size > 1.0):
+            return False
+        if np.any(np.all(np.abs(self._points - centre) < 0.5 * size, axis=1)):
+            return False
+        return not any(np.all(np.abs(box - centre) < size) for box in self._boxes)

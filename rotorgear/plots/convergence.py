@@ -1,4 +1,4 @@
-"""Draws a convergence study: error against CPU seconds and against degrees of freedom."""
+"""Draws convergence studies: error against CPU seconds and against degrees of freedom."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import figure_for
-from rotorgear.results.convergence import ConvergenceStudy, Rung
+from rotorgear.plots.figure import BLUE, GREY, ORANGE, axes_for, figure_for, name_axes
+from rotorgear.results.convergence import ConvergenceStudy, MeshConvergenceStudy, Rung
 
-_STYLE = {"elements": ("s", "#777777", "basic elements"), "accuracy": ("o", "#1f5fa8", "refined to an accuracy")}
+_STYLE = {"elements": ("s", GREY, "basic elements"), "accuracy": ("o", BLUE, "refined to an accuracy")}
 # An error of exactly zero has no place on a logarithmic axis.
 _NONE = 1e-16
 # Points nearer than this, in decades of both axes, share a label.
@@ -43,8 +43,7 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     for axis, (key, label) in zip(axes, panels, strict=True):
         _curves(axis, reached, key)
         axis.set_xlabel(label)
-    axes[0].set_ylabel(f"{result.analysis}: largest relative error\nof {result.modes} {result.compared}")
-    axes[0].legend(frameon=False, fontsize=8)
+    name_axes(axes[0], "", f"{result.analysis}: largest relative error\nof {result.modes} {result.compared}", legend=1)
     return axes
 
 
@@ -112,3 +111,46 @@ def _ticks(axis: Any, values: Sequence[float]) -> None:
     axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     axis.xaxis.set_minor_locator(NullLocator())
     axis.xaxis.set_minor_formatter(NullFormatter())
+
+
+_CURVES = (
+    ("mean_stiffness", "o", BLUE, "mean stiffness"),
+    ("peak_to_peak_stiffness", "s", ORANGE, "its peak to peak"),
+    ("ste_peak_to_peak", "^", "#3a7d44", "transmission error, peak to peak"),
+)
+
+
+def mesh_convergence(result: MeshConvergenceStudy, ax: Any = None) -> Any:
+    """Draw the convergence study of a mesh: errors of stiffness and transmission error against CPU seconds.
+
+    Args:
+        result: a convergence study of a mesh.
+        ax: axes to draw on; those of a new figure for None.
+
+    Returns:
+        The axes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    axis = axes_for(ax, (7.5, 4.6), f"{result.title}: {result.mesh}")
+    for name, marker, colour, label in _CURVES:
+        seconds = [rung.fe_seconds + rung.contact_seconds for rung in result.rungs]
+        errors = [100.0 * max(getattr(rung.error, name), 1e-7) for rung in result.rungs]
+        axis.loglog(seconds, errors, marker, color=colour, ms=7, label=label)
+        known = [(s, rung.estimate) for s, rung in zip(seconds, result.rungs, strict=True) if rung.estimate]
+        # A cross lies over the mark of another curve, not under it.
+        estimates = [100.0 * getattr(e, name) for _, e in known]
+        axis.loglog([s for s, _ in known], estimates, "x", color=colour, ms=8, mew=1.8, zorder=4)
+    for rung in result.rungs:
+        top = 100.0 * rung.error.worst
+        place = (rung.fe_seconds + rung.contact_seconds, top)
+        axis.annotate(rung.method.removeprefix("preset "), place, (6, 6), textcoords="offset points", fontsize=9)
+    axis.loglog([], [], "x", color="#444444", ms=8, mew=1.8, label="its own estimate")
+    axis.margins(0.12)
+    for scale in (axis.xaxis, axis.yaxis):
+        scale.set_major_formatter("{x:g}")
+    name_axes(axis, "CPU seconds, teeth and contact of 64 positions", "relative error, %")
+    axis.grid(True, which="major", alpha=0.25)
+    axis.legend(frameon=False, fontsize=9)
+    return axis

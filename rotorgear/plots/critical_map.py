@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import axes_for
+from rotorgear.plots.figure import BLUE, GREY, axes_for, name_axes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.critical import CriticalMap
 from rotorgear.results.modal import WHIRL_WORDS
 
 _MARKERS = {
-    "forward": ("^", "#1f5fa8", "forward whirl"),
+    "forward": ("^", BLUE, "forward whirl"),
     "backward": ("v", "#c2571a", "backward whirl"),
     "mixed": ("D", "#7a3f9d", "mixed whirl"),
     "planar": ("_", "#2f7d32", "planar"),
-    "": (".", "#777777", "torsion or axial"),
+    "": (".", GREY, "torsion or axial"),
 }
 
 
@@ -46,8 +46,7 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
             y = speeds[rows, columns]
             axis.plot(x, y, marker, color=colour, mfc="white", mew=0.9, ms=4.5, ls="none", label=name, zorder=3)
     _bearings(axis, result)
-    axis.set_xlabel("radial stiffness of every bearing, N/m")
-    axis.set_ylabel(f"critical speed of {result.model.reference_shaft}, rpm")
+    name_axes(axis, "radial stiffness of every bearing, N/m", f"critical speed of {result.model.reference_shaft}, rpm")
     axis.set_xlim(result.stiffness[0], result.stiffness[-1])
     axis.grid(True, which="both", alpha=0.2)
     if axis.get_legend_handles_labels()[0]:
@@ -66,9 +65,14 @@ def _bearings(axis: Any, result: CriticalMap) -> None:
         if result.stiffness[0] <= value <= result.stiffness[-1]:
             axis.axvline(value, color="#444444", lw=0.8)
             more = f" and {len(alike) - 3} more" if len(alike) > 3 else ""
+            # In the middle of the widest gap that the curves leave there, on the logarithmic axis.
+            row = int(np.argmin(np.abs(np.log(result.stiffness / value))))
+            near = np.abs(result.critical_speeds[max(row - 1, 0) : row + 2]) * RPM_PER_RAD_S
+            edges = np.log(np.sort(np.concatenate([near[np.isfinite(near)], axis.get_ylim()])))
+            widest = int(np.argmax(np.diff(edges)))
             axis.text(
                 value,
-                _between_curves(axis, result, value),
+                float(np.exp(0.5 * (edges[widest] + edges[widest + 1]))),
                 ", ".join(alike[:3]) + more,
                 rotation=90,
                 fontsize=7,
@@ -76,12 +80,3 @@ def _bearings(axis: Any, result: CriticalMap) -> None:
                 ha="right",
                 color="#444444",
             )
-
-
-def _between_curves(axis: Any, result: CriticalMap, stiffness: float) -> float:
-    """The speed in rpm in the middle of the widest gap that the curves leave at a stiffness, on the logarithmic axis."""
-    row = int(np.argmin(np.abs(np.log(result.stiffness / stiffness))))
-    near = np.abs(result.critical_speeds[max(row - 1, 0) : row + 2]) * RPM_PER_RAD_S
-    edges = np.log(np.sort(np.concatenate([near[np.isfinite(near)], axis.get_ylim()])))
-    widest = int(np.argmax(np.diff(edges)))
-    return float(np.exp(0.5 * (edges[widest] + edges[widest + 1])))

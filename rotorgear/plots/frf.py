@@ -6,9 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import figure_for
-from rotorgear.plots.static import plain_axis
+from rotorgear.plots.figure import COLOURS, figure_for, plain_axis
 from rotorgear.results.frequency_response import FrequencyResponse
 
 

@@ -13,10 +13,9 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.plots.figure import figure_for
+from rotorgear.plots.figure import BLUE, ORANGE, figure_for
 from rotorgear.results.gear_sheet import GearSheet
 
-_COLOURS = ("#1f5fa8", "#b3541e")
 _POINTS = 40
 
 
@@ -93,7 +92,9 @@ def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
     angle = teeth.pair.working_transverse_pressure_angle
     turn = np.linspace(0.0, 2.0 * math.pi, 721)
     centres = ((0.0, 0.0), (1e3 * teeth.pair.centre_distance, 0.0))
-    for number, (g, centre, colour) in enumerate(zip((teeth.first, teeth.second), centres, _COLOURS, strict=True), 1):
+    for number, (g, centre, colour) in enumerate(
+        zip((teeth.first, teeth.second), centres, (BLUE, ORANGE), strict=True), 1
+    ):
         xy = 1e3 * gear_contour(teeth, number)
         axis.fill(*xy.T, facecolor=colour, alpha=0.16)
         axis.plot(*xy.T, color=colour, lw=1.2, label=names[number - 1])

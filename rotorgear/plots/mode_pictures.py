@@ -14,9 +14,7 @@ from rotorgear.export.files import filling, publish
 from rotorgear.export.paraview import import_pyvista
 from rotorgear.export.solids import FINE, build_solids
 from rotorgear.export.vtk import check_amplitude, chosen_modes
-from rotorgear.plots.camera import best_direction, look
-from rotorgear.plots.offscreen import rendering
-from rotorgear.plots.scene import GREY, Scene, add_headline
+from rotorgear.plots.scene import GREY, Scene, add_headline, best_direction, look, rendering
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
 
@@ -85,9 +83,12 @@ def write_modes(
     if min(size) < 100:
         raise AnalysisError(f"a picture needs at least 100 pixels each way, got {size[0]} x {size[1]}")
     pv = import_pyvista("Drawing modes")
+    from PIL import Image  # comes with pyvista
+
+    k = _SUPERSAMPLING
     names = []
     with filling(directory) as scratch, rendering():
-        fine = [_SUPERSAMPLING * pixels for pixels in size]
+        fine = [k * pixels for pixels in size]
         plotter = pv.Plotter(off_screen=True, window_size=fine, lighting="none")
         try:
             scene = _stage(pv, plotter, result)
@@ -95,7 +96,11 @@ def write_modes(
                 progress(count / len(chosen), f"mode {mode + 1}")
                 _show(plotter, scene, mode, amplitude)
                 names.append(f"mode_{mode + 1:02d}.png")
-                _save(plotter, scratch / names[-1])
+                # Each pixel is the mean of those that were rendered for it.
+                fine_picture = plotter.screenshot(None, return_img=True)[..., :3].astype(np.uint16)
+                rows, columns = (pixels // k for pixels in fine_picture.shape[:2])
+                blocks = fine_picture[: rows * k, : columns * k].reshape(rows, k, columns, k, 3)
+                Image.fromarray((blocks.sum(axis=(1, 3)) // k**2).astype(np.uint8)).save(scratch / names[-1])
         finally:
             plotter.close()
         written = publish(scratch, Path(directory), names)
@@ -115,18 +120,6 @@ def _stage(pv: ModuleType, plotter: Any, result: ModalResult) -> Scene:
         ghost.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(4.0, 4.0)
     look(plotter, scene.solids.points, direction)
     return scene
-
-
-def _save(plotter: Any, path: Path) -> None:
-    """Write the picture, each pixel the mean of those that were rendered for it."""
-    from PIL import Image  # comes with pyvista
-
-    fine = plotter.screenshot(None, return_img=True)[..., :3].astype(np.uint16)
-    k = _SUPERSAMPLING
-    rows = fine.shape[0] // k
-    columns = fine.shape[1] // k
-    mean = fine[: rows * k, : columns * k].reshape(rows, k, columns, k, 3).sum(axis=(1, 3)) // k**2
-    Image.fromarray(mean.astype(np.uint8)).save(path)
 
 
 def _show(plotter: Any, scene: Scene, mode: int, amplitude: float | None) -> None:

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.old_names import warn_old
-from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import figure_for
+from rotorgear.plots.figure import COLOURS, figure_for, name_axes, parameter_name
 from rotorgear.plots.transient import shaft_orbits
 from rotorgear.results.orbits import OrbitsResult
 from rotorgear.results.transient import TransientResult
@@ -48,7 +47,7 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
         own = np.flatnonzero(result.branch == number)
         colour = COLOURS[number % len(COLOURS)]
         for stable, style in ((True, "-"), (False, "--")):
-            # A piece between two points is drawn as the first of them is.
+            # What lies between two points is drawn as the first of them is.
             kept = result.stable[own] == stable
             shown = kept | np.roll(kept, 1)
             shown[0] = kept[0]
@@ -64,8 +63,7 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
             height = [1e6 * float(told.peak_to_peak(one)[c]) for one in points]
             axes[0].plot(at, height, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
     axes[1].axhline(1.0, color="k", lw=0.6)
-    axes[0].set_ylabel(f"{told.what}, peak to peak, u{told.unit}")
-    axes[0].set_title(f"{told.label[c]}: periodic motions", fontsize=9)
+    name_axes(axes[0], "", f"{told.what}, peak to peak, u{told.unit}", title=f"{told.label[c]}: periodic motions")
     axes[0].legend(fontsize=7)
     axes[1].set_ylabel("largest |mu|")
     for curve in result.curves:
@@ -74,14 +72,9 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
         second = curve.second / result.per_unit[1]
         axes[2].plot(curve.value / result.per_unit[0], second, "-" + marker, ms=3, mfc="w", lw=1.2, label=label)
     if result.curves:
-        axes[2].set_ylabel(_name(result, 1))
+        axes[2].set_ylabel(parameter_name(result.address[1], result.unit[1]))
         axes[2].legend(fontsize=7)
-    axes[-1].set_xlabel(_name(result, 0))
+    axes[-1].set_xlabel(parameter_name(result.address[0], result.unit[0]))
     for one in axes:
         one.grid(alpha=0.25)
     return np.asarray(axes)
-
-
-def _name(result: OrbitsResult, parameter: int) -> str:
-    unit = result.unit[parameter]
-    return f"{result.address[parameter]}, {unit}" if unit else result.address[parameter]

@@ -1,15 +1,28 @@
-"""What pictures and windows share: smooth meshes of the solids, their motion, light and colours."""
+"""What rendered pictures and windows share: meshes of the solids, light and colours, the camera, and whether VTK can render.
+
+Rendering without a window is tried in a process of its own first: where graphics are broken, VTK does not raise, it crashes.
+"""
 
 from __future__ import annotations
 
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from rotorgear.export.solids import KINDS, Solids
-from rotorgear.results.modal import ModalResult
+from rotorgear.errors import RotorgearError
+from rotorgear.export.paraview import solids_mesh
+from rotorgear.export.solids import KINDS, LIGHT, Solids, build_solids
+from rotorgear.model.model import Model
+from rotorgear.results.modal import ModalResult, NodeTable
 
 # From what stands still to what moves most: light enough at both ends to show light and shade.
 _STOPS = ((0.0, "c3ccd6"), (0.2, "5f9bd8"), (0.42, "3fc4a4"), (0.64, "f4d53f"), (0.84, "f0862b"), (1.0, "c4201f"))
@@ -172,3 +185,160 @@ def add_headline(plotter: Any, scene: Scene, mode: int) -> None:
         plotter.add_text(
             text, position=(0.025, height), viewport=True, font_size=size, color=colour, name=name, render=False
         )
+
+
+# Directions from the middle to the camera, y upwards; from the left (-x) the shafts run to the right.
+_DIRECTIONS = (
+    (-0.9, 0.45, 0.7), (-1.0, 0.4, 0.4), (-0.9, 0.45, -0.7), (-1.0, 0.4, -0.4),
+    (0.9, 0.45, 0.7), (1.0, 0.4, 0.4), (0.9, 0.45, -0.7), (1.0, 0.4, -0.4),
+    (-0.5, 0.4, 1.0), (-0.5, 0.4, -1.0), (0.5, 0.4, 1.0), (0.5, 0.4, -1.0),
+)  # fmt: skip
+_SMALL = (240, 150)
+# The part of the picture to fill, from -1 to 1 each way: room for the title above and the colours below.
+_LEFT = -0.92
+_RIGHT = 0.92
+_BOTTOM = -0.80
+_TOP = 0.74
+
+
+def best_direction(pv: ModuleType, model: Model, nodes: NodeTable) -> tuple[float, float, float]:
+    """The direction with the largest sum over the shafts of sqrt(pixels seen): the root counts the hidden ones most."""
+    mesh = solids_mesh(pv, build_solids(model, nodes, LIGHT))
+    # A casing would hide what it is looked at for.
+    mesh = mesh.remove_cells(np.flatnonzero(mesh.cell_data["shaft_id"] < 0)) if model.casings else mesh
+    number = mesh.cell_data["shaft_id"].astype(int) + 1
+    mesh.cell_data["paint"] = np.column_stack([number % 256, number // 256, np.zeros_like(number)]).astype(np.uint8)
+    plotter = pv.Plotter(off_screen=True, window_size=list(_SMALL), lighting="none")
+    try:
+        plotter.set_background("white")
+        plotter.add_mesh(mesh, scalars="paint", rgb=True, lighting=False)
+        scores = []
+        for direction in _DIRECTIONS:
+            look(plotter, mesh.points, direction)
+            picture = plotter.screenshot(None, return_img=True).astype(int)
+            seen = (picture[..., 0] + 256 * picture[..., 1])[picture[..., 2] == 0]
+            scores.append(np.sum(np.sqrt(np.unique(seen, return_counts=True)[1])))
+    finally:
+        plotter.close()
+    return _DIRECTIONS[int(np.argmax(scores))]
+
+
+def look(plotter: Any, points: np.ndarray, direction: tuple[float, float, float]) -> None:
+    """Turn the camera to points (P, 3) from a direction, so that they fill the picture below its title."""
+    middle = 0.5 * (np.min(points, axis=0) + np.max(points, axis=0))
+    camera = plotter.camera
+    camera.SetWindowCenter(0.0, 0.0)
+    camera.view_angle = 30.0
+    plotter.camera_position = [tuple(middle + np.array(direction)), tuple(middle), (0.0, 1.0, 0.0)]
+    plotter.reset_camera(bounds=np.column_stack([np.min(points, axis=0), np.max(points, axis=0)]).ravel().tolist())
+    low, high = _extent(plotter, points)
+    zoom = min((_RIGHT - _LEFT) / (high[0] - low[0]), (_TOP - _BOTTOM) / (high[1] - low[1]))
+    camera.view_angle = math.degrees(2.0 * math.atan(math.tan(math.radians(15.0)) / zoom))
+    low, high = _extent(plotter, points)
+    offset = 0.5 * (low + high) - 0.5 * np.array([_LEFT + _RIGHT, _BOTTOM + _TOP])
+    camera.SetWindowCenter(*offset)
+
+
+def _extent(plotter: Any, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest place of points in the picture, -1 to 1 each way."""
+    width, height = plotter.window_size
+    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
+    projection = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+    seen = np.column_stack([points, np.ones(len(points))]) @ projection.T
+    places = seen[:, :2] / seen[:, 3:]
+    return places.min(axis=0), places.max(axis=0)
+
+
+# VTK takes its kind of render window from here (VTK 9.4 and later).
+_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
+# Without a display: a graphics driver by itself, or software rendering; else what VTK finds.
+_WITHOUT_DISPLAY = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow", "")
+_TIMEOUT = 60.0
+
+# Draws a dark ball on white and ends well only if the picture holds both.
+_TRIAL = """
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+source, mapper, actor, renderer = vtkSphereSource(), vtkPolyDataMapper(), vtkActor(), vtkRenderer()
+mapper.SetInputConnection(source.GetOutputPort())
+actor.SetMapper(mapper)
+actor.GetProperty().SetColor(0, 0, 0)
+renderer.AddActor(actor)
+renderer.SetBackground(1, 1, 1)
+window = vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.SetSize(32, 32)
+window.AddRenderer(renderer)
+window.Render()
+grab = vtkWindowToImageFilter()
+grab.SetInput(window)
+grab.Update()
+low, high = grab.GetOutput().GetScalarRange()
+raise SystemExit(0 if low < 50 and high > 200 else 3)
+"""
+
+
+class RenderError(RotorgearError):
+    """Pictures can't be rendered here; the text says what to install, and what works without."""
+
+
+@contextmanager
+def rendering() -> Iterator[None]:
+    """Let VTK render off screen with what works on this machine.
+
+    Raises:
+        RenderError: nothing does.
+    """
+    kind = working_window(os.environ.get("DISPLAY", ""), os.environ.get(_VARIABLE, ""))
+    before = os.environ.get(_VARIABLE)
+    if kind:
+        os.environ[_VARIABLE] = kind
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(_VARIABLE, None)
+        else:
+            os.environ[_VARIABLE] = before
+
+
+@lru_cache(maxsize=4)
+def working_window(display: str, wanted: str) -> str:
+    """Name of the VTK window class with which a small picture came out; "" for VTK's own choice.
+
+    Args:
+        display: the display of the X server, "" for none.
+        wanted: window class that the user has set, "" for none.
+
+    Raises:
+        RenderError: none does.
+    """
+    headless = sys.platform.startswith("linux") and not display
+    kinds = (wanted,) if wanted else _WITHOUT_DISPLAY if headless else ("", *_WITHOUT_DISPLAY[:2])
+    failures = []
+    for kind in kinds:
+        failure = can_render(kind)
+        if not failure:
+            return kind
+        failures.append(f"{kind or 'default'}: {failure}")
+    raise RenderError(
+        f"pictures can't be rendered on this machine ({'; '.join(failures)}): install Mesa's EGL (Debian, Ubuntu: "
+        "apt install libegl1 libgl1-mesa-dri), or write VTK files and look at them in ParaView elsewhere"
+    )
+
+
+def can_render(kind: str) -> str:
+    """Render a small picture with a window class in a new process; return what went wrong, or ""."""
+    environment = {**os.environ, _VARIABLE: kind} if kind else dict(os.environ)
+    try:
+        run = subprocess.run(
+            [sys.executable, "-c", _TRIAL], env=environment, capture_output=True, timeout=_TIMEOUT, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"no answer in {_TIMEOUT:.0f} s"
+    except OSError as error:
+        return str(error)
+    if run.returncode == 0:
+        return ""
+    return "a crash" if run.returncode < 0 else "no picture" if run.returncode == 3 else "an error"

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import figure_for
+from rotorgear.plots.figure import COLOURS, figure_for, name_axes, plain_axis
 from rotorgear.results.static import MeshFace, StaticResult
 
 
@@ -43,8 +42,7 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
         shares = {row.mesh: row.share for row in result.shares}
         names = [f"{mesh}\n{100.0 * shares[mesh]:.1f} %" if mesh in shares else mesh for mesh in meshes]
         forces.set_xticks(range(len(meshes)), names, fontsize=9)
-        forces.set_ylabel("normal force, kN")
-        forces.set_title("Meshes, with the share of each branch" if shares else "Meshes", fontsize=10)
+        name_axes(forces, "", "normal force, kN", title="Meshes, with the share of each branch" if shares else "Meshes")
         forces.margins(y=0.15)
         if helices == 2:
             forces.legend(frameon=False, fontsize=8)
@@ -56,8 +54,7 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
         bearings.barh(y + 0.19, axial, height=0.36, color=COLOURS[1], label="axial")
         bearings.set_yticks(y, list(result.bearing_force), fontsize=9)
         bearings.invert_yaxis()
-        bearings.set_xlabel("force, kN")
-        bearings.set_title("Bearings", fontsize=10)
+        name_axes(bearings, "force, kN", title="Bearings")
         if result.bearing_force:
             bearings.legend(frameon=False, fontsize=8)
         plain_axis(bearings)
@@ -77,10 +74,13 @@ def _along_faces(axis: Any, faces: list[MeshFace]) -> None:
         if row.load_place_m is not None:
             axis.axvline(1e3 * row.load_place_m, color=colour, lw=0.8, ls=":")
     axis.set_ylim(bottom=0.0)
-    axis.set_xlabel("z from the middle of the face, mm")
-    axis.set_ylabel("load per width, N/mm")
-    axis.set_title("Along the face (dotted: resultant)", fontsize=10)
-    axis.legend(frameon=False, fontsize=8)
+    name_axes(
+        axis,
+        "z from the middle of the face, mm",
+        "load per width, N/mm",
+        title="Along the face (dotted: resultant)",
+        legend=1,
+    )
     plain_axis(axis)
 
 
@@ -105,10 +105,3 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[A
     axes[0].set_title("Deflection of the shafts (dotted: gears grey, bearings green)", fontsize=10)
     axes[-1].set_xlabel("z, mm")
     return list(axes)
-
-
-def plain_axis(axis: Any) -> None:
-    """Light grid, no frame on top and right."""
-    axis.grid(True, alpha=0.25)
-    for side in ("top", "right"):
-        axis.spines[side].set_visible(False)

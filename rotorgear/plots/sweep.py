@@ -1,4 +1,7 @@
-"""Pictures of a sweep: bifurcation diagram with Lyapunov exponent and indicators, or maps over two parameters."""
+"""Pictures of a sweep: bifurcation diagram, maps over two parameters, and phase portraits and spectra of chosen points.
+
+Portraits and spectra are drawn as the literature on nonlinear gear dynamics shows them.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import figure_for, save_all
-from rotorgear.plots.sweep_portraits import portrait_spectra, portraits
+from rotorgear.plots.figure import COLOURS, figure_for, name_axes, panels_of, parameter_name, save_all
+from rotorgear.results.portrait import DISPLACEMENT, VELOCITY, Portraits
 from rotorgear.results.sweep import SweepResult
 
 _SIZE = (8.0, 6.0)
@@ -56,10 +58,6 @@ def sweep(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarr
     return bifurcation(result, fig, contact=contact) if len(result.shape) == 1 else sweep_map(result, fig)
 
 
-def _label(result: SweepResult, axis: int) -> str:
-    return f"{result.address[axis]}{', ' + result.unit[axis] if result.unit[axis] else ''}"
-
-
 def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
     """Draw a contact at the Poincare sections over the parameter, the largest exponent, and shares of time below it.
 
@@ -94,9 +92,11 @@ def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np
                 lw=0.7,
                 color=_colour(result, r),
             )
-    axes[0].set_ylabel("displacement at the section, um")
-    axes[0].set_title(
-        f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}", fontsize=9
+    name_axes(
+        axes[0],
+        "",
+        "displacement at the section, um",
+        title=f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}",
     )
     if len(result.run) > 1:
         axes[0].legend(fontsize=7, markerscale=4, loc="best", ncols=2)
@@ -116,7 +116,7 @@ def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np
         )
     axes[-1].set_ylabel("share of\ntime, %")
     axes[-1].legend(fontsize=7)
-    axes[-1].set_xlabel(_label(result, 0))
+    axes[-1].set_xlabel(parameter_name(result.address[0], result.unit[0]))
     for one in axes:
         one.grid(alpha=0.25)
     return np.asarray(axes)
@@ -141,12 +141,9 @@ def sections(result: SweepResult, fig: Any = None) -> np.ndarray:
     """
     sound = [p for p in range(len(result.values)) if not result.failure[p]]
     chosen = [sound[i] for i in np.unique(np.linspace(0, len(sound) - 1, min(9, len(sound))).round().astype(int))]
-    columns = int(np.ceil(np.sqrt(len(chosen))))
     figure = figure_for(fig, _SIZE, "")
-    grid = figure.subplots(int(np.ceil(len(chosen) / columns)), columns, squeeze=False)
-    for one in grid.flat[len(chosen) :]:
-        one.set_visible(False)
-    for one, p in zip(grid.flat, chosen, strict=False):
+    panels = panels_of(figure, len(chosen))
+    for one, p in zip(panels, chosen, strict=True):
         for r in range(len(result.run)):
             x = 1e6 * result.section[p, r, :, 0, 0]
             v = 1e3 * result.section[p, r, :, 0, 1]
@@ -157,7 +154,7 @@ def sections(result: SweepResult, fig: Any = None) -> np.ndarray:
         one.ticklabel_format(useOffset=False)
     figure.supxlabel(f"displacement of {result.contact[0]}, um", fontsize=9)
     figure.supylabel("velocity, mm/s", fontsize=9)
-    return np.asarray(grid.flat[: len(chosen)])
+    return np.asarray(panels)
 
 
 def sweep_map(result: SweepResult, fig: Any = None) -> np.ndarray:
@@ -181,7 +178,9 @@ def sweep_map(result: SweepResult, fig: Any = None) -> np.ndarray:
     n1, n2 = (int(n) for n in result.shape)
     x = result.values[::n2, 0]
     y = result.values[:n2, 1]
-    kinds = np.array([_class(result.motion_at(p)) for p in range(n1 * n2)], dtype=float).reshape(n1, n2).T
+    words = [result.motion_at(p) for p in range(n1 * n2)]
+    words = [word if word in _KINDS else "longer" if word.endswith("T") else "not settled" for word in words]
+    kinds = np.array([_KINDS.index(word) for word in words], dtype=float).reshape(n1, n2).T
     exponent = bool(result.lyapunov.shape[2])
     axes = np.atleast_1d(figure.subplots(2 if exponent else 1, 1, sharex=True))
     shades = ListedColormap(list(_SHADES))
@@ -204,13 +203,120 @@ def sweep_map(result: SweepResult, fig: Any = None) -> np.ndarray:
         )
         figure.colorbar(picture, ax=axes[1], label="LE per mesh period")
     for one in axes:
-        one.set_ylabel(_label(result, 1), fontsize=8)
-    axes[-1].set_xlabel(_label(result, 0))
+        one.set_ylabel(parameter_name(result.address[1], result.unit[1]), fontsize=8)
+    axes[-1].set_xlabel(parameter_name(result.address[0], result.unit[0]))
     return axes
 
 
-def _class(kind: str) -> int:
-    """Place of a kind among the shades."""
-    if kind in _KINDS:
-        return _KINDS.index(kind)
-    return _KINDS.index("longer") if kind.endswith("T") else _KINDS.index("not settled")
+# Mesh orders that a spectrum shows, and decades below its largest line.
+_ORDERS = 4.0
+_DECADES = 5
+
+
+def portraits(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
+    """Draw velocity over displacement of a contact through some periods, with the Poincare points on top.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+        contact: its number, counted from 0.
+
+    Returns:
+        One axes a point.
+
+    Raises:
+        AnalysisError: the sweep kept no trajectories. MissingExtraError: matplotlib is not installed.
+    """
+    kept, figure, panels = _panels(result, fig)
+    for k, one in enumerate(panels):
+        for j in range(len(kept.run)):
+            path = 1e6 * kept.trajectory(k, j)[:, contact]
+            points = 1e6 * kept.section(k, j)[:, contact]
+            line, dot = _colours(kept, j)
+            one.plot(
+                path[:, DISPLACEMENT],
+                1e-3 * path[:, VELOCITY],
+                lw=0.4,
+                color=line,
+                label=_name(result, k, j),
+                rasterized=True,
+            )
+            one.plot(points[:, DISPLACEMENT], 1e-3 * points[:, VELOCITY], ".", ms=4, mew=0, color=dot, zorder=3)
+        _legend(result, k, one)
+        one.margins(0.08)
+        one.ticklabel_format(useOffset=False)
+    figure.supxlabel(f"displacement of {result.contact[contact]}, um", fontsize=9)
+    figure.supylabel("velocity, mm/s", fontsize=9)
+    return np.array(panels)
+
+
+def portrait_spectra(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
+    """Draw amplitudes of the displacement of a contact over the frequency as a multiple of the mesh frequency.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+        contact: its number, counted from 0.
+
+    Returns:
+        One axes a point.
+
+    Raises:
+        AnalysisError: the sweep kept no trajectories. MissingExtraError: matplotlib is not installed.
+    """
+    kept, figure, panels = _panels(result, fig)
+    for k, one in enumerate(panels):
+        largest = 0.0
+        for j in range(len(kept.run)):
+            order, amplitude = kept.spectrum(k, j, contact)
+            shown = (order > 0.0) & (order <= _ORDERS + 0.2)
+            one.semilogy(
+                order[shown], 1e6 * amplitude[shown], lw=0.6, color=_colours(kept, j)[1], label=_name(result, k, j)
+            )
+            largest = max(largest, float(np.nanmax(1e6 * amplitude[shown], initial=0.0)))
+        one.set_xlim(0.0, _ORDERS + 0.2)
+        _legend(result, k, one)
+        if largest > 0.0:
+            one.set_ylim(10.0**-_DECADES * largest, 3.0 * largest)
+        one.set_xticks(np.arange(0.0, _ORDERS + 0.5))
+        one.set_xticks(np.arange(0.5, _ORDERS, 1.0), minor=True)
+        one.grid(which="both", axis="x", lw=0.4, alpha=0.35)
+    which = "that of the fastest mesh" if kept.turns.max() > 1 else "the mesh frequency"
+    figure.supxlabel(f"frequency over {which}", fontsize=9)
+    figure.supylabel(f"amplitude of the displacement of {result.contact[contact]}, um", fontsize=9)
+    return np.array(panels)
+
+
+def _panels(result: SweepResult, fig: Any) -> tuple[Portraits, Any, list[Any]]:
+    """One pair of axes for each point, named by its values and response types."""
+    kept = result.portraits
+    if kept is None:
+        raise AnalysisError("the sweep kept no trajectories: ask for them (portraits, --portraits)")
+    count = len(kept.point)
+    inches = (5.0, 4.0) if count == 1 else (8.0, 6.0) if count <= 9 else (10.5, 8.0)
+    figure = figure_for(fig, inches, "")
+    panels = panels_of(figure, count)
+    for one, p in zip(panels, kept.point.tolist(), strict=True):
+        values = ", ".join(f"{x:.6g} {unit}".strip() for x, unit in zip(result.values[p], result.unit, strict=True))
+        kinds = [result.motion_at(p, r) for r in kept.run.tolist()]
+        if len(kinds) > 1:
+            kinds = [f"{result.run[r]} {kind}" for r, kind in zip(kept.run.tolist(), kinds, strict=True)]
+        one.set_title(f"{values}: {', '.join(kinds)}", fontsize=8)
+        one.tick_params(labelsize=7)
+    return kept, figure, panels
+
+
+def _name(result: SweepResult, k: int, j: int) -> str | None:
+    """Name of a run where the legend of the first panel tells several apart."""
+    kept = result.portraits
+    return result.run[kept.run[j]] if kept is not None and k == 0 and len(kept.run) > 1 else None
+
+
+def _legend(result: SweepResult, k: int, one: Any) -> None:
+    if _name(result, k, 0):
+        one.legend(fontsize=6, loc="best", frameon=False)
+
+
+def _colours(kept: Portraits, j: int) -> tuple[str, str]:
+    """Of the trajectory of a run, and of its Poincare points."""
+    return ("#888888", "k") if len(kept.run) == 1 else (COLOURS[j % len(COLOURS)], COLOURS[j % len(COLOURS)])

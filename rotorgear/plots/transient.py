@@ -11,7 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.transient.spectra import spectrum
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import axes_for, figure_for, save_all
+from rotorgear.plots.figure import axes_for, figure_for, name_axes, panels_of, save_all
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 
@@ -70,9 +70,7 @@ def _histories(result: TransientResult, ax: Any, table: np.ndarray, label: str) 
     axes = axes_for(ax, _SIZE, result.model.title)
     for i, name in enumerate(result.contact):
         axes.plot(1e3 * result.time[shown], table[shown, i], lw=1.0, label=name)
-    axes.set_xlabel("time, ms")
-    axes.set_ylabel(label)
-    axes.grid(alpha=0.3)
+    name_axes(axes, "time, ms", label, grid=True)
     axes.legend(
         fontsize=7, ncols=4, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12)
     )  # curves fill the axes
@@ -150,9 +148,7 @@ def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:
         axes.set_ylim(0.3 * _SHOWN_SHARE * top, 3.0 * top)
         if result.mesh_frequency and not orders:
             axes.legend(fontsize=7, loc="upper right")
-        axes.set_ylabel(f"amplitude, {lines.unit}")
-        axes.set_title(name, fontsize=9)
-        axes.grid(alpha=0.3)
+        name_axes(axes, "", f"amplitude, {lines.unit}", title=name, grid=True)
     axes.set_xlabel("order of the input shaft" if orders else "frequency, Hz")
     return panels
 
@@ -180,11 +176,8 @@ def shaft_orbits(result: TransientResult, fig: Any = None) -> np.ndarray:
         raise AnalysisError("there are no orbits to draw: no bearing of the model has displacements along x and y")
     figure = figure_for(fig, _SIZE, result.model.title)
     shown = _window(result)
-    columns = int(np.ceil(np.sqrt(len(names))))
-    grid = figure.subplots(int(np.ceil(len(names) / columns)), columns, squeeze=False)
-    for axes in grid.flat[len(names) :]:
-        axes.set_visible(False)
-    for axes, name in zip(grid.flat, names, strict=False):
+    panels = panels_of(figure, len(names))
+    for axes, name in zip(panels, names, strict=True):
         x, y = (1e6 * result.history(f"{name} displacement {axis}")[shown] for axis in "xy")
         axes.plot(x - x.mean(), y - y.mean(), lw=0.6)
         axes.set_aspect("equal", "datalim")
@@ -192,7 +185,7 @@ def shaft_orbits(result: TransientResult, fig: Any = None) -> np.ndarray:
         axes.tick_params(labelsize=7)
     figure.supxlabel("x, um")
     figure.supylabel("y, um")
-    return np.asarray(grid.flat[: len(names)])
+    return np.asarray(panels)
 
 
 def energy(result: TransientResult, fig: Any = None) -> np.ndarray:
@@ -225,8 +218,7 @@ def energy(result: TransientResult, fig: Any = None) -> np.ndarray:
     # Above the panel: the terms take its whole height.
     upper.legend(fontsize=7, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
     lower.plot(1e3 * e.time, e.numerical, lw=1.0, color="tab:red")
-    lower.set_ylabel("energy error, J")
-    lower.set_xlabel("time, ms")
+    name_axes(lower, "time, ms", "energy error, J")
     for axes in (upper, lower):
         axes.grid(alpha=0.3)
     return np.array([upper, lower])
@@ -267,7 +259,5 @@ def spectrogram(result: TransientResult, ax: Any = None) -> Any:
     axes.figure.colorbar(picture, ax=axes, label="dB of the amplitude squared")
     seen = f[level.max(axis=1) > level.max() - _SHOWN_DB]
     axes.set_ylim(0.0, 1.1 * float(seen.max(initial=f[1])))
-    axes.set_xlabel("speed of the input shaft, rpm")
-    axes.set_ylabel("frequency, Hz")
-    axes.set_title(name, fontsize=9)
+    name_axes(axes, "speed of the input shaft, rpm", "frequency, Hz", title=name)
     return axes

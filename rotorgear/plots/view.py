@@ -13,9 +13,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.export.paraview import import_pyvista
 from rotorgear.export.solids import DEFAULT_AMPLITUDE, LIGHT, build_solids
 from rotorgear.model.model import Model
-from rotorgear.plots.camera import best_direction, look
-from rotorgear.plots.offscreen import RenderError, can_render
-from rotorgear.plots.scene import INK, Scene, add_headline
+from rotorgear.plots.scene import INK, RenderError, Scene, add_headline, best_direction, can_render, look
 from rotorgear.results.modal import ModalResult, NodeTable, body_name
 
 _MILLISECONDS = 40
@@ -41,7 +39,14 @@ def view(shown: ModalResult | Model, mode: int | None = None) -> None:
     if result is not None and not 0 <= (mode or 0) < len(result):
         raise AnalysisError(f"there is no mode {(mode or 0) + 1}: the result has {len(result)}")
     pv = import_pyvista("The window")
-    _require_display()
+    if sys.platform.startswith("linux"):
+        # A broken display would crash this process, so another one tries it.
+        remedy = "; use modal --plot for PNGs, or modal --vtk and ParaView on another machine"
+        if not os.environ.get("DISPLAY"):
+            raise RenderError(f"a window needs a display, and there is none here (DISPLAY is not set){remedy}")
+        failure = can_render("vtkXOpenGLRenderWindow")
+        if failure:
+            raise RenderError(f"no window can open on the display {os.environ['DISPLAY']} ({failure}){remedy}")
     model, nodes = (shown, _nodes(shown)) if isinstance(shown, Model) else (shown.model, shown.nodes)
     plotter = pv.Plotter(title=f"rotorgear: {model.title}", window_size=[1400, 900], lighting="none")
     scene = Scene(pv, build_solids(model, nodes, LIGHT), result)
@@ -114,18 +119,6 @@ class Player:
         )
         plotter.add_text(_HELP, position=(0.35, 0.02), viewport=True, font_size=9, color=INK, name="help")
         plotter.add_timer_event(max_steps=2**31 - 1, duration=_MILLISECONDS, callback=self.step)
-
-
-def _require_display() -> None:
-    """RenderError where no window can open; a broken display would crash this process, so another one tries it."""
-    if not sys.platform.startswith("linux"):
-        return
-    remedy = "; use modal --plot for PNGs, or modal --vtk and ParaView on another machine"
-    if not os.environ.get("DISPLAY"):
-        raise RenderError(f"a window needs a display, and there is none here (DISPLAY is not set){remedy}")
-    failure = can_render("vtkXOpenGLRenderWindow")
-    if failure:
-        raise RenderError(f"no window can open on the display {os.environ['DISPLAY']} ({failure}){remedy}")
 
 
 def _nodes(model: Model) -> NodeTable:

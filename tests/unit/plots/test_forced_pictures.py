@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.plots.waterfall import waterfall_of
+from rotorgear.plots.response import waterfall_of
 from tests.paths import ROOT
 
 GEARBOX = ROOT / "models" / "split_torque.toml"

@@ -7,10 +7,9 @@ import pytest
 
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.export.files import WriteError
-from rotorgear.plots import offscreen, view
+from rotorgear.plots import scene, view
 from rotorgear.plots.mode_pictures import write_modes
-from rotorgear.plots.offscreen import RenderError, rendering, working_window
-from rotorgear.plots.scene import Scene, colour_map, headline
+from rotorgear.plots.scene import RenderError, Scene, colour_map, headline, rendering, working_window
 from tests.unit.export.small_models import CHAIN, PAIR, modes_of
 
 pv = pytest.importorskip("pyvista")
@@ -63,7 +62,7 @@ def test_drawing_leaves_the_environment_as_it_was(pictures):
 def broken_graphics(monkeypatch):
     """Every trial of this test ends as a crash does."""
     working_window.cache_clear()
-    monkeypatch.setattr(offscreen, "_TRIAL", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    monkeypatch.setattr(scene, "_TRIAL", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
     yield
     working_window.cache_clear()
 
@@ -76,14 +75,14 @@ def test_where_rendering_crashes_the_command_says_so_and_lives(tmp_path, broken_
 
 
 def test_a_trial_that_hangs_is_given_up(monkeypatch):
-    monkeypatch.setattr(offscreen, "_TRIAL", "import time; time.sleep(60)")
-    monkeypatch.setattr(offscreen, "_TIMEOUT", 0.2)
-    assert offscreen.can_render("") == "no answer in 0 s"
+    monkeypatch.setattr(scene, "_TRIAL", "import time; time.sleep(60)")
+    monkeypatch.setattr(scene, "_TIMEOUT", 0.2)
+    assert scene.can_render("") == "no answer in 0 s"
 
 
 def test_a_trial_that_draws_nothing_is_no_success(monkeypatch):
-    monkeypatch.setattr(offscreen, "_TRIAL", "raise SystemExit(3)")
-    assert offscreen.can_render("") == "no picture"
+    monkeypatch.setattr(scene, "_TRIAL", "raise SystemExit(3)")
+    assert scene.can_render("") == "no picture"
 
 
 def test_wishes_that_make_no_sense_are_refused(tmp_path):

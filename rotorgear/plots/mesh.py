@@ -1,4 +1,4 @@
-"""Draws a mesh over its cycle: stiffness and transmission error, load sharing, and where the flank carries how much."""
+"""Draws a mesh over its cycle, over torque and misalignment, and the stress in its roots."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import axes_for, figure_for
+from rotorgear.plots.figure import BLUE, GREY, ORANGE, axes_for, figure_for, name_axes
 from rotorgear.results.mesh import MeshResult
+from rotorgear.results.mesh_map import MeshMap
+from rotorgear.results.root_stress import RootStress
 
-_BLUE = "#1f5fa8"
-_ORANGE = "#b3541e"
-_GREY = "#777777"
-_LEVELS = 16
+_LEVELS = {"pressure": 16, "map": 14}
 
 
 def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
@@ -34,12 +33,17 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
     figure = figure_for(fig, (11.0, 3.7 * rows), f"{result.mesh}: {result.stiffness_model}{load}")
     axes = figure.subplots(rows, 2, squeeze=False)
     stiffness = axes[0, 0]
-    stiffness.plot(*_closed(result, 1e-6 * result.stiffness), color=_BLUE, lw=1.6, label=result.definition)
+    stiffness.plot(
+        *_closed(result.position, 1e-6 * result.stiffness, result.periods), color=BLUE, lw=1.6, label=result.definition
+    )
     if result.tangent is not None:
-        stiffness.plot(*_closed(result, 1e-6 * result.tangent), color=_ORANGE, lw=1.2, label="tangent")
-    stiffness.axhline(1e-6 * result.mean_stiffness, color=_GREY, lw=0.9, ls="--", label="mean")
-    stiffness.legend(frameon=False, fontsize=8)
-    stiffness.set_title(f"stiffness, {'all helices' if result.helices > 1 else 'one helix'}, transverse", fontsize=10)
+        stiffness.plot(
+            *_closed(result.position, 1e-6 * result.tangent, result.periods), color=ORANGE, lw=1.2, label="tangent"
+        )
+    stiffness.axhline(1e-6 * result.mean_stiffness, color=GREY, lw=0.9, ls="--", label="mean")
+    name_axes(
+        stiffness, title=f"stiffness, {'all helices' if result.helices > 1 else 'one helix'}, transverse", legend=1
+    )
     _plain_axis(stiffness, "stiffness, N/um")
     _error(axes[0, 1], result)
     if result.helix:
@@ -52,10 +56,9 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
             if np.any(carries[1:] & carries[:-1]):
                 sharing.plot(result.position, carried, lw=1.6, label=f"pair {pair}")
             elif carries.any():
-                sharing.plot(result.position, carried, ".", color=_GREY, ms=3)
+                sharing.plot(result.position, carried, ".", color=GREY, ms=3)
         sharing.set_ylim(0.0, None)
-        sharing.legend(frameon=False, fontsize=8, ncols=2)
-        sharing.set_title(f"load sharing, contact ratio {helix.contact_ratio:.2f} under load", fontsize=10)
+        name_axes(sharing, title=f"load sharing, contact ratio {helix.contact_ratio:.2f} under load", legend=2)
         _plain_axis(sharing, "share of the load, %")
         mesh_pressure(result, axes[1, 1])
     if result.loads:
@@ -64,19 +67,13 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
     return np.asarray(axes)
 
 
-def _closed(result: MeshResult, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _closed(position: np.ndarray, values: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
     """The curve with its first point again at the end of the last period."""
-    return _closed_at(result.position, values, result.periods)
-
-
-def _closed_at(position: np.ndarray, values: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
     return np.append(position, position[0] + periods), np.append(values, values[0])
 
 
 def _plain_axis(axis: Any, label: str) -> None:
-    axis.set_xlabel("mesh periods")
-    axis.set_ylabel(label)
-    axis.grid(True, alpha=0.25)
+    name_axes(axis, "mesh periods", label, grid=True)
     axis.ticklabel_format(axis="y", useOffset=False)
 
 
@@ -85,12 +82,23 @@ def _error(axis: Any, result: MeshResult) -> None:
     if result.transmission_error is None or result.no_load_error is None:
         axis.text(0.5, 0.5, "no load", ha="center", transform=axis.transAxes)
         return
-    axis.plot(*_closed(result, 1e6 * result.transmission_error), color=_BLUE, lw=1.6, label="under load")
+    axis.plot(
+        *_closed(result.position, 1e6 * result.transmission_error, result.periods),
+        color=BLUE,
+        lw=1.6,
+        label="under load",
+    )
     if np.ptp(result.no_load_error) > 0.0:
         # Both curves about one mean: what is compared is how much they vary.
         shift = float(np.mean(result.transmission_error) - np.mean(result.no_load_error))
         label = f"without load, {1e6 * shift:+.3g} um"
-        axis.plot(*_closed(result, 1e6 * (result.no_load_error + shift)), color=_GREY, lw=1.2, ls="--", label=label)
+        axis.plot(
+            *_closed(result.position, 1e6 * (result.no_load_error + shift), result.periods),
+            color=GREY,
+            lw=1.2,
+            ls="--",
+            label=label,
+        )
         axis.legend(frameon=False, fontsize=8)
     _plain_axis(axis, "transmission error, um")
 
@@ -115,8 +123,7 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
         )
     contact = result.helix[helix]
     axis = axes_for(ax, (6.4, 4.4), "")
-    axis.set_title(f"contact pressure on {result.pinion}, whole cycle", fontsize=10)
-    axis.set_xlabel(f"roll length on {result.pinion}, mm")
+    name_axes(axis, f"roll length on {result.pinion}, mm", title=f"contact pressure on {result.pinion}, whole cycle")
     # Corners touch where the line of action passes too, at another position: they are shown beside it.
     on_line = ~contact.corner
     touching = contact.corner & (contact.force > 0.0)
@@ -125,20 +132,19 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
     pressure = 1e-6 * contact.pressure
     if np.ptp(z) == 0.0:
         order = np.flatnonzero(on_line)[np.argsort(roll[on_line])]
-        axis.fill_between(roll[order], pressure[order], color=_BLUE, alpha=0.25, lw=0.0)
-        axis.plot(roll[order], pressure[order], color=_BLUE, lw=1.4, label="on the line of action")
+        axis.fill_between(roll[order], pressure[order], color=BLUE, alpha=0.25, lw=0.0)
+        axis.plot(roll[order], pressure[order], color=BLUE, lw=1.4, label="on the line of action")
         if touching.any():
-            axis.plot(roll[touching], pressure[touching], ".", color=_ORANGE, ms=4, label="a tip corner touches")
+            axis.plot(roll[touching], pressure[touching], ".", color=ORANGE, ms=4, label="a tip corner touches")
             _legend_below(axis, 2)
-        axis.set_ylabel("largest pressure, MPa")
-        axis.grid(True, alpha=0.25)
+        name_axes(axis, "", "largest pressure, MPa", grid=True)
         axis.set_ylim(0.0, None)
     else:
         from matplotlib.tri import Triangulation
 
         # Triangles between the places that contact lines pass; both directions to scale, or slender ones would smear.
         near = Triangulation(roll[on_line] / np.ptp(roll), z[on_line] / np.ptp(z)).triangles
-        levels = np.linspace(0.0, max(float(pressure.max()), 1e-3), _LEVELS)
+        levels = np.linspace(0.0, max(float(pressure.max()), 1e-3), _LEVELS["pressure"])
         filled = axis.tricontourf(
             Triangulation(roll[on_line], z[on_line], near), pressure[on_line], levels=levels, cmap="viridis"
         )
@@ -201,16 +207,15 @@ def mesh_loads(result: MeshResult, ax: Any = None) -> Any:
     points.append((1.0, result.ste_peak_to_peak or 0.0, own_orders))
     points = sorted({factor: (factor, size, orders) for factor, size, orders in points}.values())
     torque = abs(result.load.pinion_torque_n_m) * np.array([point[0] for point in points])
-    axis.plot(torque, [1e6 * point[1] for point in points], "o-", ms=3.5, lw=1.6, color=_BLUE, label="peak to peak")
+    axis.plot(torque, [1e6 * point[1] for point in points], "o-", ms=3.5, lw=1.6, color=BLUE, label="peak to peak")
     for order in range(min(len(point[2]) for point in points)):
         values = [1e6 * point[2][order] for point in points]
         axis.plot(torque, values, ".--", lw=1.1, label=f"mesh order {order + 1}")
-    axis.set_title("transmission error over the torque", fontsize=10)
-    axis.set_xlabel(f"torque on {result.pinion}, N m")
-    axis.set_ylabel("transmission error, um")
+    name_axes(
+        axis, f"torque on {result.pinion}, N m", "transmission error, um", title="transmission error over the torque"
+    )
     axis.set_ylim(0.0, None)
-    axis.grid(True, alpha=0.25)
-    axis.legend(frameon=False, fontsize=8)
+    name_axes(axis, legend=1, grid=True)
     return axis
 
 
@@ -220,7 +225,113 @@ def _errors_at_loads(axis: Any, result: MeshResult) -> None:
     for point in result.loads:
         if point.ste_m is not None and point.position is not None:
             middle = 0.5 * (point.ste_m.max() + point.ste_m.min())
-            curve = _closed_at(point.position, 1e6 * (point.ste_m - middle), result.periods)
+            curve = _closed(point.position, 1e6 * (point.ste_m - middle), result.periods)
             axis.plot(*curve, lw=1.3, label=f"{point.factor:g}")
     axis.legend(frameon=False, fontsize=8, ncols=4)
     _plain_axis(axis, "transmission error, um")
+
+
+# What is drawn by name: its field, the factor to its unit, and its label.
+QUANTITIES = {
+    "ste": ("ste_peak_to_peak", 1e6, "transmission error, peak to peak, um"),
+    "order_1": ("ste_harmonics", 1e6, "transmission error, mesh order 1, um"),
+    "order_2": ("ste_harmonics", 1e6, "transmission error, mesh order 2, um"),
+    "order_3": ("ste_harmonics", 1e6, "transmission error, mesh order 3, um"),
+    "pressure": ("largest_pressure", 1e-6, "largest contact pressure, MPa"),
+    "face_load_factor": ("face_load_factor", 1.0, "face load factor K_Hbeta"),
+}
+
+
+def mesh_map(result: MeshMap, fig: Any = None) -> np.ndarray:
+    """Draw transmission error, its first three orders, pressure and face load factor.
+
+    Args:
+        result: a mesh over torque and misalignment.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        The axes (2, 3).
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    figure = figure_for(fig, (13.0, 7.2), f"{result.mesh}: {result.pinion} and {result.gear}")
+    axes = np.asarray(figure.subplots(2, 3, squeeze=False))
+    for axis, quantity in zip(
+        axes.flat, ("ste", "order_1", "order_2", "pressure", "face_load_factor", "order_3"), strict=True
+    ):
+        mesh_quantity(result, axis, quantity=quantity)
+    return axes
+
+
+def mesh_quantity(result: MeshMap, ax: Any = None, *, quantity: str = "ste") -> Any:
+    """Draw one quantity over torque and misalignment.
+
+    Args:
+        result: a mesh over torque and misalignment.
+        ax: axes to draw on; those of a new figure for None.
+        quantity: "ste" (peak to peak), "order_1" to "order_3", "pressure" or "face_load_factor".
+
+    Returns:
+        The axes.
+
+    Raises:
+        AnalysisError: no such quantity. MissingExtraError: matplotlib is not installed.
+    """
+    if quantity not in QUANTITIES:
+        raise AnalysisError(f"a mesh map has no '{quantity}': there are {', '.join(QUANTITIES)}")
+    field, factor, label = QUANTITIES[quantity]
+    values = factor * getattr(result, field)
+    if field == "ste_harmonics":
+        values = values[:, :, int(quantity[-1]) - 1]
+    axis = axes_for(ax, (6.4, 4.4), "")
+    torque = result.pinion_torque
+    misalignment = 1e6 * result.misalignment
+    # A constant up to rounding has no contours.
+    if min(values.shape) > 1:
+        axis.set_title(label, fontsize=10)
+        if np.ptp(values) > 1e-9 * np.abs(values).max():
+            filled = axis.contourf(torque, misalignment, values.T, levels=_LEVELS["map"], cmap="viridis")
+            axis.contour(
+                torque, misalignment, values.T, levels=_LEVELS["map"], colors="white", linewidths=0.4, alpha=0.6
+            )
+            axis.figure.colorbar(filled, ax=axis)
+        else:
+            axis.text(0.5, 0.5, f"{values.flat[0]:.4g} everywhere", ha="center", transform=axis.transAxes)
+        name_axes(axis, "torque on the pinion, N m", "misalignment over the face, um")
+        return axis
+    over_torque = len(torque) > 1 or len(misalignment) == 1
+    x = torque if over_torque else misalignment
+    axis.plot(x, values.ravel(), "o-", ms=3.5, lw=1.5, color=BLUE)
+    name_axes(axis, "torque on the pinion, N m" if over_torque else "misalignment over the face, um", label)
+    axis.set_ylim(0.0, None)
+    axis.grid(True, alpha=0.25)
+    return axis
+
+
+def root_stress(result: RootStress, ax: Any = None) -> Any:
+    """Draw the largest principal stress at the 30 degree tangent, and the largest of the fillet.
+
+    Args:
+        result: root stresses over the mesh cycle.
+        ax: axes to draw on; those of a new figure for None.
+
+    Returns:
+        The axes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    axis = axes_for(ax, (8.0, 4.6), f"{result.mesh}: {result.pinion_torque_n_m:.5g} N m on the pinion")
+    for gear, colour in zip(result.gears, (BLUE, ORANGE), strict=True):
+        axis.plot(gear.phase, 1e-6 * gear.largest, color=colour, lw=1.6, label=f"{gear.name}, largest of the fillet")
+        axis.plot(
+            gear.phase, 1e-6 * gear.at_tangent, color=colour, lw=1.2, ls="--", label=f"{gear.name}, 30 deg tangent"
+        )
+        if gear.nominal is not None:
+            axis.axhline(1e-6 * gear.nominal, color=colour, lw=0.8, ls=":", label=f"{gear.name}, nominal by ISO 6336-3")
+    axis.axvline(0.0, color=GREY, lw=0.8)
+    name_axes(
+        axis, "mesh periods from contact at the pitch point", "largest principal stress, MPa", legend=1, grid=True
+    )
+    return axis

@@ -1,0 +1,205 @@
+"""Draws a run-up: amplitudes over speed, whole and by order, and a waterfall, the spectrum of one quantity at every speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.plots.figure import COLOURS, GREY, axes_for, figure_for, name_axes, plain_axis
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.response import ResponseResult
+
+_MOST_LINES = len(COLOURS)
+_WIDTH = 5.6
+_HEIGHT = 2.9
+_HEADROOM = 0.45  # for the legend, as a share of the height of the curves
+
+
+def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
+    """Draw amplitudes over speed: mesh forces, transmission errors, bearing forces and accelerations.
+
+    Left: each mesh, bearing or point with all its orders together (root of the sum of squares); right: the strongest of them
+    by order. The eight strongest lines are drawn. The dashed line is the operating speed.
+
+    Args:
+        result: a run-up.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        The axes, row by row, (rows, 2).
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    rows = [row for row in _quantities(result) if row[2].size and row[2].any()]
+    title = f"{result.model.title or 'Forced response'}: amplitudes over speed"
+    figure = figure_for(fig, (2.0 * _WIDTH, _HEIGHT * max(len(rows), 1) + 0.4), title)
+    axes = np.atleast_2d(figure.subplots(max(len(rows), 1), 2, sharex=True))
+    for (left, right), (title, names, size, unit) in zip(axes, rows, strict=False):
+        total = np.sqrt((size**2).sum(axis=0))  # (s, lines)
+        _lines(left, result, names, total.T, f"{title}, {unit}")
+        strongest = int(np.argmax(total.max(axis=0)))
+        _lines(right, result, list(result.orders), size[:, :, strongest], f"{names[strongest]} by order, {unit}")
+    for axis in axes[-1]:
+        axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
+    return axes
+
+
+def _quantities(result: ResponseResult) -> list[tuple[str, list[str], np.ndarray, str]]:
+    """(title, names of the lines, amplitudes (o, s, lines), unit)."""
+    meshes = list(dict.fromkeys(result.contact_mesh))
+
+    def by_mesh(values: np.ndarray) -> np.ndarray:
+        largest = [np.abs(values[:, :, result.contacts_of(mesh)]).max(axis=2) for mesh in meshes]
+        return np.stack(largest, axis=2) if largest else np.zeros((len(result.orders), len(result.speeds), 0))
+
+    bearings = np.linalg.norm(np.abs(result.bearing_force), axis=3)
+    turning = ("tilt_x", "tilt_y", "torsion")
+    linear = [k for k, name in enumerate(result.points) if result.model.points[name].direction not in turning]
+    angular = [k for k, name in enumerate(result.points) if result.model.points[name].direction in turning]
+    quantities = [
+        ("Dynamic mesh force of a helix", meshes, by_mesh(result.mesh_force), "N"),
+        ("Transmission error", meshes, 1e6 * by_mesh(result.transmission_error), "um"),
+        ("Bearing force", list(result.bearings), bearings, "N"),
+        *(
+            ("Acceleration", [result.points[k] for k in points], np.abs(result.acceleration[:, :, points]), unit)
+            for points, unit in ((linear, "m/s$^2$"), (angular, "rad/s$^2$"))
+        ),
+    ]
+    casings = list(result.casings)
+    if casings:  # the power of orders adds up, as the squares of amplitudes do
+        power = np.sqrt(result.radiated_power)
+        quantities.append(("Root of the equivalent radiated power", casings, power, "W$^{1/2}$"))
+    if not meshes and not result.bearings:
+        orbit = 1e6 * np.abs(result.displacement[:, :, :, :2]).max(axis=3)
+        quantities.append(("Displacement", list(result.places), orbit, "um"))
+    return quantities
+
+
+def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarray, label: str) -> None:
+    """Draw the strongest lines (lines, s) on a logarithmic scale of four decades at most."""
+    ranked = [int(k) for k in np.argsort(-sizes.max(axis=1), kind="stable") if sizes[k].any()]
+    for k in sorted(ranked[:_MOST_LINES]):
+        marker = "o" if len(result.speeds) == 1 else ""
+        colour = COLOURS[sorted(ranked[:_MOST_LINES]).index(k)]
+        axis.semilogy(result.speed_rpm, sizes[k], color=colour, lw=1.3, marker=marker, label=names[k])
+    more = len(ranked) - _MOST_LINES
+    top = float(sizes.max(initial=0.0))
+    if top > 0.0:
+        low = max(1e-4 * top, 0.5 * float(sizes[sizes > 0.0].min()))
+        axis.set_ylim(low, top * (top / low) ** _HEADROOM)
+    operating = result.model.operation.speed if result.model.operation else None
+    first, last = sorted((float(result.speeds[0]), float(result.speeds[-1])))
+    if operating and first <= operating <= last:
+        axis.axvline(operating * RPM_PER_RAD_S, color=GREY, lw=0.9, ls="--")
+    axis.set_title(label + (f" ({more} weaker left out)" if more > 0 else ""), fontsize=9.5)
+    axis.legend(frameon=False, fontsize=7, ncols=2 if len(ranked) > 2 else 1, loc="upper left")
+    plain_axis(axis)
+
+
+_SPECTRA = 45
+# The largest line is so many steps between two spectra high; a line is a peak of this share of the width.
+_STEPS_HIGH = 7.0
+_PEAK_WIDTH = 0.0035
+# Heights are logarithmic over so many decades below the highest peak: orders that stay below are left out.
+_DECADES = 3.0
+_SHOWN = 10.0**-_DECADES
+# Labels stand so far apart.
+_LABELS_APART = 0.03
+
+
+def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) -> Any:
+    """Draw the spectra of one quantity over speed, one above the other.
+
+    Heights are logarithmic over three decades: weak orders are seen beside the strongest.
+
+    Args:
+        result: a run-up.
+        ax: axes to draw on; those of a new figure for None.
+        at: name of a mesh (its most loaded helix), a bearing (all three forces) or a point; None: mesh of the largest force,
+            else the first bearing.
+
+    Returns:
+        The axes.
+
+    Raises:
+        AnalysisError: no such mesh, bearing or point, or a single speed. MissingExtraError: matplotlib is not installed.
+    """
+    if len(result.speeds) < 2:
+        raise AnalysisError("a waterfall needs more than one speed")
+    title, unit, size = waterfall_of(result, at)
+    chosen = np.arange(len(result.speeds) - 1, -1, -(len(result.speeds) // _SPECTRA + 1))[::-1]
+    rpm = np.abs(result.speed_rpm)
+    top = float(size[:, chosen].max()) or 1.0
+    step = float(rpm[chosen[-1]] - rpm[chosen[0]]) / len(chosen)
+    shown = [o for o in range(len(result.orders)) if size[o].max() >= _SHOWN * top]
+    widest = 1.03 * float(result.frequency_hz[shown].max())
+    weak = len(result.orders) - len(shown)
+    left_out = f", {weak} weaker order{'s'[: weak != 1]} left out" if weak else ""
+    peak = f"{title}: highest peak {top:.4g} {unit}, logarithmic over {_DECADES:g} decades{left_out}"
+    axis = axes_for(ax, (10.0, 7.0), f"{result.model.title}\n{peak}")
+    labelled = -widest
+    for order in shown:  # the way of each order, lowest first
+        axis.plot(result.frequency_hz[order], rpm, color="#999999", lw=0.7, ls=":", zorder=0)
+        here = float(result.frequency_hz[order, -1])
+        if here - labelled < _LABELS_APART * widest:
+            continue
+        labelled = here
+        axis.annotate(
+            result.orders[order],
+            (here, rpm[-1]),
+            xytext=(2, 4),
+            textcoords="offset points",
+            fontsize=7.5,
+            rotation=35,
+            color="#333333",
+            annotation_clip=False,
+            zorder=200,
+        )
+    for number, s in enumerate(chosen[::-1]):
+        # Heights from 0 to 1 of shares of the highest peak, logarithmic.
+        height = 1.0 + np.log10(np.maximum(size[shown, s] / top, _SHOWN)) / _DECADES
+        hz, height = _spectrum(result.frequency_hz[shown, s], height, widest)
+        line = rpm[s] + _STEPS_HIGH * step * height
+        axis.fill_between(hz, rpm[s], line, where=line > rpm[s], color="white", zorder=2 * number + 1, lw=0)
+        axis.plot(hz, line, color=COLOURS[0], lw=0.8, zorder=2 * number + 2)
+    axis.set_xlim(0.0, widest)
+    axis.set_ylim(rpm[0] - step, rpm[-1] + (_STEPS_HIGH + 3.0) * step)
+    name_axes(axis, "frequency, Hz", f"speed of {result.model.reference_shaft}, rpm")
+    plain_axis(axis)
+    return axis
+
+
+def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.ndarray]:
+    """Title, unit and amplitudes (o, s) of a mesh, a bearing or a point."""
+    if at is None:
+        at = max(result.peaks(), key=lambda row: row[4])[0] if result.contact_mesh else next(iter(result.bearings), "")
+    name = at.rpartition(".")[2]
+    if name in result.contact_mesh:
+        return (
+            f"dynamic force of mesh {name}",
+            "N",
+            np.abs(result.mesh_force[:, :, result.contacts_of(name)]).max(axis=2),
+        )
+    if name in result.bearings:
+        force = result.bearing_force[:, :, result.bearings.index(name)]
+        return f"force of bearing {name}", "N", np.linalg.norm(np.abs(force), axis=2)
+    if name in result.points:
+        turns = result.model.points[name].direction in ("tilt_x", "tilt_y", "torsion")
+        size = np.abs(result.acceleration[:, :, result.points.index(name)])
+        return f"acceleration at {name}", "rad/s$^2$" if turns else "m/s$^2$", size
+    known = [*dict.fromkeys(result.contact_mesh), *result.bearings, *result.points]
+    raise AnalysisError(
+        f"'{at}' is no mesh, bearing or point of the model: expected one of {', '.join(known) or 'none'}"
+    )
+
+
+def _spectrum(at: np.ndarray, height: np.ndarray, widest: float) -> tuple[np.ndarray, np.ndarray]:
+    """A line along the axis with a narrow triangle of each height at its frequency."""
+    width = _PEAK_WIDTH * widest
+    hz = np.unique(np.concatenate([[0.0, widest], at - width, at, at + width]))
+    hz = hz[(hz >= 0.0) & (hz <= widest)]
+    peaks = np.clip(1.0 - np.abs(hz[:, None] - at) / width, 0.0, None) * height
+    return hz, peaks.max(axis=1)
