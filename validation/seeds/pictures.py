@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.plots.figure import COLOURS
-from rotorgear.plots.figure import new_figure, save
+from rotorgear.plots.figure import COLOURS, new_figure, save
 from validation.cases.split_torque_lines.spectrum import run as split_torque
 from validation.seeds import kept, marine, pair12, pair16, pair24
 from validation.seeds.rows import changed, loaded

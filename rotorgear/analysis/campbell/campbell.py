@@ -18,11 +18,10 @@ from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, highest_speed, mesh_reach, operating_speed
 from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, serving
-from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.pieces import pieces
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error

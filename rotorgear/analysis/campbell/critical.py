@@ -15,11 +15,10 @@ from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed
 from rotorgear.analysis.common.casings import serving
-from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.pieces import pieces
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.analysis.static.lowest_speed import lowest_speed

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.analysis.common.law_rates import rates
+from rotorgear.analysis.common.excitation import rates
 from rotorgear.casings.settings import BEYOND
 from rotorgear.model.model import Model
 from rotorgear.quantity import millimetres

@@ -54,6 +54,31 @@ def point_rows(system: System, names: Sequence[str]) -> sp.csr_array:
     return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array(system.dofs.transform[[]])
 
 
+def moving_rows(system: System, names: Sequence[str]) -> np.ndarray:
+    """The same (s, n), dense, of places that can move.
+
+    Raises:
+        AnalysisError: a place that the model has not, or one that can't move.
+    """
+    R = point_rows(system, names).toarray()
+    for text, row in zip(names, R, strict=True):
+        if not row.any() and not spelled(system.model, text).startswith("casings."):
+            raise AnalysisError(f"'{text}' can't move: a support or the motions of the model hold it")
+    return R
+
+
+def rotates(model: Model, text: str) -> bool:
+    """Whether a place, as `point_rows` takes it, is one of a rotation: a moment acts there, not a force.
+
+    Raises:
+        AnalysisError: a place that the model has not.
+    """
+    there = spelled(model, text)
+    if there.startswith("casings."):
+        return casing_place(model, there)[1] > 2
+    return named_place(model, there)[2] in DOF_NAMES[3:]
+
+
 def spelled(model: Model, text: str) -> str:
     """A place as it is; a named point on a casing as its place, 'casings.box(0.0 m; 0.28 m; 0.2 m):y'."""
     point = model.points.get(text)

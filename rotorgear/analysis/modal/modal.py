@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reduction_errors, serving
-from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.notes import gathering, mode_warnings
-from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.points import point_amplitudes
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_request, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.modal.conditioning import conditioning_warnings, too_far_apart

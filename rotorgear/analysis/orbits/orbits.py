@@ -20,7 +20,7 @@ from rotorgear.analysis.orbits.places import told_of
 from rotorgear.analysis.orbits.refined import largest_error
 from rotorgear.analysis.orbits.start import first_node, settled
 from rotorgear.analysis.orbits.verify import verified
-from rotorgear.analysis.static.ground import mean_torsion_notes
+from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model

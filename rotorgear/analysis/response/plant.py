@@ -8,11 +8,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.common.places import part_nodes
 from rotorgear.analysis.common.points import point_rows
+from rotorgear.analysis.common.stations import part_nodes
 from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping, SeatLoads
 from rotorgear.analysis.response.orders import Order
-from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
 from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import ContactLines
@@ -209,9 +208,3 @@ def _on_one_pattern(first: sp.csc_array, second: sp.csc_array) -> tuple[sp.csc_a
         data = np.asarray(sp.csr_array(part)[rows, columns]).ravel() if rows.size else np.zeros(0)
         whole.append(sp.csc_array((data, rows, ends), shape=first.shape))
     return whole[0], whole[1]
-
-
-def dof_row(system: System, shaft: str, z: float, direction: str) -> np.ndarray:
-    """Row of the map from the free dofs to one displacement of the node at a place, (n,)."""
-    row = 6 * system.nodes.at(shaft, z) + DOF_NAMES.index(direction)
-    return np.asarray(system.dofs.transform[[row], :].toarray()[0])

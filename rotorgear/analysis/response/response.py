@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.common.casings import serving
+from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
-from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
@@ -85,7 +84,6 @@ def response(
         AnalysisError: nothing excites the model, speeds of both senses, a contact that is open in the mean state.
         ConvergenceError: the modal solution does not reach its tolerance, or an undamped resonance is hit exactly.
     """
-    clock = time.perf_counter()
     chosen, begun = _speeds(model, speeds, start, stop, points)
     _check(method, modal_damping, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
@@ -173,7 +171,6 @@ def response(
         dofs=system.n,
         discretisation=pieces(system),
         largest=largest,
-        seconds={"total": time.perf_counter() - clock},
         laws=law_rows(system.state.operating),
         left_out=(
             *left,

@@ -9,7 +9,6 @@ that no matrix joins with an input or an output take part in no response, and ha
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,14 +16,14 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
+from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, missed, speed_in_si
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
-from rotorgear.analysis.response.ports import Ports
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -94,7 +93,6 @@ def state_space(
         AnalysisError: a place that the model has not, or a full system of more than 3000 degrees of freedom.
         ConvergenceError: the reduced system is singular, as at a mode without damping.
     """
-    clock = time.perf_counter()
     turns = speed_in_si(speed) or 0.0
     check_request(turns, None, None, elements, None)
     check_request(turns, None, None, None, accuracy)
@@ -104,7 +102,8 @@ def state_space(
         raise AnalysisError("a state space needs at least one input and one output")
     if not 0.0 <= modal_damping < 1.0:
         raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
-    ports = Ports(model, (*inputs, *outputs))
+    input_units = tuple("N m" if rotates(model, text) else "N" for text in inputs)
+    output_units = tuple("rad" if rotates(model, text) else "m" for text in outputs)
     zeta = modal_damping + model.damping.modal_ratio
     progress(0.02, "discretisation")
     aim = None if elements is not None else accuracy
@@ -115,8 +114,8 @@ def state_space(
             "reduced one, or write sparse matrices"
         )
     limit = 2.0 * np.pi * fmax
-    B = np.array([ports.row(system, text) for text in inputs]).T
-    C = np.array([ports.row(system, text) for text in outputs])
+    B = moving_rows(system, inputs).T
+    C = moving_rows(system, outputs)
     groups = _groups(system, turns)
     unmoved = tuple(
         f"no input moves {text}: its responses are 0"
@@ -150,8 +149,8 @@ def state_space(
         fmax=fmax,
         inputs=tuple(inputs),
         outputs=tuple(outputs),
-        input_units=tuple(ports.force_unit(text) for text in inputs),
-        output_units=tuple(ports.motion_unit(text) for text in outputs),
+        input_units=input_units,
+        output_units=output_units,
         mass_matrix=made.M,
         velocity_terms=made.D,
         stiffness_matrix=made.K,
@@ -163,7 +162,6 @@ def state_space(
         error_estimate=float("nan") if elements is not None else accuracy or DEFAULT_ACCURACY,
         dofs=system.n,
         discretisation=pieces(system),
-        seconds={"total": time.perf_counter() - clock},
         laws=law_rows(system.state.operating),
         left_out=(
             *notes,

@@ -20,21 +20,19 @@ What that state is and how it shakes a linear model: `joint_state.py`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.analysis.static.contact_curves import Curve, FaceCurve, FaceTable, MapTable
 from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.layout.state import FaceState, MeshForce
+from rotorgear.model.layout.state import FaceState
 from rotorgear.solvers.sparse.newton import Settled, settle
 from rotorgear.system.local import face_law
-from rotorgear.system.system import System
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
@@ -45,11 +43,16 @@ if TYPE_CHECKING:
 _POSITIONS = 128
 # Positions whose curves are made together.
 _TOGETHER = 512
+# A curve F(delta) at one position is straight between so many points to each step of load of its map.
+_FINER = 8
 # Cycles of several pitches whose rows of the map agree to this share are solved once.
 _ALIKE = 1e-10
 # Mean state and tangents of nonlinear bearings agree when no mean force changes by more than this share of the largest.
 _AGREED = 1e-9
 _PASSES = 30
+
+# Displacements (d,) of a contact at one position -> its forces (d,) and their tangents (d, d).
+_Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, JointState | None]:
@@ -100,10 +103,10 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     if not any(have):
         return None
     phases = [load.path_phase(state.contact) for state in lines.states]
-    ratios = [
-        _mesh_ratio(equilibrium.system, state) if mapped else -1.0
-        for state, mapped in zip(lines.states, have, strict=True)
-    ]
+    # Mesh frequencies over the speed of the reference shaft, -1 without a map.
+    pinions = [equilibrium.system.layout.mesh(state.contact.mesh).pinion for state in lines.states]
+    turning = [abs(equilibrium.system.train.ratio(pinion.shaft)) * (pinion.part.teeth or 0) for pinion in pinions]
+    ratios = [ratio if mapped else -1.0 for ratio, mapped in zip(turning, have, strict=True)]
     frequencies = {round(ratio, 9): ratio for ratio in ratios if ratio >= 0.0}
     number = {key: g for g, key in enumerate(frequencies)}
     own = np.array([number.get(round(ratio, 9), -1) for ratio in ratios])
@@ -137,12 +140,6 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
         pitch=problem.pitch,
         sense=problem.sense,
     )
-
-
-def _mesh_ratio(system: System, state: MeshForce) -> float:
-    """Mesh frequency over the speed of the reference shaft."""
-    pinion = system.layout.mesh(state.contact.mesh).pinion
-    return abs(system.train.ratio(pinion.shaft)) * (pinion.part.teeth or 0)
 
 
 @dataclass(frozen=True)
@@ -258,14 +255,14 @@ class _Problem:
         count = max(_POSITIONS, *(len(contact_map.position) // contact_map.periods for contact_map in maps))
         position = np.arange(count * periods) / count if ratio else np.zeros(1)
         tables = [self._table(int(i), position, i in running) for i in self.mapped]
-        key = np.hstack([np.round(table.approach / (_ALIKE * (np.ptp(table.approach) or 1.0))) for table in tables])
+        key = np.hstack([np.round(approach / (_ALIKE * (np.ptp(approach) or 1.0))) for approach, _ in tables])
         _, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
         every = len(self.maps)
         approach = np.zeros((len(first), every))
         force, tilt, moment = np.zeros((3, len(first), every))
         for row, p in enumerate(first):
             if row % _TOGETHER == 0:
-                curves = [table.curves(first[row : row + _TOGETHER]) for table in tables]
+                curves = [curves_at(first[row : row + _TOGETHER]) for _, curves_at in tables]
             found = self._at([one[row % _TOGETHER] for one in curves])
             if not found.converged:
                 names = ", ".join(dict.fromkeys(self.equilibrium.lines.names))
@@ -285,7 +282,7 @@ class _Problem:
         again = which.ravel()
         return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again], tilt[again], moment[again])
 
-    def _at(self, curves: list[Curve | FaceCurve]) -> Settled:
+    def _at(self, curves: list[_Curve]) -> Settled:
         """Equilibrium of the mapped contacts on the curves of one position."""
         mapped = len(self.mapped)
         # Places of the displacements of each curve among the moving ones.
@@ -296,7 +293,7 @@ class _Problem:
             F = np.zeros(len(d))
             tangent = np.zeros((len(d), len(d)))
             for curve, at in zip(curves, places, strict=True):
-                F[at], tangent[np.ix_(at, at)] = curve.force(d[at])
+                F[at], tangent[np.ix_(at, at)] = curve(d[at])
             return F, tangent
 
         return settle(self.start[self.moving], self.compliance[self.moving], self.springs, laws)
@@ -326,22 +323,58 @@ class _Problem:
             if face_map is not None
         }
 
-    def _table(self, contact: int, position: np.ndarray, runs: bool) -> MapTable | FaceTable:
-        """The map of a contact at the positions of a cycle, or its mean over the map."""
+    def _table(
+        self, contact: int, position: np.ndarray, runs: bool
+    ) -> tuple[np.ndarray, Callable[[np.ndarray], list[_Curve]]]:
+        """A contact at the p positions of a cycle, or on the mean of its curves where it does not run through it.
+
+        Returns:
+            Approaches (p, a) that tell positions apart, and what gives its curves at some of these, taken by number.
+        """
         u = self.sense[contact] * (self.pitch[contact] + position) if runs else None
         face_map = self.face_maps[contact]
         if face_map is not None:
             law = self.face_laws[contact]
             if u is None:
-                return FaceTable(law.mean(), np.zeros(len(position)), np.ones((len(position), 1)))
+                mean = partial(_along_face, law.mean(), 0.0)
+                return np.ones((len(position), 1)), lambda some: [mean] * len(some)
             rows = np.hstack([one.curves(one.load, u) for one in face_map.maps])
-            return FaceTable(law, u, rows)
+            return rows, lambda some: [partial(_along_face, law, float(place)) for place in u[some]]
         contact_map = self.maps[contact]
         assert contact_map is not None
-        loads = np.append(contact_map.load, 10.0 * contact_map.largest_load)
-        if u is not None:
-            rows = contact_map.approach_at(loads, u[:, None])
-        else:
-            mean = contact_map.approach_at(loads, contact_map.position[:, None]).mean(axis=0)
-            rows = np.broadcast_to(mean, (len(position), len(loads)))
-        return MapTable(contact_map, u, rows, float(self.gap[contact]))
+        gap = float(self.gap[contact])
+        load = contact_map.load
+        far = 10.0 * contact_map.largest_load
+        fine = np.append((load[:-1, None] + np.diff(load)[:, None] * (np.arange(_FINER) / _FINER)).ravel(), load[-1])
+        forces = np.append(fine, far)
+        if u is None:
+            everywhere = contact_map.position
+            rows = contact_map.approach_at(np.append(load, far), everywhere[:, None]).mean(axis=0)
+            beyond = contact_map.approach_at(far, everywhere).mean()
+            approach = gap + np.append(contact_map.curves(fine, everywhere).mean(axis=0), beyond)
+            return np.broadcast_to(
+                rows, (len(position), len(rows))
+            ), lambda some: [partial(_straight, approach, forces)] * len(some)
+
+        def curves(some: np.ndarray) -> list[_Curve]:
+            at = u[some]
+            approaches = np.column_stack([contact_map.curves(fine, at), contact_map.approach_at(far, at)])
+            return [partial(_straight, gap + row, forces) for row in approaches]
+
+        return contact_map.approach_at(np.append(load, far), u[:, None]), curves
+
+
+def _along_face(law: ForceLaw, place: float, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Force in N and moment in N m, and their tangents (2, 2), at an approach and a tilt (2,) at a place on the map."""
+    found = law.evaluate(d, angle=2.0 * math.pi * place)
+    return found.force, found.in_displacement
+
+
+def _straight(approach: np.ndarray, load: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Force (1,) in N and tangent (1, 1) at an approach (1,), straight between points (n,): rising approach in m, load in N."""
+    delta = float(d[0])
+    if delta <= approach[0]:
+        return np.zeros(1), np.zeros((1, 1))
+    i = min(int(np.searchsorted(approach, delta)), len(load) - 1)
+    slope = float((load[i] - load[i - 1]) / (approach[i] - approach[i - 1]))
+    return np.array([load[i - 1] + slope * (delta - approach[i - 1])]), np.array([[slope]])

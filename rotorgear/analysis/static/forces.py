@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated
 from rotorgear.elements.spring import rigid_transfer
+from rotorgear.model.layout.casings import BearingSeat
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.system.groups import ElementGroup
-from rotorgear.system.nodes import Nodes
 
 
 def forces_on_gears(equilibrium: Equilibrated) -> np.ndarray:
@@ -49,6 +51,18 @@ def bearing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     return forces
 
 
+def _in_seats(equilibrium: Equilibrated) -> Iterator[tuple[BearingSeat, np.ndarray]]:
+    """The seat of each bearing and nonlinear element that is in one, and force and moment (6,) on its shaft."""
+    system = equilibrium.system
+    forces = bearing_forces(equilibrium)
+    for table in ("bearings", "nonlinear_elements"):
+        for part in getattr(system.model, table):
+            seat = system.layout.seat(f"{table}.{part}")
+            on_shaft = forces.get(part if table == "bearings" else f"nonlinear_elements.{part}")
+            if seat is not None and on_shaft is not None:
+                yield seat, on_shaft
+
+
 def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force and moment about the origin of the model of the ground on each casing, at what is held and at mounts, (6,).
 
@@ -56,7 +70,7 @@ def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """
     system = equilibrium.system
     gravity = system.model.operation.gravity if system.model.operation else None
-    bearings = bearing_forces(equilibrium)
+    seated = list(_in_seats(equilibrium))
     found = {}
     for name in system.model.casings:
         body = system.layout.casing(name)
@@ -66,12 +80,8 @@ def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
                 continue
             weight = body.body_mass * np.array(gravity)
             total += np.concatenate([weight, np.cross(body.centre, weight)])
-        for table in ("bearings", "nonlinear_elements"):
-            for part in getattr(system.model, table):
-                seat = system.layout.seat(f"{table}.{part}")
-                on_shaft = bearings.get(part if table == "bearings" else f"nonlinear_elements.{part}")
-                if seat is None or seat.casing != name or on_shaft is None:
-                    continue
+        for seat, on_shaft in seated:
+            if seat.casing == name:
                 place = body.seat_points[seat.number] + seat.arm
                 total -= np.concatenate([on_shaft[:3], on_shaft[3:] + np.cross(place, on_shaft[:3])])
         found[name] = -total
@@ -97,17 +107,11 @@ def ground_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
 def seat_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force, and moment about its point, of what stands in a seat on the casing: "box.left" -> (6,)."""
     system = equilibrium.system
-    bearings = bearing_forces(equilibrium)
     found: dict[str, np.ndarray] = {}
-    for table in ("bearings", "nonlinear_elements"):
-        for part in getattr(system.model, table):
-            seat = system.layout.seat(f"{table}.{part}")
-            on_shaft = bearings.get(part if table == "bearings" else f"nonlinear_elements.{part}")
-            if seat is None or on_shaft is None:
-                continue
-            name = f"{seat.casing}.{system.layout.casing(seat.casing).seats[seat.number]}"
-            moment = on_shaft[3:] + np.cross(seat.arm, on_shaft[:3])
-            found[name] = found.get(name, np.zeros(6)) - np.concatenate([on_shaft[:3], moment])
+    for seat, on_shaft in _in_seats(equilibrium):
+        name = f"{seat.casing}.{system.layout.casing(seat.casing).seats[seat.number]}"
+        moment = on_shaft[3:] + np.cross(seat.arm, on_shaft[:3])
+        found[name] = found.get(name, np.zeros(6)) - np.concatenate([on_shaft[:3], moment])
     return found
 
 
@@ -124,18 +128,13 @@ def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
         node = system.nodes.at(*system.layout.place(f"supports.{name}"))
         held = [k for k, dof in enumerate(DOF_NAMES) if dof in support.fixed or "all" in support.fixed]
         if held:
-            wrench = _at_node(system.nodes, equilibrium, rest, node)
-            forces[name][held] += wrench[held]
+            # What is missing for equilibrium at the node, with that of the nodes which rigid sections tie to it.
+            missing = np.zeros(6)
+            for other in system.rigid_with(node):
+                arm = rigid_transfer(np.array([0.0, 0.0, system.nodes.z[other] - system.nodes.z[node]]))
+                missing += arm.T @ rest[6 * other : 6 * other + 6]
+            forces[name][held] += missing[held]
     return forces
-
-
-def _at_node(nodes: Nodes, equilibrium: Equilibrated, rest: np.ndarray, node: int) -> np.ndarray:
-    """What is missing for equilibrium at a node, with that of the nodes which rigid sections tie to it."""
-    missing = np.zeros(6)
-    for other in equilibrium.system.rigid_with(node):
-        arm = rigid_transfer(np.array([0.0, 0.0, nodes.z[other] - nodes.z[node]]))
-        missing += arm.T @ rest[6 * other : 6 * other + 6]
-    return missing
 
 
 def inner_forces(equilibrium: Equilibrated) -> np.ndarray:

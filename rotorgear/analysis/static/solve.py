@@ -124,24 +124,16 @@ def equilibrate(
             closed = closed.copy()
             closed[through[0]] = True
         elif worst >= 0 and equilibrium.force[worst] < -size:
-            system, closed = _released(system, speed, closed, worst, near)
+            # It is opened, or its mesh carries on the other flank where the loads can't do without it.
+            closed = closed.copy()
+            closed[worst] = False
+            try:
+                _solve(system, speed, closed, near)
+            except _PushedMotionError:
+                closed[worst] = True
+                system = system.with_state(system.state.on_other_flank(system.state.forces[worst].contact.mesh))
         else:
             return equilibrium
-
-
-def _released(
-    system: System, speed: float, closed: np.ndarray, worst: int, near: Sequence[LawState]
-) -> tuple[System, np.ndarray]:
-    """Open a contact that pulls, or let its mesh carry on the other flank where the loads can't do without it."""
-    opened = closed.copy()
-    opened[worst] = False
-    try:
-        _solve(system, speed, opened, near)
-    except _PushedMotionError:
-        mesh = system.state.forces[worst].contact.mesh
-        opened[worst] = True
-        return system.with_state(system.state.on_other_flank(mesh)), opened
-    return system, opened
 
 
 class _PushedMotionError(AnalysisError):
@@ -253,7 +245,12 @@ def _laws_at_rest(
         near[0] = found.d
         return found.d, [found.d[a:b] for a, b in pairwise(ends)]
 
-    warmed, found = in_heat_balance([_warm(part.law, places.get(part.part)) for part in parts], speed, settled)
+    laws = [part.law for part in parts]
+    for i, part in enumerate(parts):
+        if part.part in places and getattr(part.law, "heats", False):
+            # A film in heat balance begins with the viscosity that it has in the known equilibrium.
+            laws[i] = replace(part.law, viscosity=places[part.part].part.law.viscosity)  # type: ignore[call-arg, attr-defined]
+    warmed, found = in_heat_balance(laws, speed, settled)
     states = []
     for part, law, (a, b) in zip(parts, warmed, pairwise(ends), strict=True):
         d = found[a:b]
@@ -263,13 +260,6 @@ def _laws_at_rest(
         own = replace(part, law=law)
         states.append(LawState(own, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
     return states
-
-
-def _warm(law: ForceLaw, known: LawState | None) -> ForceLaw:
-    """A film in heat balance with the viscosity of a known equilibrium."""
-    if known is None or not getattr(law, "heats", False):
-        return law
-    return replace(law, viscosity=known.part.law.viscosity)  # type: ignore[call-arg, attr-defined]
 
 
 def outer_loads(system: System) -> np.ndarray:

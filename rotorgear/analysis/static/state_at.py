@@ -4,7 +4,7 @@ A nonlinear element, or a bearing given by its rolling elements alone, has the s
 at the static equilibrium under the loads, at rest but for the rotation. What does not depend on speed becomes one stiffness; what
 does, such as the film of a journal bearing, a table over speed. Meshes have the stiffness of their mean load: the tangent at that
 load where a stiffness model knows it; loaded teeth their mean tangent over the mesh cycle, all contacts of the gearbox in
-equilibrium together (`about_cycle.py`); those that feel the tilt of their shafts are about the load along their faces.
+equilibrium together (`about_equilibrium.py`); those that feel the tilt of their shafts are about the load along their faces.
 """
 
 from __future__ import annotations
@@ -112,11 +112,11 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
     wanted = sorted(laws.keys() - state.tangents.keys())
     # Most models have none of these parts: what finds an equilibrium is loaded for the others only.
     if any(mesh.tilt for mesh in model.meshes.values()):
-        from rotorgear.analysis.static.along_faces import along_faces
+        from rotorgear.analysis.static.about_equilibrium import along_faces
 
         state = along_faces(model, speeds, state)
     if any(mesh.stiffness == "tooth_fe" for mesh in model.meshes.values()):
-        from rotorgear.analysis.static.about_cycle import about_cycle
+        from rotorgear.analysis.static.about_equilibrium import about_cycle
 
         state = about_cycle(model, speeds, state)
     if not wanted:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_or_operating
-from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.common.stations import displacement_places, shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.forces import (
@@ -71,7 +69,6 @@ def static(
         AnalysisError: nothing loads the model, it is a mechanism that the loads push, or no set of flanks carries them.
         ConvergenceError: shafts and loads along the faces don't come to agree.
     """
-    start = time.perf_counter()
     given = speed_or_operating(speed, model)
     check_request(given, None, None, elements, accuracy)
     if tilt:
@@ -89,7 +86,7 @@ def static(
     )
     progress(0.8, "sensitivities")
     change = sensitivities(found.equilibrium)
-    result = replace(_result(found, given, change, estimate, start), model=model)
+    result = replace(_result(found, given, change, estimate), model=model)
     if short:
         result = replace(result, status=short, warnings=(*result.warnings, short))
     progress(1.0, "done")
@@ -153,7 +150,7 @@ def _estimate(equilibrium: Equilibrated, speed: float) -> float:
     return float(np.max(np.abs(here - there), initial=0.0) / size) if size else 0.0
 
 
-def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimate: float, start: float) -> StaticResult:
+def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimate: float) -> StaticResult:
     equilibrium = found.equilibrium
     system = equilibrium.system
     faces = _face_rows(found)
@@ -198,7 +195,6 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         imbalance=imbalance(equilibrium),
         error_estimate=estimate,
         dofs=system.n,
-        seconds={"total": time.perf_counter() - start},
         faces=faces,
         laws=law_rows(operating_points(equilibrium.laws, speed or 0.0)),
         passes=found.passes,

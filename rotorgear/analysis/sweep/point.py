@@ -9,8 +9,8 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
-from rotorgear.analysis.static.settled_films import state_in_time
+from rotorgear.analysis.static.about_equilibrium import state_in_time
+from rotorgear.analysis.static.mean_state import mean_torsion_notes, springs_about_mean
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Reduced, Wanted
 from rotorgear.analysis.transient.notes import transient_left_out

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotorgear.analysis.common.law_rates import rates
+from rotorgear.analysis.common.excitation import rates
 from rotorgear.solvers.frequency.contact_basis import Probes
 from rotorgear.solvers.time.local_forces import LocalLaw
 

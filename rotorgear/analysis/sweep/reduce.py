@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from rotorgear.analysis.common.law_rates import rates
+from rotorgear.analysis.common.excitation import rates
 from rotorgear.analysis.sweep.probes import probes_for
 from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction

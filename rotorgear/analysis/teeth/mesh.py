@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.clock import Clock
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
 from rotorgear.analysis.teeth.request import Cycle, MeshRequest, SolvedHelices, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError

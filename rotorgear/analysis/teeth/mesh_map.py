@@ -10,8 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.common.clock import Clock
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
 from rotorgear.analysis.teeth.request import Cycle, MeshRequest, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError

@@ -17,8 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.common.clock import Clock
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.teeth.flank_variables import (
     ALONG_FACE,
     Variable,

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.static.ground import springs_about_mean
-from rotorgear.analysis.static.settled_films import state_in_time
+from rotorgear.analysis.static.about_equilibrium import state_in_time
+from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
 from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of

@@ -12,7 +12,7 @@ from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
-from rotorgear.analysis.static.ground import mean_torsion_notes
+from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.balance import off_statics
 from rotorgear.analysis.transient.choice_of_step import Choice, fine_enough
 from rotorgear.analysis.transient.histories import Histories, Stream

@@ -12,8 +12,8 @@ import rotorgear as rg
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.analysis.response.orders import orders_of
-from rotorgear.analysis.static import about_cycle
-from rotorgear.analysis.static.along_faces import along_faces
+from rotorgear.analysis.static import about_equilibrium
+from rotorgear.analysis.static.about_equilibrium import along_faces
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.request import rotation_of
@@ -80,7 +80,7 @@ def test_without_a_state_over_the_cycle_the_tangent_at_the_torque_flow_is_taken(
     def fails(*_: Any) -> Any:
         raise AnalysisError("no luck.")
 
-    monkeypatch.setattr(about_cycle, "over_cycle", fails)
+    monkeypatch.setattr(about_equilibrium, "over_cycle", fails)
     found = rg.modal(loaded(), modes=8, elements=1, error_estimate=False)
     assert says(found, "there is no solution (no luck); the tangent at the force of the torque flow is taken")
     (force,) = loaded().torque_flow(1).forces

@@ -10,7 +10,8 @@ import pytest
 from scipy.optimize import brentq
 
 import rotorgear as rg
-from rotorgear.analysis.static.along_faces import along_faces, equilibrate_along_faces
+from rotorgear.analysis.static.about_equilibrium import along_faces
+from rotorgear.analysis.static.along_faces import equilibrate_along_faces
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.transient.notes import transient_left_out
