@@ -29,8 +29,10 @@ class Account:
 
     def missing(self, where: Component | str, expected: str, hint: str = "") -> None:
         """Note what the file does not say and nothing can stand in for."""
-        if isinstance(where, Component) and not hint:
-            hint = _elsewhere(where)
+        source = where.attributes.get("data_source") if isinstance(where, Component) else None
+        if source is not None and source.raw and not hint:
+            # From 1.5 on a file may refer to a data base beside it.
+            hint = f"its values are in '{source.raw}', which is not read: write a file that holds them itself"
         problem = Problem(str(where), "", expected, hint)
         if problem not in self.problems:
             self.problems.append(problem)
@@ -100,14 +102,6 @@ class Account:
     def _unknown_unit(self, component: Component, name: str, value: Value, kind: str) -> None:
         known = ", ".join(unit for unit in FACTORS[kind] if unit) or "none"
         self.problems.append(Problem(f"{component}: {name}", f"the unit '{value.unit}'", f"one of {known}"))
-
-
-def _elsewhere(component: Component) -> str:
-    """Where a component's values stand if not in this file: from 1.5 on a file may refer to a data base beside it."""
-    source = component.attributes.get("data_source")
-    if source is None or not source.raw:
-        return ""
-    return f"its values stand in '{source.raw}', which is not read: write a file that holds them itself"
 
 
 def _as_number(raw: object) -> float | None:

@@ -16,11 +16,12 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.shafts import ShaftPart
-from rotorgear.rexs.structure import Frame, Frames, Structure
+from rotorgear.rexs.structure import Structure
 from rotorgear.rexs.toml_text import Names, Table, quantity, row
 
 _BALL = 13e6
@@ -65,17 +66,10 @@ def size_of_designation(designation: str) -> BearingSize | None:
     return BearingSize(1e-3 * bore, 1e-3 * (bore + series * bore**0.9), "designation, ISO 15")
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """Radial and axial stiffness in N/m, and what they were estimated from."""
-
-    radial: float
-    axial: float
-    words: str
-
-
-def estimated(kind: str, size: BearingSize, static_rating: float | None, contact_angle: float) -> Estimate:
-    """Stiffness of a "ball" or "roller" bearing by its size.
+def estimated(
+    kind: str, size: BearingSize, static_rating: float | None, contact_angle: float
+) -> tuple[float, float, str]:
+    """Radial and axial stiffness in N/m of a "ball" or "roller" bearing by its size, and what they were estimated from.
 
     Args:
         kind: of its elements.
@@ -100,7 +94,7 @@ def estimated(kind: str, size: BearingSize, static_rating: float | None, contact
         f"{kind}s by Krämer's formula with {count:.0f} of {1e3 * element:.2g} mm and {load:.2g} N, from {1e3 * size.bore:.4g} x "
         f"{1e3 * size.outer:.4g} mm ({size.source})"
     )
-    return Estimate(radial, axial, words)
+    return radial, axial, words
 
 
 # A stiffness outside these stands for rigid (1e20, 1e23) or for none (0): in N/m, and in N m/rad.
@@ -136,17 +130,14 @@ def is_coupling(component: Component) -> bool:
     )
 
 
-@dataclass(frozen=True)
-class Sides:
-    """The two shafts of a bearing or a coupling, None for the casing, with z in m."""
-
-    inner: tuple[ShaftPart, float] | None
-    outer: tuple[ShaftPart, float] | None
+# A shaft and z on it in m; None for the casing.
+Seat: TypeAlias = tuple[ShaftPart, float] | None
 
 
-def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame) -> Sides:
+def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure) -> list[Seat]:
+    """Inner and outer side of a bearing or a coupling."""
     account = structure.account
-    found: list[tuple[ShaftPart, float] | None] = []
+    found: list[Seat] = []
     for roles, names in (
         (
             ("inner_part", "side_1", "assembly"),
@@ -160,47 +151,40 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure, 
             found.append(None)
             continue
         u = account.number(part, names, "length")
-        frame = frames.of(part)
+        frame = structure.frame(part)
         if u is not None:
             z = shaft.axis.z(u)
-            if frame is not None and not found:
-                _tell_other_place(part, z, float((model.axes @ (frame.origin - model.origin))[0]), account)
+            if frame is not None and not found and abs(z - (by_vector := structure.place(frame)[0])) > _ONE_PLACE:
+                account.warnings.append(
+                    f"{part}: its support_vector is at {1e3 * by_vector:.6g} mm along the gear unit, its coordinate on the "
+                    f"shaft at {1e3 * z:.6g} mm, which counts"
+                )
         elif frame is not None:
-            z = float((model.axes @ (frame.origin - model.origin))[0])
+            z = float(structure.place(frame)[0])
         else:
             account.missing(part, f"its place on {shaft.component} is needed: {names[0]} or support_vector")
             z = shaft.start
         found.append((shaft, shaft.place(part, z, account)))
-    return Sides(found[0], found[1])
+    return found
 
 
-def _tell_other_place(part: Component, z: float, by_vector: float, account: Account) -> None:
-    if abs(z - by_vector) > _ONE_PLACE:
-        account.warnings.append(
-            f"{part}: its support_vector stands at {1e3 * by_vector:.6g} mm along the gear unit, its coordinate on the shaft at "
-            f"{1e3 * z:.6g} mm, which counts"
-        )
-
-
-def bearing_table(
-    part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame
-) -> Table | None:
+def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> Table | None:
     """Table of a bearing to ground, or of a coupling where it sits between two shafts; None where it has no shaft."""
     account = structure.account
-    sides = _sides(part, shafts, structure, frames, model)
+    inner, outer = _sides(part, shafts, structure)
     name = names.of(part.name, "bearing", part.id)
-    both = sides.inner is not None and sides.outer is not None
+    both = inner is not None and outer is not None
     address = f"{'couplings' if both else 'bearings'}.{name}"
-    if sides.inner is None and sides.outer is None:
+    if inner is None and outer is None:
         account.missing(part, "it must sit on a shaft, by a side relation with an inner_part or an outer_part")
         return None
-    seat = sides.inner or sides.outer
+    seat = inner or outer
     assert seat is not None
     remark = str(part)
     designation = account.text(part, "catalogue_designation", "name", "designation", "bearing_designation")
     table = Table(address, f"{remark}, {designation}" if designation and designation != part.name else remark)
-    if sides.inner is not None and sides.outer is not None:
-        _add_ends(table, sides.inner, sides.outer)
+    if inner is not None and outer is not None:
+        _add_ends(table, inner, outer)
     else:
         table.add("shaft", f'"{seat[0].name}"')
         table.add("at", quantity(seat[1], "length"))
@@ -260,14 +244,11 @@ def _given(part: Component, names: tuple[str, ...], kind: str, account: Account)
         return None
     for name in names:
         written = account.plain_number(part, name)
-        if written is not None and written >= _ROUND and _is_power_of_ten(written):
-            return None
+        if written is not None and written >= _ROUND:
+            exponent = math.log10(written)
+            if abs(exponent - round(exponent)) < 1e-9:
+                return None
     return value
-
-
-def _is_power_of_ten(value: float) -> bool:
-    exponent = math.log10(value)
-    return abs(exponent - round(exponent)) < 1e-9
 
 
 def _takes_axial(part: Component, designation: str, structure: Structure) -> bool:
@@ -325,17 +306,14 @@ def _guess(
     rows = structure.parts_of(part, "rolling_bearing_row")
     angles = [angle for row_ in rows if (angle := account.number(row_, ("pressure_angle", "contact_angle"), "angle"))]
     angle = angles[0] if angles and 0.0 < abs(angles[0]) < math.radians(60.0) else 0.0
-    found = estimated("roller" if kind == "roller" else "ball", size, rating, abs(angle))
-    return found.radial, found.axial, found.words
+    return estimated("roller" if kind == "roller" else "ball", size, rating, abs(angle))
 
 
-def coupling_table(
-    part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame
-) -> Table | None:
+def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> Table | None:
     """Table of a coupling between two coaxial shafts; None where it has not two, and where it is open."""
     account = structure.account
-    sides = _sides(part, shafts, structure, frames, model)
-    if sides.inner is None or sides.outer is None:
+    inner, outer = _sides(part, shafts, structure)
+    if inner is None or outer is None:
         account.left_out.append(f"{part}: it does not join two shafts")
         return None
     if account.truth(part, "is_engaged") is False or account.truth(part, "is_closed") is False:
@@ -344,7 +322,7 @@ def coupling_table(
     name = names.of(part.name, "coupling", part.id)
     address = f"couplings.{name}"
     table = Table(address, str(part))
-    _add_ends(table, sides.inner, sides.outer)
+    _add_ends(table, inner, outer)
     keys = (
         ("radial", "stiffness", ("radial_stiffness",)),
         ("axial", "stiffness", ("axial_stiffness",)),
@@ -352,7 +330,7 @@ def coupling_table(
         ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness")),
     )
     # A stub of steel, as long as thick, in place of what is rigid or not said: K = G I_p / d, E I / d, E A / d, 12 E I / d^3.
-    d = min(sides.inner[0].diameter(sides.inner[1]), sides.outer[0].diameter(sides.outer[1]))
+    d = min(inner[0].diameter(inner[1]), outer[0].diameter(outer[1]))
     inertia = math.pi * d**4 / 64.0
     stub = {
         "radial": 12.0 * 206e9 * inertia / d**3,

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from rotorgear.gears.geometry.geometry import involute
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.shafts import ShaftPart
-from rotorgear.rexs.structure import Frame, Frames, Pair, Structure
+from rotorgear.rexs.structure import Pair, Structure
 from rotorgear.rexs.toml_text import Table, number, quantity
 
 # Attribute names over the versions.
@@ -58,9 +59,7 @@ def read_gear(
     name: str,
     shafts: dict[str, ShaftPart],
     structure: Structure,
-    frames: Frames,
     version: tuple[int, int],
-    model: Frame,
 ) -> GearPart | None:
     """A gear with its data wherever the version keeps them; None, and problems on the account, where it can't be made."""
     account = structure.account
@@ -98,8 +97,17 @@ def read_gear(
     if shift is None:
         length = _first(data, _SHIFT_LENGTH, "length", account)
         shift = None if length is None else length / module
-    _tell_unlike_flanks(gear, data, comments, account)
-    z = _middle(gear, shaft, width, frames, version, model, comments, account)
+    # A gear has one pressure angle and one shift here; where its flanks differ, the first of them counts.
+    flanks = [component for component in data if "flank" in component.type]
+    for names, kind, key in (
+        (("normal_pressure_angle",), "angle", "normal_pressure_angle"),
+        (_SHIFT, "ratio", "profile_shift"),
+    ):
+        values = [value for flank in flanks if (value := account.number(flank, names, kind)) is not None]
+        if values and max(values) - min(values) > 1e-6:
+            reason = f"left and right flank of {gear} differ: that of the first is taken"
+            comments[key] = account.assume(f"{gear.name}.{key}", f"{values[0]:.6g}", reason)
+    z = _middle(gear, shaft, width, structure, version, comments)
     if z is None:
         return None
     return GearPart(gear, name, shaft, z, round(teeth), module, alpha, beta, width, shift, comments)
@@ -110,42 +118,25 @@ def _first(data: list[Component], names: tuple[str, ...], kind: str, account: Ac
     return next((value for value in found if value is not None), None)
 
 
-def _tell_unlike_flanks(gear: Component, data: list[Component], comments: dict[str, str], account: Account) -> None:
-    """A gear has one pressure angle and one shift here; where its flanks differ, the first of them counts."""
-    flanks = [component for component in data if "flank" in component.type]
-    for names, kind, key in (
-        (("normal_pressure_angle",), "angle", "normal_pressure_angle"),
-        (_SHIFT, "ratio", "profile_shift"),
-    ):
-        values = [value for flank in flanks if (value := account.number(flank, names, kind)) is not None]
-        if values and max(values) - min(values) > 1e-6:
-            comments[key] = account.assume(
-                f"{gear.name}.{key}",
-                f"{values[0]:.6g}",
-                f"left and right flank of {gear} differ: that of the first is taken",
-            )
-
-
 def _middle(
     gear: Component,
     shaft: ShaftPart,
     width: float,
-    frames: Frames,
+    structure: Structure,
     version: tuple[int, int],
-    model: Frame,
     comments: dict[str, str],
-    account: Account,
 ) -> float | None:
     """z of the middle of the face.
 
     The support vector of a gear is its middle in all versions. u_coordinate_on_shaft is the begin of the face in version 1.0
     and its middle from 1.1 on, so the vector counts where there is one.
     """
+    account = structure.account
     u = account.number(gear, ("u_coordinate_on_shaft",), "length")
     by_u = None if u is None else shaft.axis.z(u + (width / 2.0 if version <= (1, 0) else 0.0))
-    frame = frames.of(gear)
+    frame = structure.frame(gear)
     if frame is not None:
-        along, x, y = model.axes @ (frame.origin - model.origin)
+        along, x, y = structure.place(frame)
         if math.hypot(x - shaft.axis.x, y - shaft.axis.y) < 1e-4 * max(1.0, width) + 1e-5:
             if by_u is not None and u is not None and abs(along - by_u) > 1e-5:
                 other = shaft.axis.z(u)
@@ -157,11 +148,6 @@ def _middle(
         account.missing(gear, "its place is needed: support_vector or u_coordinate_on_shaft")
         return None
     return shaft.place(gear, by_u, account)
-
-
-def involute(angle: float) -> float:
-    """inv(alpha) = tan(alpha) - alpha."""
-    return math.tan(angle) - angle
 
 
 def shift_sum(first: GearPart, second: GearPart, distance: float) -> float | None:

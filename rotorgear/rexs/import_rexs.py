@@ -18,7 +18,7 @@ from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read
 from rotorgear.rexs.loads import MASS, load_tables, mass_tables
 from rotorgear.rexs.read import read_document
 from rotorgear.rexs.shafts import Materials, ShaftPart, read_pieces, shaft_axes, shaft_table
-from rotorgear.rexs.structure import GEAR, Frame, Frames, Pair, Structure, refuse_other_kinds
+from rotorgear.rexs.structure import GEAR, Pair, Structure, refuse_other_kinds
 from rotorgear.rexs.toml_text import Names, Table, comment_line, text
 
 _NEWEST = (1, 6)
@@ -113,10 +113,9 @@ def _with_load_case(
 def _tables(document: Document, version: tuple[int, int], account: Account) -> tuple[list[Table], dict[str, int]]:
     """All tables of the model file in its order, and how many parts of each kind there are."""
     structure = Structure(document, account)
-    frames = Frames(document, account)
     materials = Materials(structure, account)
     pairs = structure.pairs()
-    axes, frame = shaft_axes(document, frames, structure, pairs, account)
+    axes = shaft_axes(structure, pairs)
     shafts: dict[str, ShaftPart] = {}
     names = Names()
     for component in document.of_type("shaft"):
@@ -127,12 +126,30 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     if not document.of_type("shaft"):
         account.missing("the file", "a gearbox needs at least one component of the type shaft")
     shaft_tables = [shaft_table(part, *materials.of(part.component, f"shafts.{part.name}")) for part in shafts.values()]
-    gears, meshing, mesh_tables = _gears(pairs, version, shafts, structure, frames, frame)
-    gear_tables = [gear_table(part, structure, _material(part, structure, materials)) for part in gears]
+    gears, meshing, mesh_tables = _gears(pairs, version, shafts, structure)
+    # A gear has a material of its own, or that of its shaft.
+    of_its_own = {part.name: structure.referenced(part.component, "material") is not None for part in gears}
+    gear_tables = [
+        gear_table(
+            part, structure, materials.of(part.component, f"gears.{part.name}") if of_its_own[part.name] else ("", "")
+        )
+        for part in gears
+    ]
     names = Names()
     masses = document.of_type(MASS)
-    mass_list = [table for part in masses for table in mass_tables(part, names, shafts, structure, frames, frame)]
-    bearings, couplings = _joints(shafts, structure, frames, frame)
+    mass_list = [table for part in masses for table in mass_tables(part, names, shafts, structure)]
+    # Bearings, those between two shafts among them, and couplings, by number.
+    bearings: dict[str, Table] = {}
+    couplings: dict[str, Table] = {}
+    names = Names()
+    for component in document.components.values():
+        for found, is_one, table_of in (
+            (bearings, is_bearing, bearing_table),
+            (couplings, is_coupling, coupling_table),
+        ):
+            table = table_of(component, names, shafts, structure) if is_one(component) else None
+            if table is not None:
+                found[component.id] = table
     by_name = {part.name: number for number, part in shafts.items()}
     stiff = [(by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")]) for table in couplings.values()]
     operation, load_list = load_tables(shafts, meshing, stiff, structure)
@@ -150,15 +167,13 @@ def _gears(
     version: tuple[int, int],
     shafts: dict[str, ShaftPart],
     structure: Structure,
-    frames: Frames,
-    frame: Frame,
 ) -> tuple[list[GearPart], list[tuple[GearPart, GearPart]], list[Table]]:
     """Gears with shifts that fit their axes, those that mesh, and the tables of the meshes."""
     gears: dict[str, GearPart] = {}
     names = Names()
     for component in structure.document.of_type(GEAR):
         name = names.of(component.name, "gear", component.id)
-        part = read_gear(component, name, shafts, structure, frames, version, frame)
+        part = read_gear(component, name, shafts, structure, version)
         if part is not None:
             gears[component.id] = part
     meshing: list[tuple[GearPart, GearPart]] = []
@@ -177,32 +192,6 @@ def _gears(
     return list(gears.values()), meshing, tables
 
 
-def _material(part: GearPart, structure: Structure, materials: Materials) -> tuple[str, str]:
-    """Name of a gear's own material and a comment; nothing where it is that of its shaft."""
-    if structure.referenced(part.component, "material") is None:
-        return "", ""
-    return materials.of(part.component, f"gears.{part.name}")
-
-
-def _joints(
-    shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, frame: Frame
-) -> tuple[dict[str, Table], dict[str, Table]]:
-    """Tables of bearings, those between two shafts among them, and of couplings, by number."""
-    bearings: dict[str, Table] = {}
-    couplings: dict[str, Table] = {}
-    names = Names()
-    for component in structure.document.components.values():
-        if is_bearing(component):
-            table = bearing_table(component, names, shafts, structure, frames, frame)
-            if table is not None:
-                bearings[component.id] = table
-        elif is_coupling(component):
-            table = coupling_table(component, names, shafts, structure, frames, frame)
-            if table is not None:
-                couplings[component.id] = table
-    return bearings, couplings
-
-
 def _value(table: Table, key: str) -> str:
     return next(value for name, value, _ in table.rows if name == key).strip('"')
 
@@ -211,20 +200,15 @@ def _whole(tables: list[Table], document: Document, source: str, case: str, acco
     """The text of the file, with where it comes from at its head and what was left out at its foot."""
     by = f" by {document.application}" if document.application else ""
     of_case = f", load case {case}" if case else ""
+    unit = next(iter(document.of_type("gear_unit")), None)
     lines = [
         f"# Made from {comment_line(source)}, REXS {comment_line(document.version)}{comment_line(by)}{of_case}.",
         f"# {len(account.assumptions)} values are assumed: look for 'assumed'. z is u, x is v and y is w of the file.",
         *(f"# Warning: {comment_line(note)}" for note in account.warnings),
         *(f"# Left out: {comment_line(note)}" for note in account.left_out),
         "schema_version = 1",
-        f"title = {text(_title(document, source))}",
+        f"title = {text(f'{unit.name} of {source}' if unit and unit.name else source)}",
     ]
     for table in tables:
         lines += ["", *table.lines()]
     return "\n".join(lines) + "\n"
-
-
-def _title(document: Document, source: str) -> str:
-    units = document.of_type("gear_unit")
-    name = units[0].name if units else ""
-    return f"{name} of {source}" if name else source

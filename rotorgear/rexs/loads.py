@@ -14,17 +14,16 @@ from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.gears import GearPart
 from rotorgear.rexs.shafts import ShaftPart
-from rotorgear.rexs.structure import Frame, Frames, Structure
+from rotorgear.rexs.structure import Structure
 from rotorgear.rexs.toml_text import Names, Table, quantity
 
 MASS = "additional_mass"
 # Moments about v and w that differ by less are those of a body of revolution, written with few digits.
 _ALIKE = 1e-3
+_ROUNDING = 1e-12
 
 
-def mass_tables(
-    part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame
-) -> list[Table]:
+def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> list[Table]:
     """Tables of an additional mass; none, and a problem on the account, where its mass or its place is not said.
 
     A mass m with its centre off the axis by e has the unbalance m e.
@@ -40,19 +39,23 @@ def mass_tables(
         account.missing(part, "mass_of_component is needed, above 0")
         return []
     u = account.number(part, ("u_coordinate_on_shaft",), "length")
-    frame = frames.of(part)
+    frame = structure.frame(part)
     if u is None and frame is None:
         account.missing(part, "its place is needed: u_coordinate_on_shaft or support_vector")
         return []
-    along = shaft.axis.z(u) if u is not None else float((model.axes @ (frame.origin - model.origin))[0])  # type: ignore[union-attr]
+    along = shaft.axis.z(u or 0.0) if u is not None or frame is None else float(structure.place(frame)[0])
     z = shaft.place(part, along, account)
     tables = [_body(part, names.of(part.name, "mass", part.id), shaft, z, mass, structure)]
     eccentricity = account.numbers(part, "eccentricity_vector", "length", 3)
     if eccentricity is not None and math.hypot(*eccentricity[1:]) > 0.0:
-        axes = frame.axes if frame is not None else model.axes
-        _, x, y = model.axes @ (np.array(eccentricity) @ axes)
-        name = tables[0].header.partition(".")[2]
-        tables.append(_unbalance(part, name, shaft, z, mass, float(x), float(y)))
+        axes = frame.axes if frame is not None else structure.model.axes
+        _, x, y = structure.model.axes @ (np.array(eccentricity) @ axes)
+        table = Table(f"unbalances.{tables[0].header.partition('.')[2]}", f"eccentricity of {part}")
+        table.add("shaft", f'"{shaft.name}"')
+        table.add("at", quantity(z, "length"))
+        table.add("magnitude", quantity(mass * math.hypot(x, y), "unbalance"))
+        table.add("phase", quantity(math.atan2(y, x), "angle"))
+        tables.append(table)
     return tables
 
 
@@ -78,19 +81,6 @@ def _body(part: Component, name: str, shaft: ShaftPart, z: float, mass: float, s
     table.add("polar_inertia", quantity(polar, "inertia"))
     table.add("diametral_inertia", quantity(diametral, "inertia"), comment)
     return table
-
-
-def _unbalance(part: Component, name: str, shaft: ShaftPart, z: float, mass: float, x: float, y: float) -> Table:
-    """Unbalance of a mass whose centre lies at x and y in m from the axis."""
-    table = Table(f"unbalances.{name}", f"eccentricity of {part}")
-    table.add("shaft", f'"{shaft.name}"')
-    table.add("at", quantity(z, "length"))
-    table.add("magnitude", quantity(mass * math.hypot(x, y), "unbalance"))
-    table.add("phase", quantity(math.atan2(y, x), "angle"))
-    return table
-
-
-_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -146,26 +136,19 @@ def load_tables(
         force = _force_table(load, shaft, z, names, structure.account)
         if force is not None:
             loads.append(force)
-    speed, reference = _speed(shafts, account)
+    # Speed about +z in rad/s of the shaft that defines it.
+    known = []
+    for shaft in shafts.values():
+        own = account.number(shaft.component, ("rotational_speed", "speed"), "speed")
+        if own:
+            defines = account.truth(shaft.component, "defines_speed")
+            known.append((0 if defines else 1 if defines is None else 2, own * shaft.axis.sense, shaft))
+    _, speed, reference = min(known, key=lambda item: item[0], default=(0, None, None))
     torques = [item for item in torques if item.torque is not None] + [item for item in torques if item.torque is None]
     if reference is None and not torques:
         account.assume("operation", "none", "the file gives neither speed nor torque: analyses are at standstill")
         return None, loads
     return _operation(speed, reference, torques, meshes, joined, names, account, loads)
-
-
-def _speed(shafts: dict[str, ShaftPart], account: Account) -> tuple[float | None, ShaftPart | None]:
-    """Speed about +z in rad/s of the shaft that defines it."""
-    found = []
-    for shaft in shafts.values():
-        speed = account.number(shaft.component, ("rotational_speed", "speed"), "speed")
-        if speed:
-            defines = account.truth(shaft.component, "defines_speed")
-            found.append((0 if defines else 1 if defines is None else 2, speed * shaft.axis.sense, shaft))
-    if not found:
-        return None, None
-    _, speed, shaft = min(found, key=lambda item: item[0])
-    return speed, shaft
 
 
 def _operation(

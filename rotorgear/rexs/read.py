@@ -84,7 +84,10 @@ def _from_xml(data: bytes) -> Document:
         raise _UnreadableError(f"not well-formed XML: {error}") from None
     if _tag(root) != "model":
         raise _UnreadableError(f"its root is <{_tag(root)}>, not <model>")
-    components = _by_id(_component(node) for node in _inside(root, "components", "component"))
+    components = _by_id(
+        Component(_needed(node, "id"), node.get("type", ""), node.get("name", ""), _attributes(node))
+        for node in _inside(root, "components", "component")
+    )
     relations = [
         Relation(node.get("type", ""), tuple((ref.get("role", ""), _needed(ref, "id")) for ref in _all(node, "ref")))
         for node in _inside(root, "relations", "relation")
@@ -143,10 +146,6 @@ def _needed(node: ElementTree.Element, key: str) -> str:
     if not found:
         raise _UnreadableError(f"a <{_tag(node)}> has no {key}")
     return found
-
-
-def _component(node: ElementTree.Element) -> Component:
-    return Component(_needed(node, "id"), node.get("type", ""), node.get("name", ""), _attributes(node))
 
 
 def _attributes(node: ElementTree.Element) -> dict[str, Value]:

@@ -5,20 +5,28 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from rotorgear.rexs.account import Account
-from rotorgear.rexs.document import Component, Document
-from rotorgear.rexs.structure import Axis, Frame, Frames, Pair, Structure, axis_in
+from rotorgear.rexs.document import Component
+from rotorgear.rexs.structure import Axis, Frame, Pair, Structure, axis_in
 from rotorgear.rexs.toml_text import Names, Table, number, quantity, row
 
 # Ends of neighbouring sections closer than this are one place: files write differences of rounded coordinates.
 _SAME_PLACE = 1e-6
 # Decimals of a place in m that follows from an angle: the sine of 180 deg is no length.
 _PICOMETRE = 12
-# What a material can't be, and placeholders are: E in Pa, density in kg/m^3.
-_MODULUS = (1e8, 1e12)
-_DENSITY = (100.0, 25000.0)
+# Numbers of a material: key, attributes, kind, bounds beyond which a value is a placeholder, the value of steel and its text.
+_OF_STEEL = (
+    (
+        "youngs_modulus",
+        ("elastic_modulus", "youngs_modulus", "modulus_of_elasticity"),
+        "modulus",
+        (1e8, 1e12),
+        206e9,
+        "206 GPa",
+    ),
+    ("poisson_ratio", ("poisson_ratio", "poissons_ratio"), "ratio", (1e-9, 0.5 - 1e-9), 0.3, "0.3"),
+    ("density", ("density",), "density", (100.0, 25000.0), 7850.0, "7850 kg/m^3"),
+)
 
 
 @dataclass(frozen=True)
@@ -107,10 +115,7 @@ def read_pieces(shaft: Component, structure: Structure, account: Account) -> tup
             account.missing(section, "outer diameters must be larger than inner ones, and both not negative")
             continue
         pieces.append(Piece(u, length, (begin, end), inner))
-    return _joined(shaft, sorted(pieces, key=lambda piece: piece.u), account)
-
-
-def _joined(shaft: Component, pieces: list[Piece], account: Account) -> tuple[Piece, ...]:
+    pieces.sort(key=lambda piece: piece.u)
     out: list[Piece] = []
     for piece in pieces:
         gap = piece.u - out[-1].end if out else 0.0
@@ -133,25 +138,22 @@ def _joined(shaft: Component, pieces: list[Piece], account: Account) -> tuple[Pi
     return tuple(out)
 
 
-def shaft_axes(
-    document: Document, frames: Frames, structure: Structure, pairs: list[Pair], account: Account
-) -> tuple[dict[str, Axis], Frame]:
-    """Axes of all shafts by number, in the frame of the gear unit, and that frame.
+def shaft_axes(structure: Structure, pairs: list[Pair]) -> dict[str, Axis]:
+    """Axes of all shafts by number, in the frame of the model; it becomes that of the shafts where these run otherwise.
 
     Shafts that the file does not place follow from the centre distance and the angle of the stages: the second gear stands
     at v = a sin(phi), w = a cos(phi) from the first, phi = rotating_angle_around_neg_u_axis counted from w.
     """
-    shafts = document.of_type("shaft")
-    placed = {shaft.id: frame for shaft in shafts if (frame := frames.of(shaft)) is not None}
-    units = [frame for unit in document.of_type("gear_unit") if (frame := frames.of(unit)) is not None]
-    model = units[0] if units else Frame(np.zeros(3), np.eye(3))
+    account = structure.account
+    shafts = structure.document.of_type("shaft")
+    placed = {shaft.id: frame for shaft in shafts if (frame := structure.frame(shaft)) is not None}
     first = next(iter(placed.values()), None)
-    if first is not None and axis_in(first, model) is None:
-        model = Frame(model.origin, first.axes)  # shafts do not run along u of the gear unit: along their own then
+    if first is not None and axis_in(first, structure.model) is None:
+        structure.model = Frame(structure.model.origin, first.axes)
     axes: dict[str, Axis] = {}
     for shaft in shafts:
         if shaft.id in placed:
-            axis = axis_in(placed[shaft.id], model)
+            axis = axis_in(placed[shaft.id], structure.model)
             if axis is None:
                 account.missing(
                     shaft, "its axis is not parallel to that of the first shaft; all shafts must be parallel"
@@ -161,15 +163,16 @@ def shaft_axes(
         axes[shafts[0].id] = Axis(0.0, 0.0, 0.0, 1)
         reason = f"{shafts[0]} has no support_vector: the origin of the model"
         account.assume(f"shafts.{shafts[0].name or shafts[0].id}.position", "x = y = z = 0", reason)
-    _by_stages(axes, structure, pairs, account)
+    _by_stages(axes, structure, pairs)
     for shaft in shafts:
         if shaft.id not in axes:
             account.missing(shaft, "support_vector is needed, or a stage with a placed shaft and a centre_distance")
-    return axes, model
+    return axes
 
 
-def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], account: Account) -> None:
+def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair]) -> None:
     """Place shafts beside placed ones, until no stage leads to another."""
+    account = structure.account
     waiting = list(pairs)
     while waiting:
         rest = []
@@ -196,7 +199,8 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], a
                 where = f"{new} has no support_vector, {pair.stage} no angle: beside the other shaft, faces aligned"
             turn = 1.0 if k == 0 else -1.0
             base = axes[old.id]
-            shift = _middle(pair.members[k], account) - _middle(pair.members[1 - k], account)
+            places = [account.number(gear, ("u_coordinate_on_shaft",), "length") or 0.0 for gear in pair.members]
+            shift = places[k] - places[1 - k]
             x = round(base.x + turn * a * math.sin(phi), _PICOMETRE)
             y = round(base.y + turn * a * math.cos(phi), _PICOMETRE)
             axes[new.id] = Axis(x, y, base.origin + base.sense * shift, base.sense, base.rotation)
@@ -206,10 +210,6 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], a
         if len(rest) == len(waiting):
             return
         waiting = rest
-
-
-def _middle(gear: Component, account: Account) -> float:
-    return account.number(gear, ("u_coordinate_on_shaft",), "length") or 0.0
 
 
 def shaft_table(part: ShaftPart, material: str, comment: str) -> Table:
@@ -263,26 +263,12 @@ class Materials:
         account = self.account
         name = self._names.of(f"{material.name or 'material'}", "material", material.id)
         table = Table(f"materials.{name}", str(material))
-        E = account.number(material, ("elastic_modulus", "youngs_modulus", "modulus_of_elasticity"), "modulus")
-        nu = account.number(material, ("poisson_ratio", "poissons_ratio"), "ratio")
-        rho = account.number(material, ("density",), "density")
-        if E is None or not _MODULUS[0] <= E <= _MODULUS[1]:
-            E = 206e9
-            note = account.assume(
-                f"materials.{name}.youngs_modulus", "206 GPa", f"{material} states none: that of steel"
-            )
-            table.add("youngs_modulus", quantity(E, "modulus"), note)
-        else:
-            table.add("youngs_modulus", quantity(E, "modulus"))
-        if nu is None or not 0.0 < nu < 0.5:
-            note = account.assume(f"materials.{name}.poisson_ratio", "0.3", f"{material} states none: that of steel")
-            table.add("poisson_ratio", "0.3", note)
-        else:
-            table.add("poisson_ratio", number(nu))
-        if rho is None or not _DENSITY[0] <= rho <= _DENSITY[1]:
-            note = account.assume(f"materials.{name}.density", "7850 kg/m^3", f"{material} states none: that of steel")
-            table.add("density", quantity(7850.0, "density"), note)
-        else:
-            table.add("density", quantity(rho, "density"))
+        for key, names, kind, bounds, steel, shown in _OF_STEEL:
+            value = account.number(material, names, kind)
+            note = ""
+            if value is None or not bounds[0] <= value <= bounds[1]:
+                value = steel
+                note = account.assume(f"{table.header}.{key}", shown, f"{material} states none: that of steel")
+            table.add(key, number(value) if kind == "ratio" else quantity(value, kind), note)
         self.tables.append(table)
         return name

@@ -26,48 +26,6 @@ class Frame:
     axes: np.ndarray
 
 
-class Frames:
-    """The frames of all components of a document."""
-
-    def __init__(self, document: Document, account: Account) -> None:
-        self.document = document
-        self.account = account
-        self._known: dict[str, Frame | None] = {}
-
-    def of(self, component: Component, below: tuple[str, ...] = ()) -> Frame | None:
-        """Frame of a component; None where the file gives it no support vector."""
-        if component.id in self._known:
-            return self._known[component.id]
-        support = self.account.numbers(component, "support_vector", "length", 3)
-        found = None
-        if support is not None:
-            base = self._base(component, below)
-            axes = self._axes(component) @ base.axes
-            found = Frame(base.origin + np.array(support) @ base.axes, axes)
-        self._known[component.id] = found
-        return found
-
-    def _base(self, component: Component, below: tuple[str, ...]) -> Frame:
-        world = Frame(np.zeros(3), np.eye(3))
-        number = self.account.text(component, "reference_component_for_position").removesuffix(".0")
-        # A gear unit refers to itself, and its frame is that of the space.
-        if not number or number == component.id or number in below:
-            return world
-        reference = self.document.components.get(number)
-        return (self.of(reference, (*below, component.id)) if reference is not None else None) or world
-
-    def _axes(self, component: Component) -> np.ndarray:
-        u = np.array(self.account.numbers(component, "u_axis_vector", "length", 3) or (1e-3, 0.0, 0.0))
-        w = np.array(self.account.numbers(component, "w_axis_vector", "length", 3) or (0.0, 0.0, 1e-3))
-        if not np.linalg.norm(u) or not np.linalg.norm(np.cross(w, u)):
-            self.account.missing(component, "its axes u and w must be two directions, and are not")
-            return np.eye(3)
-        u = u / np.linalg.norm(u)
-        v = np.cross(w, u)
-        v = v / np.linalg.norm(v)
-        return np.array([u, v, np.cross(u, v)])
-
-
 @dataclass(frozen=True)
 class Axis:
     """The axis of a shaft in the frame of the model: x and y in m, z of its origin, and -1 where u runs against z.
@@ -195,7 +153,9 @@ def refuse_other_kinds(document: Document, source: str) -> None:
 
 
 class Structure:
-    """The relations of a document, asked for by what they mean.
+    """Frames and relations of the components of a document, asked for by what they mean.
+
+    `model` is the frame of the model in the space of the file, by default that of the gear unit.
 
     Args:
         document: of the file; account: where parts that are left out are noted.
@@ -204,6 +164,42 @@ class Structure:
     def __init__(self, document: Document, account: Account) -> None:
         self.document = document
         self.account = account
+        self._frames: dict[str, Frame | None] = {}
+        units = [frame for unit in document.of_type("gear_unit") if (frame := self.frame(unit)) is not None]
+        self.model = units[0] if units else Frame(np.zeros(3), np.eye(3))
+
+    def frame(self, component: Component, below: tuple[str, ...] = ()) -> Frame | None:
+        """Frame of a component; None where the file gives it no support vector."""
+        account = self.account
+        if component.id in self._frames:
+            return self._frames[component.id]
+        support = account.numbers(component, "support_vector", "length", 3)
+        found = None
+        if support is not None:
+            base = None
+            number = account.text(component, "reference_component_for_position").removesuffix(".0")
+            # A gear unit refers to itself, and its frame is that of the space.
+            if number and number != component.id and number not in below:
+                reference = self.document.components.get(number)
+                base = self.frame(reference, (*below, component.id)) if reference is not None else None
+            base = base or Frame(np.zeros(3), np.eye(3))
+            axes = np.eye(3)
+            u = np.array(account.numbers(component, "u_axis_vector", "length", 3) or (1e-3, 0.0, 0.0))
+            w = np.array(account.numbers(component, "w_axis_vector", "length", 3) or (0.0, 0.0, 1e-3))
+            if np.linalg.norm(u) and np.linalg.norm(np.cross(w, u)):
+                u = u / np.linalg.norm(u)
+                v = np.cross(w, u)
+                v = v / np.linalg.norm(v)
+                axes = np.array([u, v, np.cross(u, v)])
+            else:
+                account.missing(component, "its axes u and w must be two directions, and are not")
+            found = Frame(base.origin + np.array(support) @ base.axes, axes @ base.axes)
+        self._frames[component.id] = found
+        return found
+
+    def place(self, frame: Frame) -> np.ndarray:
+        """z, x and y (3,) of the origin of a frame in the model, in m."""
+        return np.asarray(self.model.axes @ (frame.origin - self.model.origin))
 
     def shaft_of(self, component: Component, *roles: str) -> Component | None:
         """The shaft that a component stands on (in some of the roles of that shaft, where they are given)."""

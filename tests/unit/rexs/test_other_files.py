@@ -182,7 +182,7 @@ def test_coded_arrays_are_those_that_are_written_out(code: str, letter: str, tmp
 
 def test_values_in_another_file_are_asked_for_by_its_name(tmp_path: Path) -> None:
     shaft = Component("900", "shaft", "Kept elsewhere", {"data_source": Value("./database_shaft.rexs")})
-    with pytest.raises(rg.ModelError, match=r"stand in './database_shaft.rexs', which is not read"):
+    with pytest.raises(rg.ModelError, match=r"are in './database_shaft.rexs', which is not read"):
         imported(with_component(bearinx(), shaft), tmp_path)
 
 
