@@ -40,12 +40,13 @@ _NO_SPEED = "the model has no operating speed"
 
 @dataclass
 class Contents:
-    """Results by the name they have in the page's numbers, CPU seconds by the same names, and what was not computed and why."""
+    """Results by the name they have in the page's numbers, their CPU seconds, and what was not computed and why."""
 
     model: Model
     results: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
+    seconds_of_all: float = 0.0
 
     def run(self, name: str, analysis: Callable[[], Any]) -> Any:
         """Run an analysis; what the model lacks for it is kept as the reason why its section is not there."""

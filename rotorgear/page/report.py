@@ -18,9 +18,8 @@ from rotorgear.export.hdf5 import read
 from rotorgear.extras import require
 from rotorgear.model.load import load
 from rotorgear.model.model import Model, model_hash
-from rotorgear.page.cells import RESULTS, Numbers
 from rotorgear.page.contents import computed, error_of
-from rotorgear.page.sections import sections
+from rotorgear.page.sections import RESULTS, sections
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.result import Result
@@ -91,6 +90,7 @@ def report(
     studies = [_study(path) for path in study]
     start = time.process_time()
     found = computed(built, lines, grade, progress)
+    found.seconds_of_all = time.process_time() - start
     numbers = {
         "analysis": "report",
         "title": built.title,
@@ -102,13 +102,13 @@ def report(
             "rig": setting(rig if isinstance(rig, str | Path) else [str(line) for line in lines]),
         },
         "cpu_seconds": dict(found.seconds),
-        "cpu_seconds_of_all": time.process_time() - start,
+        "cpu_seconds_of_all": found.seconds_of_all,
         "largest_error_estimate": {name: error_of(result) for name, result in found.results.items()},
         "missing": dict(found.missing),
         RESULTS: {name: result.to_dict() for name, result in found.results.items()},
     }
     progress(0.9, "page")
-    text = _page(built, numbers, list(sections(found, Numbers(numbers), studies)), _turntable(found.results, turntable))
+    text = _page(built, numbers, list(sections(found, studies)), _turntable(found.results, turntable))
     with replacing(target) as scratch:
         scratch.write_text(text, encoding="utf-8")
     progress(1.0, "done")

@@ -1,55 +1,247 @@
-"""The sections of the page in their order, each there only where its results are; what they cost and what was left out."""
+"""The sections of a report in the order of the page: the tables of its results, pictures beside them, costs and errors."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 from typing import Any
+
+import numpy as np
 
 from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.note import sentences
-from rotorgear.page.at_rest import model_section, modes_section, static_section
-from rotorgear.page.cells import RESULTS, Cell, Figure, Numbers, Section, Table, words
 from rotorgear.page.contents import Contents, error_of
-from rotorgear.page.curves import draw_errors
-from rotorgear.page.figures import Painter, svg_of
-from rotorgear.page.of_parts import casings_section, rig_section, teeth_section
-from rotorgear.page.over_speed import campbell_section, critical_section, response_section, standards_section
+from rotorgear.page.figures import Painter, draw_errors, draw_unbalance, svg_of
+from rotorgear.plots.campbell import campbell as draw_campbell
+from rotorgear.plots.critical_map import critical_map as draw_map
+from rotorgear.plots.mesh import mesh as draw_mesh
+from rotorgear.plots.response import response as draw_response
+from rotorgear.plots.static import static as draw_static
+from rotorgear.results.casing import CasingRow
+from rotorgear.results.mesh import MeshResult
+from rotorgear.results.table import (
+    Cell,
+    Column,
+    Line,
+    Table,
+    error_words,
+    grid,
+    html_table,
+    records,
+    table_of,
+    written,
+)
+
+# Where the results of all analyses stand in the JSON output of a report.
+RESULTS = "results"
+# Pictures of so many elastic modes, the first of the table.
+_PICTURES = 8
 
 
-def sections(found: Contents, numbers: Numbers, studies: list[Any]) -> Iterator[Section]:
+@dataclass(frozen=True)
+class Figure:
+    """A picture: inline SVG or an image, and what it shows. `small`: several stand in a row."""
+
+    caption: str
+    markup: str
+    small: bool = False
+
+
+@dataclass
+class Section:
+    """A section of the page; `tables` are HTML."""
+
+    name: str
+    title: str
+    words: list[str] = field(default_factory=list)
+    tables: list[str] = field(default_factory=list)
+    figures: list[Figure] = field(default_factory=list)
+
+    def show(self, tables: Iterable[Any], *top: str) -> Section:
+        """Add tables whose numbers stand below a place of the JSON output; what else a result says is left."""
+        self.tables += [html_table(one, top=top) for one in tables if isinstance(one, Table) and one.rows]
+        return self
+
+
+def sections(found: Contents, studies: list[Any]) -> Iterator[Section]:
     """Yield the sections of a report in the order of the page."""
     made = found.results
     painter = None
     if "modal" in made:
         painter = Painter(build_solids(found.model, made["modal"].nodes, LIGHT), (9.6, 5.2))
     if "check" in made:
-        yield model_section(made, numbers, painter)
+        section = Section("model", "The gearbox").show(made["check"].tables(), RESULTS, "check")
+        if painter is not None:
+            seen = "The model, seen from an end; a casing is drawn transparent."
+            section.figures.append(Figure(seen, painter.image("The gearbox")))
+        yield section
     if "static" in made:
-        yield static_section(made, numbers)
+        section = Section("statics", "Statics").show(made["static"].tables(), RESULTS, "static")
+        drawn = svg_of(draw_static(made["static"]), "Statics")
+        section.figures.append(Figure("Forces, load sharing and deflections.", drawn))
+        yield section
     if "modal" in made:
-        yield modes_section(made, numbers, painter)
-    shown: dict[str, Callable[[dict[str, Any], Numbers], Section]] = {
-        "campbell": campbell_section,
-        "critical": critical_section,
-        "standards": standards_section,
-        "response": response_section,
+        yield _modes(made["modal"], painter)
+    over_speed: dict[str, Callable[[dict[str, Any]], Section]] = {
+        "campbell": _campbell,
+        "critical": _critical,
+        "standards": _standards,
+        "response": _response,
     }
-    for name, section in shown.items():
+    for name, make in over_speed.items():
         if name in made:
-            yield section(made, numbers)
+            yield make(made)
     teeth = [name for name in made if name.startswith("mesh ")]
     if teeth:
-        yield teeth_section(made, numbers, teeth)
+        yield _teeth(made, teeth)
     casings = [name for name in made if name.startswith("casing ")]
     if casings:
-        yield casings_section(numbers, casings)
+        yield _casings(made, casings)
     if "rig" in made:
-        yield rig_section(made, numbers)
-    yield _costs(found, numbers, studies)
+        yield _rig(made["rig"])
+    yield _costs(found, studies)
     yield _left_out(found)
 
 
-def _costs(found: Contents, numbers: Numbers, studies: list[Any]) -> Section:
+def _modes(result: Any, painter: Painter | None) -> Section:
+    """Natural frequencies, what holds their energy, and pictures of the first elastic modes."""
+    section = Section("modes", "Natural frequencies and modes").show(result.tables(energies=True), RESULTS, "modal")
+    section.words.append(
+        "Undamped, at standstill. Error: estimated relative error of the frequency by the finite elements."
+    )
+    if painter is not None:
+        small = Painter(painter.solids, (4.6, 2.9))
+        for k in [k for k in range(len(result)) if not result.rigid[k]][:_PICTURES]:
+            label = f"Mode {k + 1}: {result.frequency_hz[k]:.2f} Hz"
+            image = small.mode(label, np.real(result.shapes[:, :, k]))
+            section.figures.append(Figure(f"{label}, {result.description[k]}", image, small=True))
+    return section
+
+
+def _campbell(made: dict[str, Any]) -> Section:
+    """The diagram, margins at the operating speed, and onsets of instability."""
+    result = made["campbell"]
+    section = Section("campbell", "Campbell diagram and margins").show(result.tables(), RESULTS, "campbell")
+    drawn = svg_of(draw_campbell(result), "Campbell diagram")
+    section.figures.append(Figure("Natural frequencies over speed, and lines of excitation.", drawn))
+    if result.onsets:
+        section.show([table_of(result, "onsets")], RESULTS, "campbell")
+    else:
+        section.words.append("Stability: no branch grows in this range of speeds.")
+    return section
+
+
+def _critical(made: dict[str, Any]) -> Section:
+    """Speeds at which 1x of a shaft meets a mode, and the map over the stiffness of the bearings."""
+    result = made["critical"]
+    section = Section("critical", "Critical speeds")
+    if "critical_map" in made and np.isfinite(made["critical_map"].critical_speeds).any():
+        caption = (
+            "Undamped critical speeds over one stiffness of all bearings; vertical lines: the bearings of the model."
+        )
+        section.figures.append(Figure(caption, svg_of(draw_map(made["critical_map"]), "Critical speed map")))
+    if not len(result):
+        section.words.append("No line meets a mode in the range of speeds.")
+    return section.show(result.tables(), RESULTS, "critical")
+
+
+def _standards(made: dict[str, Any]) -> Section:
+    """Peaks of the unbalance response, and verdicts of the rules, with more words than the terminal has room for."""
+    result = made["standards"]
+    section = Section("standards", "Unbalance response and rules of standards")
+    section.words.append(
+        "Each verdict speaks of the one rule beside it. None says that the machine meets a standard: that takes more than these."
+    )
+    if result.curves:
+        caption = (
+            "Response to the rules' unbalance in the shape of each shaft's first peak; dashed: the operating speed."
+        )
+        section.figures.append(Figure(caption, svg_of(draw_unbalance(result), "Unbalance response")))
+    tables = [
+        table_of(result, "criticals", *_with_columns(result, "criticals"), "description"),
+        table_of(result, "checks", *_with_columns(result, "checks"), "note"),
+        grid(
+            [(rule.name, rule.source, rule.formula) for rule in result.rules],
+            "rule",
+            "standard",
+            "formula",
+            left=3,
+            caption="What the rules say",
+        ),
+    ]
+    return section.show(tables, RESULTS, "standards")
+
+
+def _with_columns(result: Any, field: str) -> list[str]:
+    """The fields of its records that stand in a table everywhere."""
+    return [one.name for one in result.declarations[field].record.declarations.values() if one.column]
+
+
+def _response(made: dict[str, Any]) -> Section:
+    """Amplitudes over speed, and the largest of them."""
+    result = made["response"]
+    section = Section("run-up", "Run-up").show(result.tables(), RESULTS, "response")
+    section.words.append(
+        "Linear response to the unbalances, transmission errors and stiffness variation that the model has."
+    )
+    if not result.damping_ratio and not np.any(result.model.damping.model_dump(exclude_defaults=True)):
+        section.words.append(
+            "No damping is given to the model as a whole: heights near resonances are those of the nearest speed."
+        )
+    section.figures.append(Figure("Amplitudes over speed.", svg_of(draw_response(result), "Run-up")))
+    return section
+
+
+def _teeth(made: dict[str, Any], names: list[str]) -> Section:
+    """Stiffness, transmission error and pressure of each mesh over its cycle."""
+    section = Section("teeth", "Teeth in contact")
+    for name in names:
+        label = name.partition(" ")[2]
+        caption = f"{label}: stiffness k(t), transmission error, load sharing and pressure over the mesh cycle."
+        section.figures.append(Figure(caption, svg_of(draw_mesh(made[name]), name)))
+    columns = (
+        Column("", "mesh"),
+        Column("", "mean_stiffness", ".5g", "N/um"),
+        Column("", "peak_to_peak_stiffness", ".4g", "N/um"),
+        Column("", "ste_peak_to_peak", ".4g", "um"),
+        Column("", "helix.0.largest_pressure_pa", ".4g", "MPa"),
+        Column("", "helix.0.contact_ratio", ".3f"),
+    )
+    rows = [(made[name], (RESULTS, name)) for name in names]
+    caption = "Loaded teeth at the mean load, transverse stiffness"
+    return section.show([records(rows, MeshResult, *columns, caption=caption)])
+
+
+def _casings(made: dict[str, Any], names: list[str]) -> Section:
+    """Meshes of the casings and what their reduction left."""
+    rows = [(row, (RESULTS, name, "casings", casing)) for name in names for casing, row in made[name].casings.items()]
+    label = {id(row): str(place[-1]) for row, place in rows}
+    columns = (
+        Column("casing", lambda row: label[id(row)]),
+        "element",
+        "dofs",
+        Column("", "mass_kg", ".3f"),
+        Column("", "free_frequency_hz", ".2f", entry=(0,), label="first free mode, Hz"),
+        Column("", "free_mesh_error", error_words, entry=(0,), label="its mesh error"),
+        "coordinates",
+        Column("", "reduction_error", error_words, entry=(0,), label="reduction error"),
+    )
+    caption = "Meshes of the casings and their reduction"
+    return Section("casings", "Casings").show([records(rows, CasingRow, *columns, caption=caption)])
+
+
+def _rig(result: Any) -> Section:
+    """Lines of the rig beside modes, and what chance would have matched."""
+    blocks = list(result.tables())
+    section = Section("rig", "Comparison with the rig").show(blocks, RESULTS, "rig")
+    lines = [one.bold + one.rest if isinstance(one, Line) else one for one in blocks if not isinstance(one, Table)]
+    start = next((k for k, line in enumerate(lines) if line.startswith("Chance")), len(lines))
+    section.words += [line for line in lines[start:] if line]
+    return section
+
+
+def _costs(found: Contents, studies: list[Any]) -> Section:
+    """What each analysis took, and the largest error that it states."""
     section = Section("errors", "Error against run time")
     section.words.append(
         "The largest estimated relative error of each section's numbers beside the CPU seconds that they took on one thread. "
@@ -57,24 +249,23 @@ def _costs(found: Contents, numbers: Numbers, studies: list[Any]) -> Section:
     )
     rows = []
     for name, result in found.results.items():
-        known = error_of(result)
+        error = Cell(written(error_of(result), error_words), ("largest_error_estimate", name), number=True)
+        dofs = getattr(result, "dofs", None) or None
         rows.append(
-            [
+            (
                 Cell(name),
-                numbers.cell(".2f", "cpu_seconds", name),
-                numbers.cell(".1e", "largest_error_estimate", name) if known is not None else Cell("–"),
-                numbers.cell("d", RESULTS, name, "dofs") if getattr(result, "dofs", None) else Cell("–"),
+                Cell(f"{found.seconds[name]:.2f}", ("cpu_seconds", name), number=True),
+                error,
+                Cell(written(dofs, "d"), (RESULTS, name, "dofs"), number=True),
                 Cell(result.method),
-            ]
+            )
         )
-    rows.append([Cell("all"), numbers.cell(".2f", "cpu_seconds_of_all"), Cell(""), Cell(""), Cell("")])
-    section.tables.append(Table("Cost and error", ("analysis", "CPU s", "largest error", "dofs", "method"), rows))
-    section.figures.append(
-        Figure(
-            "Estimated error against CPU seconds, an analysis a point.",
-            svg_of(draw_errors(found), "Error against run time"),
-        )
-    )
+    total = Cell(f"{found.seconds_of_all:.2f}", ("cpu_seconds_of_all",), number=True)
+    rows.append((Cell("all"), total, *[Cell("", number=True)] * 2, Cell("")))
+    heads = ("analysis", "CPU s", "largest error", "dofs", "method")
+    section.show([Table(tuple(map(Column, heads)), rows, "Cost and error")])
+    drawn = svg_of(draw_errors(found), "Error against run time")
+    section.figures.append(Figure("Estimated error against CPU seconds, an analysis a point.", drawn))
     for k, study in enumerate(studies):
         picture = svg_of(study.plot(), f"study {k + 1}")
         section.figures.append(Figure(f"Stored convergence study: {getattr(study, 'title', study.kind)}.", picture))
@@ -86,10 +277,10 @@ def _costs(found: Contents, numbers: Numbers, studies: list[Any]) -> Section:
 
 
 def _left_out(found: Contents) -> Section:
-    section = Section("left-out", "What was left out, and why")
-    rows = [words(name, reason) for name, reason in found.missing.items()]
-    if rows:
-        section.tables.append(Table("Sections that are not there", ("section", "reason"), rows, left=2))
+    """Sections that are not there, and what the analyses left out and warn about, each sentence once."""
+    tables = [
+        grid(found.missing.items(), "section", "reason", left=2, caption="Sections that are not there"),
+    ]
     both = (
         ("left_out", "Left out of the analyses", "what and why"),
         ("warnings", "Warnings", "warning"),
@@ -99,7 +290,6 @@ def _left_out(found: Contents) -> Section:
         for analysis, result in found.results.items():
             for sentence in sentences(getattr(result, name)):
                 said.setdefault(sentence, []).append(analysis)
-        if said:
-            rows = [words(", ".join(analyses), sentence) for sentence, analyses in said.items()]
-            section.tables.append(Table(title, ("analysis", heading), rows, left=2))
-    return section
+        rows = [(", ".join(analyses), sentence) for sentence, analyses in said.items()]
+        tables.append(grid(rows, "analysis", heading, left=2, caption=title))
+    return Section("left-out", "What was left out, and why").show(tables)

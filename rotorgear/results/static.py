@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -353,14 +353,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
                 missing = f"{loop.rest_pitches:+.4f} pitches missing"
                 yield f"Loop: {loop.mesh} closes a loop with the clockings given: {missing}"
         if self.bearing_force or self.support_force:
-            held = [*self.bearing_force.items()]
-            held += [(f"support {name}", load) for name, load in self.support_force.items() if load.any()]
-            rows = [
-                (name, *(written(x, ".1f") for x in load[:3]), *(written(x, ".2f") for x in load[3:]))
-                for name, load in held
-            ]
-            heads = ("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
-            yield from ("", grid(rows, *heads, caption="Forces and moments on the shafts"))
+            yield from ("", self._on_shafts())
         if self.casing_seat_force:
             yield from ("", self._on_casings())
         if self.laws:
@@ -392,13 +385,24 @@ class StaticResult(AboutEquilibrium, kind="static"):
 
     def _meshes(self) -> Table:
         two = [len(self.contacts_of(mesh)) == 2 for mesh in self.contact_mesh]
+
+        def place(key: str, *behind: int) -> Callable[[int], tuple[str | int, ...]]:
+            def path(k: int) -> tuple[str | int, ...]:
+                mesh = self.contact_mesh[k]
+                return (key, mesh, self.contacts_of(mesh).index(k), *behind)
+
+            return path
+
         columns = (
             Column("mesh", lambda k: self._helix(self.contact_mesh[k], self.contact_helix[k])),
             Column("driver", lambda k: self.driver[k] if self.carries[k] else "open"),
-            Column("F_n N", "mesh_force", ".1f"),
-            Column("helix %", "helix_share", ".2f", "%", where=lambda k: two[k]),
-            Column("press um", "mesh_deflection", ".3f", "um"),
-            *(Column(f"F{x} N", "mesh_force_on_gear", ".0f", entry=(j,)) for j, x in enumerate("xyz")),
+            Column("F_n N", "mesh_force", ".1f", place=place("mesh_force_n")),
+            Column("helix %", "helix_share", ".2f", "%", where=lambda k: two[k], place=place("helix_share")),
+            Column("press um", "mesh_deflection", ".3f", "um", place=place("mesh_deflection_m")),
+            *(
+                Column(f"F{x} N", "mesh_force_on_gear", ".0f", entry=(j,), place=place("mesh_force_on_gear_n", j))
+                for j, x in enumerate("xyz")
+            ),
             Column("phase", lambda k: self.mesh_phase.get(self.contact_mesh[k]), ".4f"),
         )
         return table_over(self, "contact", *columns, caption="Forces between the teeth")
@@ -419,6 +423,24 @@ class StaticResult(AboutEquilibrium, kind="static"):
         yield heading(f"Share of {first.mesh} in {first.gear}", f", change in percentage points{cut}")
         shown = [(part, words, f"{100.0 * change:+.3f}") for change, part, words in rows[:_MOST_SENSITIVE]]
         yield grid(shown, "what changes", "by", "share, points", left=2, caption="Sensitivity of the load sharing")
+
+    def _on_shafts(self) -> Table:
+        """Forces and moments of bearings and supports on the shafts."""
+        rows = []
+        for kind, loads in (("bearing", self.bearing_force), ("support", self.support_force)):
+            for name, load in loads.items():
+                if kind == "support" and not load.any():
+                    continue
+                force = (
+                    Cell(written(x, ".1f"), (f"{kind}_force_n", name, j), number=True) for j, x in enumerate(load[:3])
+                )
+                moment = (
+                    Cell(written(x, ".2f"), (f"{kind}_moment_n_m", name, j), number=True)
+                    for j, x in enumerate(load[3:])
+                )
+                rows.append((Cell(f"support {name}" if kind == "support" else name), *force, *moment))
+        heads = ("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
+        return Table(tuple(map(Column, heads)), rows, "Forces and moments on the shafts")
 
     def _on_casings(self) -> Table:
         """Forces on casings: of what stands in their seats, and of the ground at their held sets and mounts."""

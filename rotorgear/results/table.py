@@ -35,6 +35,7 @@ _SCALES = {
     ("m", "um"): 1e6,
     ("Pa", "MPa"): 1e-6,
     ("W", "kW"): 1e-3,
+    ("N/m", "N/um"): 1e-6,
     ("s", "ms"): 1e3,
     ("", "%"): 100.0,
     ("N/m^2", "N/(mm um)"): 1e-9,
@@ -71,6 +72,7 @@ class Column:
 
     `left`: words, which stand to the left; None: as its cells are. `label`: its heading where there is room for it. `where`: what
     says of a row whether it has such a number, `without` what stands there if not. `entry`: which one of an array.
+    `place`: what says of a row where the number stands in the JSON output, where that is arranged otherwise.
     """
 
     heading: str
@@ -82,6 +84,7 @@ class Column:
     where: Callable[[Any], bool] | None = None
     without: str = "-"
     entry: tuple[int, ...] = ()
+    place: Callable[[Any], tuple[str | int, ...]] | None = None
 
 
 @dataclass(frozen=True)
@@ -181,19 +184,30 @@ def table_of(
     assert declared.record is not None
     kept = getattr(owner, field)
     places: list[str | int] = list(kept) if isinstance(kept, dict) else list(range(len(kept)))
-    known = declared.record.declarations
-    shown = [_column(known, one) for one in columns or [d.name for d in known.values() if d.column]]
     below = (*top, _key(declared) or field)
-    rows = []
-    for k in range(len(places)) if keep is None else keep:
-        record = kept[places[k]]
+    rows = [(kept[places[k]], (*below, places[k])) for k in (range(len(places)) if keep is None else keep)]
+    return records(rows, declared.record, *columns, at=at, caption=caption or _capital(declared.label), **look)
 
-        def path(key: str, k: int = k) -> tuple[str | int, ...]:
-            return at(k, key) if at else (*below, places[k], *key.split("."))
 
-        rows.append(tuple(_cell(record, known, column, path) for column in shown))
-    columns_known = [_labelled(known, column) for column in shown]
-    return _table(columns_known, rows, caption or _capital(declared.label), **look)
+def records(
+    rows: Iterable[tuple[Record, tuple[str | int, ...]]],
+    cls: type[Record],
+    *columns: Column | str,
+    at: Callable[[int, str], tuple[str | int, ...]] | None = None,
+    caption: str = "",
+    **look: Any,
+) -> Table:
+    """A table of records of a class, each with its place in the JSON output; the rest as of `table_of`."""
+    known = cls.declarations
+    shown = [one if isinstance(one, Column) else Column("", one) for one in columns or _told(known)]
+    cells = []
+    for k, (record, place) in enumerate(rows):
+
+        def path(key: str, k: int = k, place: tuple[str | int, ...] = place) -> tuple[str | int, ...]:
+            return at(k, key) if at else (*place, *key.split("."))
+
+        cells.append(tuple(_cell(record, known, column, path) for column in shown))
+    return Table(tuple(_labelled(known, column) for column in shown), cells, caption, **look)
 
 
 def table_over(owner: Record, axis: str, *columns: Column | str, caption: str = "", **look: Any) -> Table:
@@ -204,9 +218,8 @@ def table_over(owner: Record, axis: str, *columns: Column | str, caption: str = 
         caption, look: of the `Table`.
     """
     known = {d.name: d for d in owner.declarations.values() if d.axes[:1] == (axis,) and d.record is None}
-    shown = [
-        _column(known, one) for one in columns or [d.name for d in known.values() if d.column and len(d.axes) == 1]
-    ]
+    single = {name: d for name, d in known.items() if len(d.axes) == 1}
+    shown = [one if isinstance(one, Column) else Column("", one) for one in columns or _told(single)]
     length = len(getattr(owner, next(iter(known))))
     rows = []
     for k in range(length):
@@ -218,12 +231,13 @@ def table_over(owner: Record, axis: str, *columns: Column | str, caption: str = 
                 declared = known[column.value]
                 key = _key(declared)
                 path: tuple[str | int, ...] = (key, k, *column.entry) if key else ()
+                path = column.place(k) if column.place else path
                 value = getattr(owner, column.value)[(k, *column.entry) if column.entry else k]
                 cells.append(_number(value, declared, column, path))
             else:
                 cells.append(_plain(column.value(k), column.form))
         rows.append(tuple(cells))
-    return _table([_labelled(known, column) for column in shown], rows, caption or _capital(axis), **look)
+    return Table(tuple(_labelled(known, column) for column in shown), rows, caption or _capital(axis), **look)
 
 
 def grid(
@@ -262,19 +276,18 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _table(columns: Sequence[Column], rows: list[tuple[Cell, ...]], caption: str, **look: Any) -> Table:
-    return Table(tuple(columns), rows, caption, **look)
-
-
-def _column(known: dict[str, Declared], column: Column | str) -> Column:
-    return column if isinstance(column, Column) else Column("", column)
+def _told(known: dict[str, Declared]) -> list[str]:
+    """The fields that declare a column."""
+    return [declared.name for declared in known.values() if declared.column]
 
 
 def _declared(known: dict[str, Declared], name: str) -> Declared:
-    """The declaration of a field, or of one of a record in a field: "rig.frequency_hz"."""
+    """The declaration of a field, or of one of a record in a field: "rig.frequency_hz", "helix.0.contact_ratio"."""
     first, _, rest = name.partition(".")
     inner = known[first]
-    return _declared(inner.record.declarations, rest) if rest and inner.record else inner
+    if not (rest and inner.record):
+        return inner
+    return _declared(inner.record.declarations, rest.lstrip("0123456789.") or rest)
 
 
 def _labelled(known: dict[str, Declared], column: Column) -> Column:
@@ -312,7 +325,7 @@ def _cell(record: Record, known: dict[str, Declared], column: Column, path: Call
         return _plain(column.value(record), column.form)
     value: Any = record
     for name in column.value.split("."):
-        value = getattr(value, name)
+        value = value[int(name)] if name.isdigit() else getattr(value, name)
     value = value[column.entry] if column.entry else value
     declared = _declared(known, column.value)
     key = _key(declared)

@@ -1,16 +1,18 @@
-"""docs/json.md names every key that the commands write as JSON, and no other."""
+"""The page of keys of the site names every key that the commands write as JSON, and no other."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 from machinery.snippets import ROOT
 from typer.testing import CliRunner
+from update import load_generator
 
 from rotorgear.analysis.static.static import static
 from rotorgear.cli.main import app
@@ -29,10 +31,15 @@ RIG = """frequency_hz,label,uncertainty_hz,damping_ratio
 """
 
 
+@cache
+def whole_page() -> str:
+    """The page of the site."""
+    return str(load_generator(ROOT / "docs" / "generate_json.py").site_pages()["docs/json.md"])
+
+
 def documented(section: str) -> set[str]:
     """Return the keys of a section's table."""
-    text = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
-    part = text.split(f"\n## {section}\n")[1].split("\n## ")[0]
+    part = whole_page().split(f"\n## {section}\n")[1].split("\n## ")[0]
     return set(re.findall(r"^\| `([^`]+)` \|", part, flags=re.MULTILINE))
 
 

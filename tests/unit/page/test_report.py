@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import sys
 from html.parser import HTMLParser
@@ -16,7 +15,6 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.errors import MissingExtraError
-from rotorgear.page.cells import Numbers
 from tests.paths import ROOT
 
 STAGE = ROOT / "models" / "helical_pair.toml"
@@ -69,6 +67,9 @@ def test_every_number_is_that_of_the_json_output_in_its_printed_digits(folder: P
     assert len(reader.found) > 80
     for pointer, factor, text in reader.found:
         shown = text.replace("−", "-")
+        if shown.startswith("<"):  # an error that rounding alone decides
+            assert factor * value_at(data, pointer) < float(shown[1:])
+            continue
         mantissa, _, power = shown.partition("e")
         digits = len(mantissa.partition(".")[2])
         unit = 10.0 ** (int(power or 0) - digits)
@@ -122,12 +123,6 @@ def test_what_comes_from_a_model_is_no_markup(tmp_path: Path) -> None:
     text = re.sub(r"^title = .*$", 'title = "<script>alert(1)</script>"', text, flags=re.MULTILINE)
     rg.report(rg.loads(text), tmp_path / "a.html", turntable=True)
     assert "<script>alert" not in (tmp_path / "a.html").read_text(encoding="utf-8")
-
-
-def test_a_missing_number_is_a_dash_and_a_zero_has_no_sign() -> None:
-    numbers = Numbers({"a": None, "b": -0.0, "c": -1.5e-7, "d": math.nan})
-    assert [numbers.cell(".1f", key).text for key in "abd"] == ["–", "0.0", "–"]
-    assert numbers.cell(".1e", "c").text == "−1.5e−07"
 
 
 def test_a_report_needs_a_page_s_name_a_folder_and_a_study(tmp_path: Path) -> None:
