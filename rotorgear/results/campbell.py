@@ -226,11 +226,16 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         first, last = self.speed_rpm[[0, -1]]
         yield heading(f"{self.model.title or 'Modes'}: {self.model.reference_shaft} at {first:.6g} to {last:.6g} rpm")
         small = exact(".4f")
+        end = len(self.speeds) - 1
         columns = (
             Column("branch", lambda b: b + 1),
-            Column(f"Hz at {first:.6g}", lambda b: self.frequency_hz[0, b], small),
-            Column(f"Hz at {last:.6g}", lambda b: self.frequency_hz[-1, b], small),
-            Column("log dec.", lambda b: self.log_decrement[-1, b], small),
+            Column(
+                f"Hz at {first:.6g}", lambda b: self.frequency_hz[0, b], small, place=lambda b: ("frequency_hz", b, 0)
+            ),
+            Column(
+                f"Hz at {last:.6g}", lambda b: self.frequency_hz[-1, b], small, place=lambda b: ("frequency_hz", b, end)
+            ),
+            Column("log dec.", lambda b: self.log_decrement[-1, b], small, place=lambda b: ("log_decrement", b, end)),
             Column("whirl", lambda b: self.whirl_word(-1, b)),
         )
         yield table_over(self, "branch", *columns, "description", caption="Branches")

@@ -455,15 +455,15 @@ class StaticResult(AboutEquilibrium, kind="static"):
         return grid(rows, *heads, left=2, caption="Forces and moments on the casings")
 
     def _moves(self) -> Table:
-        rows = [
-            (
-                place.partition(".")[2].replace(" left", " L").replace(" right", " R"),
-                *(written(1e6 * x, ".3f") for x in value[:3]),
-                *(written(1e6 * x, ".1f") for x in value[3:]),
+        rows = []
+        for place, value in self.place_displacement.items():
+            cells = (
+                Cell(written(1e6 * x, ".3f" if j < 3 else ".1f"), ("displacement", place, j), 1e6, number=True)
+                for j, x in enumerate(value)
             )
-            for place, value in self.place_displacement.items()
-        ]
-        return grid(rows, "moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist", caption="Displacements")
+            rows.append((Cell(place.partition(".")[2].replace(" left", " L").replace(" right", " R")), *cells))
+        heads = ("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
+        return Table(tuple(map(Column, heads)), rows, "Displacements")
 
 
 def _triple(values: np.ndarray) -> str:

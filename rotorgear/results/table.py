@@ -235,7 +235,7 @@ def table_over(owner: Record, axis: str, *columns: Column | str, caption: str = 
                 value = getattr(owner, column.value)[(k, *column.entry) if column.entry else k]
                 cells.append(_number(value, declared, column, path))
             else:
-                cells.append(_plain(column.value(k), column.form))
+                cells.append(_plain(column.value(k), column.form, column.place(k) if column.place else ()))
         rows.append(tuple(cells))
     return Table(tuple(_labelled(known, column) for column in shown), rows, caption or _capital(axis), **look)
 
@@ -297,6 +297,8 @@ def _labelled(known: dict[str, Declared], column: Column) -> Column:
     declared = _declared(known, column.value)
     unit = column.shown or _unit(declared)
     label = column.label or (f"{declared.label}, {unit}" if unit else declared.label)
+    if column.entry and not column.label:  # one of several of a name
+        label = column.heading
     left = (declared.words or None) if column.left is None else column.left
     return replace(column, heading=column.heading or declared.column or label, label=label, left=left)
 
@@ -333,8 +335,8 @@ def _cell(record: Record, known: dict[str, Declared], column: Column, path: Call
     return _number(value, declared, column, (*path(f"{above}.{key}" if above else key), *column.entry) if key else ())
 
 
-def _plain(value: Any, form: Form) -> Cell:
-    return Cell(written(value, form), number=not isinstance(value, str))
+def _plain(value: Any, form: Form, path: tuple[str | int, ...] = ()) -> Cell:
+    return Cell(written(value, form), path, number=not isinstance(value, str))
 
 
 def _number(value: Any, declared: Declared, column: Column, path: tuple[str | int, ...]) -> Cell:
@@ -441,18 +443,12 @@ def html_table(table: Table, *, top: tuple[str | int, ...] | None = None, most: 
 
 def _html_cell(cell: Cell, left: bool, top: tuple[str | int, ...] | None) -> str:
     text = escape(cell.text).replace("\n", "<br>")
-    if cell.path and top is not None and cell.text != "-":
-        number = text.replace("-", "−")
-        return f'<td class="number" data-key="{escape(pointer((*top, *cell.path)))}" data-factor="{cell.factor}">{number}</td>'
-    kind = (
-        "number"
-        if not left
-        else cell.text.replace(" ", "-")
-        if cell.text in _VERDICTS
-        else "short"
-        if len(cell.text) < 8
-        else ""
-    )
+    if not left:
+        text = "–" if text == "-" else text.replace("-", "−")
+        key = escape(pointer((*top, *cell.path))) if cell.path and top is not None and text != "–" else ""
+        place = f' data-key="{key}" data-factor="{cell.factor}"' if key else ""
+        return f'<td class="number"{place}>{text}</td>'
+    kind = cell.text.replace(" ", "-") if cell.text in _VERDICTS else "short" if len(cell.text) < 8 else ""
     return f'<td class="{kind}">{text}</td>' if kind else f"<td>{text}</td>"
 
 
