@@ -82,7 +82,7 @@ class FilmState(OilState):
         "attitude angle", "rad", note=": from the load to the line of centres, in the sense of rotation"
     )
     minimum_gap: float = of("smallest gap of the film", "m")
-    sommerfeld: float = of("Sommerfeld number", note=" mu N L D / W (R/c)^2", form=".4g")
+    sommerfeld: float = of("Sommerfeld number", note=" mu N L D / W (R/c)^2")
     side_flow: float = of("oil that leaves at both ends", "m^3/s")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad")
     z: np.ndarray = of("place along the shaft from the middle of the bearing", "m", "place")
@@ -147,7 +147,7 @@ class BearingSpeed(Record):
         "kg",
         note=", a bearing; a heavier one whirls; `null` where none does",
     )
-    whirl_ratio: float | None = of("frequency of that whirl over the speed of the shaft", form=".4f")
+    whirl_ratio: float | None = of("frequency of that whirl over the speed of the shaft")
     film_temperature: float | None = of(
         "mean temperature of the film", "K", note="; `null` where the viscosity is given"
     )
@@ -188,7 +188,7 @@ class BearingSheet(ModelResult, kind="bearing"):
     )
     threshold_frequency_hz: float | None = of("frequency of that whirl", "Hz")
     consistency: float = of(
-        "difference between its law at the state printed and the load of the gearbox", note=", relative", form=".0e"
+        "difference between its law at the state printed and the load of the gearbox", note=", relative"
     )
     error_estimate: float = of(
         "estimated relative error of stiffness and damping",

@@ -199,7 +199,6 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     basis_error: float = of(
         "largest relative error of the reduced eigenvalues",
         note=" against true solutions at speeds outside of the basis",
-        form=".0e",
     )
     basis: np.ndarray = of("displacements of the basis", "m, rad", "node", "component", "vector", json=None)
     coordinates: np.ndarray = of("coordinates in the basis", "", "speed", "vector", "branch", json=None)

@@ -277,7 +277,6 @@ class Comparison(Result, kind="compare"):
     @derived(
         "effective number of parameters that the lines teach",
         note=": the sum of the learnt shares of `stiffnesses`; `null` where that is empty",
-        form=".1f",
     )
     def learnt_parameters(self) -> float | None:
         """Sum of the learnt shares."""

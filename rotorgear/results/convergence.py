@@ -67,13 +67,10 @@ class Rung(Record):
     effectivity_smallest: float | None = of(
         "smallest effectivity of a single quantity",
         note="; `null` where they have no estimates of their own",
-        form=".2f",
         default=None,
         kw_only=True,
     )
-    effectivity_largest: float | None = of(
-        "largest effectivity of a single quantity", form=".2f", default=None, kw_only=True
-    )
+    effectivity_largest: float | None = of("largest effectivity of a single quantity", default=None, kw_only=True)
     notes: tuple[str, ...] = of(
         "what to know of this row",
         "",
@@ -93,9 +90,7 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
     modes: int = of("how many quantities are compared", note=": frequencies, speeds, forces or statistics")
     rungs: tuple[Rung, ...] = of("discretisations", "", "rung", record=Rung)
     compared: str = of("what is compared", default="frequencies", kw_only=True)
-    resolution: float = of(
-        "relative error below which the reference or rounding decides", form=".0e", default=0.0, kw_only=True
-    )
+    resolution: float = of("relative error below which the reference or rounding decides", default=0.0, kw_only=True)
 
     def tables(self) -> Iterator[Block]:
         """What was measured, and the rungs, with marks for what there is to know of each."""

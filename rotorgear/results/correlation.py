@@ -124,11 +124,7 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
         note=", by frequency alone",
     )
 
-    @derived(
-        "effective number of parameters that the lines teach",
-        note=": by frequency alone; the shapes teach more",
-        form=".1f",
-    )
+    @derived("effective number of parameters that the lines teach", note=": by frequency alone; the shapes teach more")
     def learnt_parameters(self) -> float | None:
         """Sum of the learnt shares."""
         return sum(row.learnt for row in self.stiffnesses) if self.stiffnesses else None

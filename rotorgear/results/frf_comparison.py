@@ -36,7 +36,7 @@ class FrfComparison(ModelResult, kind="compare_frf"):
     )
     damping_ratio: float = of("damping ratio", note=" added to every elastic mode")
 
-    @derived("mean of the criterion over the pairs", form=".3f")
+    @derived("mean of the criterion over the pairs")
     def mean_frac(self) -> float:
         """Mean FRAC."""
         return float(np.mean([pair.frac for pair in self.pairs]))

@@ -14,7 +14,7 @@ from rotorgear.results.schema import Declared, Record
 
 
 @dataclass(frozen=True)
-class Column:
+class Series:
     """Values over counted axes: an array whose dimensions are `axes`, with the words of its declaration."""
 
     name: str
@@ -70,7 +70,7 @@ def _python(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _columns(record: Record, prefix: str = "") -> Iterator[Column]:
+def _columns(record: Record, prefix: str = "") -> Iterator[Series]:
     """Yield everything that is counted by axes, dictionaries taken apart."""
     for declared in record.declarations.values():
         value = getattr(record, declared.name)
@@ -83,13 +83,13 @@ def _columns(record: Record, prefix: str = "") -> Iterator[Column]:
         elif isinstance(value, dict):
             for key, entry in value.items():
                 if len(declared.axes) == np.ndim(entry) + 1:
-                    yield Column(f"{name}.{key}", declared.axes[1:], np.asarray(entry), declared)
+                    yield Series(f"{name}.{key}", declared.axes[1:], np.asarray(entry), declared)
         elif isinstance(value, np.ndarray):
-            yield Column(name, declared.axes, value, declared)
+            yield Series(name, declared.axes, value, declared)
         elif isinstance(value, tuple) and declared.axes and not _left_out(record, declared.name, value):
             texts = np.empty(len(value), dtype=object)
             texts[:] = value
-            yield Column(name, declared.axes, texts, declared)
+            yield Series(name, declared.axes, texts, declared)
 
 
 def _left_out(record: Record, name: str, value: tuple[Any, ...]) -> bool:

@@ -173,7 +173,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
     )
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "mode", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
-    backward_error: np.ndarray = of("residual relative to the matrices", "", "mode", form=".0e")
+    backward_error: np.ndarray = of("residual relative to the matrices", "", "mode")
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
     point_amplitudes: dict[str, np.ndarray] = of(
         "amplitude at a named point",

@@ -27,7 +27,6 @@ class LayoutNumber(Record):
     pull: float = of(
         "derivative of the penalty by the share of the bounds",
         note=": where the value would go on to, against its sign",
-        form=".2e",
     )
 
 
@@ -38,15 +37,13 @@ class LayoutMargin(Record):
     speed: float = of("speed of the input shaft", "rad/s")
     frequency_hz: float = of("frequency", "Hz", note=" of the line", form=".2f")
     before_hz: float = of("frequency of the nearest mode before", "Hz", note="; `null`: none", form=".2f")
-    before_margin: float = of("margin before", note=": f_mode / f_line - 1", form="+.4f")
-    before_participation: float = of("participation of that mode", form=".2%")
-    before_inside: float = of("largest participation of a mode within the margin that does not count", form=".2%")
+    before_margin: float = of("margin before", note=": f_mode / f_line - 1")
+    before_participation: float = of("participation of that mode")
+    before_inside: float = of("largest participation of a mode within the margin that does not count")
     after_hz: float = of("frequency of the nearest mode after", "Hz", note="; `null`: none", form=".2f")
-    after_margin: float = of("margin after", form="+.4f")
-    after_participation: float = of("participation of that mode", note=" after", form=".2%")
-    after_inside: float = of(
-        "largest participation of a mode within the margin that does not count", note=", after", form=".2%"
-    )
+    after_margin: float = of("margin after")
+    after_participation: float = of("participation of that mode", note=" after")
+    after_inside: float = of("largest participation of a mode within the margin that does not count", note=", after")
 
 
 class LayoutMode(Record):
@@ -73,16 +70,15 @@ class OptimiseResult(ModelResult, kind="optimise"):
     least_margin: float = of("margin that is asked for")
     participation: float = of("least participation that counts")
     objective: str = of("objective", note=': `"change"`, `"mass"` or `"scatter"`')
-    penalty_before: float = of("penalty before", note=": 0 where all margins are kept", form=".3g")
-    penalty_after: float = of("penalty after", form=".3g")
+    penalty_before: float = of("penalty before", note=": 0 where all margins are kept")
+    penalty_after: float = of("penalty after")
     deviations_before: float | None = of(
         "standard deviations by which the margin is kept before",
         note=", the least of all modes that count; negative inside it, `null` where nothing scatters",
-        form="+.2f",
     )
-    deviations_after: float | None = of("standard deviations by which the margin is kept after", form="+.2f")
-    mass_before_kg: float = of("mass of the rotors before", "kg", form=".3f")
-    mass_after_kg: float = of("mass of the rotors after", "kg", form=".3f")
+    deviations_after: float | None = of("standard deviations by which the margin is kept after")
+    mass_before_kg: float = of("mass of the rotors before", "kg")
+    mass_after_kg: float = of("mass of the rotors after", "kg")
     solutions: int = of("modal solutions that were needed")
     gradients: int = of("gradients that were needed")
     searches_reached: int = of("number of searches that reached the margin")

@@ -290,7 +290,6 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "solver error",
         note=": largest relative error of the reduced basis against direct solutions at the points checked; "
         "direct: largest relative residual",
-        form=".0e",
     )
     checked: int = of("number of points checked")
     error_estimate: float = of(

@@ -48,12 +48,12 @@ class FrequencyBand(Record):
         "relative standard deviation", note=", to first order, from energies", form=_spread, column="1st order"
     )
     sigma: float = of("relative standard deviation", note=" of the samples", form=_spread, column="sampled")
-    mean_hz: float = of("mean frequency", "Hz", note=" of the samples", form=".2f")
+    mean_hz: float = of("mean frequency", "Hz", note=" of the samples")
     low_hz: float = of("5 % quantile of the frequency", "Hz", form=".2f", column="5 %")
     high_hz: float = of("95 % quantile of the frequency", "Hz", form=".2f", column="95 %")
     found: float = of("share of the samples that have a mode of this shape")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
-    leading_share: float = of("share of that number in the variance", note=", to first order", form=".0%")
+    leading_share: float = of("share of that number in the variance", note=", to first order")
 
 
 class GroupBand(Record):
@@ -61,8 +61,8 @@ class GroupBand(Record):
 
     group: int = of("number of the group", note=", from 1")
     modes: tuple[int, ...] = of("numbers of its nominal modes", "", "mode", note=", from 1")
-    lowest_hz: float = of("5 % quantile of the lowest frequency of the group", "Hz", form=".2f")
-    highest_hz: float = of("95 % quantile of the highest frequency of the group", "Hz", form=".2f")
+    lowest_hz: float = of("5 % quantile of the lowest frequency of the group", "Hz")
+    highest_hz: float = of("95 % quantile of the highest frequency of the group", "Hz")
 
 
 class MarginBand(Record):
@@ -91,7 +91,7 @@ class ShareBand(Record):
     low: float = of("5 % quantile", form=".4f", column="5 %")
     high: float = of("95 % quantile", form=".4f", column="95 %")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
-    leading_share: float = of("share of that number in the variance", note=", to first order", form=".0%")
+    leading_share: float = of("share of that number in the variance", note=", to first order")
 
 
 class ScatterResult(ModelResult, kind="scatter"):
@@ -125,9 +125,7 @@ class ScatterResult(ModelResult, kind="scatter"):
     sobol_total_error: np.ndarray = of("standard error of the total index", "", "quantity", "number")
     basis_size: int = of("number of shapes that carry the samples")
     frequency_basis_error: float = of(
-        "largest relative error of a frequency by the basis",
-        note=", at samples followed to the whole system",
-        form=".1e",
+        "largest relative error of a frequency by the basis", note=", at samples followed to the whole system"
     )
     checked_samples: int = of("number of samples that were followed to the whole system")
     failed: int = of("number of samples that have no modes", note=": numbers that the model can't have")

@@ -56,10 +56,8 @@ class LoopAssembly(Record):
 
     mesh: str = of("mesh", note=" that closes the loop")
     gear: str = of("gear", note=' that closes it by its place on the shaft; `""` where all clockings are given')
-    clocking_deg: float = of("angle of that gear's tooth from the shaft's mark", "deg", form="+.4f")
-    rest_pitches: float = of(
-        "what is missing where the gear stands at angle 0, or as the file says, in pitches", form="+.4f"
-    )
+    clocking_deg: float = of("angle of that gear's tooth from the shaft's mark", "deg")
+    rest_pitches: float = of("what is missing where the gear stands at angle 0, or as the file says, in pitches")
 
 
 class Sensitivity(Record):
@@ -297,7 +295,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
     mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
     assembly: tuple[LoopAssembly, ...] = of("how closed loops go together", "", "loop", record=LoopAssembly)
     imbalance: float = of(
-        "largest force that is missing for equilibrium", note=" of the whole, relative to the sum of all", form=".0e"
+        "largest force that is missing for equilibrium", note=" of the whole, relative to the sum of all"
     )
     error_estimate: float = of(
         "estimated relative discretisation error",

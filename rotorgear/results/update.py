@@ -67,9 +67,9 @@ class UpdatedResponse(Record):
     campaign: str = of("name of the campaign that measured it", note="; empty where there is one only")
     response: str = of("place of the response")
     reference: str = of("place of the force")
-    frac_before: float = of("FRAC before the update", form=".3f")
-    frac_after: float = of("FRAC after the update", form=".3f")
-    frac_held_out: float = of("FRAC of the response predicted from the others", form=".3f")
+    frac_before: float = of("FRAC before the update")
+    frac_after: float = of("FRAC after the update")
+    frac_held_out: float = of("FRAC of the response predicted from the others")
 
 
 class UpdateResult(ModelResult, kind="update"):
@@ -86,17 +86,17 @@ class UpdateResult(ModelResult, kind="update"):
     misfit_probability: float = of("chance of so large a sum of squares if the model is right")
     modal_solutions: int = of("modal solutions that were needed")
 
-    @derived("effective number of parameters that the lines teach", note=": the sum of the learnt shares", form=".1f")
+    @derived("effective number of parameters that the lines teach", note=": the sum of the learnt shares")
     def learnt_parameters(self) -> float:
         """Sum of the learnt shares."""
         return float(sum(row.learnt for row in self.parameters))
 
-    @derived("root mean square error of the frequencies before the update", form=".2e")
+    @derived("root mean square error of the frequencies before the update")
     def error_before(self) -> float:
         """Relative."""
         return self._rms([row.before_hz for row in self.lines])
 
-    @derived("root mean square error of frequencies predicted from the other lines alone", form=".2e")
+    @derived("root mean square error of frequencies predicted from the other lines alone")
     def error_held_out(self) -> float:
         """Relative."""
         return self._rms([row.held_out_hz for row in self.lines])
