@@ -15,7 +15,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.names import estimated
-from rotorgear.model.checks.plausibility.machine import implausible
+from rotorgear.model.checks.plausibility import implausible
 from rotorgear.model.model import Model, model_hash
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record

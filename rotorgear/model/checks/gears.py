@@ -12,7 +12,8 @@ from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_d
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
 from rotorgear.model.layout.gear_layout import inertia_is_given
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.gear import Flank, Gear, GearBody
+from rotorgear.model.parts.gear import DEPTHS, Flank, Gear, GearBody
+from rotorgear.model.parts.problems import missing, not_default, told
 from rotorgear.model.parts.shaft import Disk
 from rotorgear.model.parts.tables import Tables
 from rotorgear.model.parts.topography import Topography
@@ -24,24 +25,19 @@ _SIX_DIGITS = 1e-5
 _LARGEST_PRESSURE_ANGLE = 45.0
 _LARGEST_HELIX_ANGLE = 60.0
 _OF_TEETH = (
-    "normal_module",
-    "normal_pressure_angle",
-    "helix_angle",
-    "profile_shift",
-    "addendum_factor",
-    "dedendum_factor",
-    "tip_diameter",
+    *("normal_module", "normal_pressure_angle", "helix_angle", "profile_shift"),
+    *("addendum_factor", "dedendum_factor", "tip_diameter"),
 )
+# The ideal ball is rounded up to a multiple of this (m), or of a quarter of a smaller module.
+_BALL_STEP = 0.25e-3
+# Deeper modifications, as a share of the normal module, are a slip of the unit.
+_DEEPEST = 0.2
+_NOTHING = "nothing here"
 
 
-def missing(address: str, why: str) -> Problem:
-    """Return the problem of a key that is needed."""
-    return Problem(address, "", "missing", f"required: {why}")
-
-
-def degrees(angle: float) -> str:
+def degrees(angle: float | None) -> str:
     """Write an angle in rad as an engineer reads it."""
-    return f"{math.degrees(angle):.9g} deg"
+    return f"{math.degrees(angle or 0.0):.9g} deg"
 
 
 def pressure_angle_problems(address: str, angle: float | None) -> Iterator[Problem]:
@@ -67,9 +63,8 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
         if getattr(gear, key) is None
     ]
     found += [
-        _unwanted(f"{address}.{key}", degrees(angle), "it follows from the teeth")
-        for key in ("base_helix_angle", "transverse_pressure_angle")
-        if (angle := getattr(gear, key)) is not None
+        Problem(f"{address}.{key}", degrees(getattr(gear, key)), _NOTHING, "it follows from the teeth")
+        for key in not_default(gear, ("base_helix_angle", "transverse_pressure_angle"))
     ]
     found += _helix(address, gear, "helix_angle")
     found += pressure_angle_problems(f"{address}.normal_pressure_angle", gear.normal_pressure_angle)
@@ -78,13 +73,13 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
     if geometry and (wrong := list(impossible_teeth(geometry))):
         yield from (Problem(address, "", text) for text in wrong)
     elif geometry:
-        yield from tooth_problems(address, gear, geometry)
+        yield from _teeth(address, gear, geometry)
 
 
 def _lumped_gear(address: str, gear: Gear) -> Iterator[Problem]:
-    for key in _OF_TEETH:
-        if getattr(gear, key) != Gear.model_fields[key].default:
-            yield _unwanted(f"{address}.{key}", "a value", "a gear has teeth with a module or a base_radius, not both")
+    for key in not_default(gear, _OF_TEETH):
+        why = "a gear has teeth with a module or a base_radius, not both"
+        yield Problem(f"{address}.{key}", "a value", _NOTHING, why)
     yield from _helix(address, gear, "base_helix_angle")
     yield from pressure_angle_problems(f"{address}.transverse_pressure_angle", gear.transverse_pressure_angle)
     if gear.kind == "herringbone" and gear.width is None:
@@ -93,40 +88,161 @@ def _lumped_gear(address: str, gear: Gear) -> Iterator[Problem]:
         yield missing(f"{address}.mass", "mass and moments of inertia of a gear that is given by its base radius")
 
 
-def _unwanted(address: str, value: str, why: str) -> Problem:
-    return Problem(address, value, "nothing here", why)
-
-
 def _helix(address: str, gear: Gear, key: str) -> Iterator[Problem]:
     angle = getattr(gear, key)
-    if gear.kind == "spur":
-        if angle:
-            yield _unwanted(f"{address}.{key}", degrees(angle), "a spur gear has no helix; kind = 'helical' has")
-        if gear.hand:
-            yield _unwanted(f"{address}.hand", f"'{gear.hand}'", "a spur gear has no hand; kind = 'helical' has")
-    else:
-        if angle is None:
-            yield missing(f"{address}.{key}", f"an angle such as '20 deg' for a {gear.kind} gear")
-        elif not 0.0 < angle < math.radians(_LARGEST_HELIX_ANGLE):
-            limits = f"an angle between 0 and {_LARGEST_HELIX_ANGLE:g} deg"
-            yield Problem(
-                f"{address}.{key}", degrees(angle), limits, "hand = 'left' or 'right' says which way it winds"
-            )
-        if gear.hand is None:
-            yield missing(f"{address}.hand", "'right' or 'left'")
-    if gear.kind != "herringbone":
-        if gear.gap:
-            yield _unwanted(
-                f"{address}.gap", millimetres(gear.gap), "only a herringbone gear has a gap between two helices"
-            )
-        if gear.nodes == 2:
-            yield _unwanted(f"{address}.nodes", "2", "only a herringbone gear has two nodes")
+    spur = gear.kind == "spur"
+    if not spur and angle is None:
+        yield missing(f"{address}.{key}", f"an angle such as '20 deg' for a {gear.kind} gear")
+    steep = not spur and angle is not None and not 0.0 < angle < math.radians(_LARGEST_HELIX_ANGLE)
+    limits = f"an angle between 0 and {_LARGEST_HELIX_ANGLE:g} deg"
+    one = gear.kind != "herringbone"
+    gap = millimetres(gear.gap)
+    yield from told(
+        address,
+        (key, spur and angle, degrees(angle), _NOTHING, "a spur gear has no helix; kind = 'helical' has"),
+        ("hand", spur and gear.hand, f"'{gear.hand}'", _NOTHING, "a spur gear has no hand; kind = 'helical' has"),
+        (key, steep, degrees(angle), limits, "hand = 'left' or 'right' says which way it winds"),
+        ("hand", not spur and gear.hand is None, "", "missing", "required: 'right' or 'left'"),
+        ("gap", one and gear.gap, gap, _NOTHING, "only a herringbone gear has a gap between two helices"),
+        ("nodes", one and gear.nodes == 2, "2", _NOTHING, "only a herringbone gear has two nodes"),
+    )
+
+
+def ball_diameter(gear: Gear, geometry: GearGeometry) -> float:
+    """Diameter (m) of the balls a gear is measured over: given, or the ideal one rounded up."""
+    if gear.ball_diameter is not None:
+        return gear.ball_diameter
+    step = min(_BALL_STEP, geometry.normal_module / 4.0)
+    return step * math.ceil(ideal_ball_diameter(geometry) / step - 1e-9)
+
+
+def _teeth(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
+    """What is impossible in a tooth whose circles are in order."""
+    try:
+        outline = tooth_outline(geometry)
+    except RotorgearError as error:
+        yield Problem(address, "", str(error))
+        return
+    allowance = gear.allowance
+    thinner = "allowances make a tooth thinner, for the backlash"
+    below = "a length not above the upper allowance"
+    lower = millimetres(allowance.lower)
+    yield from told(
+        address,
+        (
+            "upper_thickness_allowance",
+            allowance.upper > 0.0,
+            millimetres(allowance.upper),
+            "0 or a negative length",
+            thinner,
+        ),
+        ("lower_thickness_allowance", allowance.lower > allowance.upper, lower, below, thinner),
+    )
+    # The relief starts on the involute, below the tip.
+    keys = ("tip_relief", "tip_relief_diameter")
+    yield from _pair(address, gear, keys, "where the tip relief starts", "amount of the tip relief at the tip circle")
+    start = gear.tip_relief_diameter
+    low = 2.0 * outline.form_radius
+    tip_form = outline.tip_form_roll_length(gear.flank.tip_rounding, gear.flank.tip_chamfer)
+    high = 2.0 * math.hypot(geometry.base_radius, tip_form)
+    if start is not None and not low <= start < high:
+        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
+        yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
+    yield from _flank(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
+    if gear.accuracy_grade is not None and gear.accuracy_grade > FLANK_CLASSES:
+        limits = f"a class from 1 to {FLANK_CLASSES} of ISO 1328-1"
+        yield Problem(f"{address}.accuracy_grade", str(gear.accuracy_grade), limits)
+    # The ball must touch the flanks of the thinnest tooth below its tip.
+    key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
+    try:
+        touched = ball_contact_diameter(with_allowance(geometry, allowance.lower), ball_diameter(gear, geometry))
+    except RotorgearError as error:
+        yield Problem(f"{address}.{key}", "", str(error))
+        return
+    if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
+        wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
+        yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
+
+
+def _pair(address: str, part: Gear | Flank, keys: tuple[str, str], place: str, amount: str) -> Iterator[Problem]:
+    """The amount and the place of a relief come together; `place` and `amount` say what is missing."""
+    given = [getattr(part, key) for key in keys]
+    if given[0] and not given[1]:
+        yield missing(f"{address}.{keys[1]}", place)
+    if given[1] and not given[0]:
+        yield missing(f"{address}.{keys[0]}", amount)
+
+
+def _flank(address: str, flank: Flank, outline: ToothOutline, width: float) -> Iterator[Problem]:
+    """What is missing or impossible in the modifications of one gear with a face `width` (m)."""
+    # A root relief starts on the involute: between the form circle, where the root fillet ends, and the tip circle.
+    keys = ("root_relief", "root_relief_diameter")
+    yield from _pair(address, flank, keys, "where the root relief starts", "its amount")
+    start = flank.root_relief_diameter
+    low = 2.0 * outline.form_radius
+    high = 2.0 * outline.tip_radius
+    if start is not None and not low < start <= high:
+        limits = f"a diameter on the involute, above {millimetres(low)} to {millimetres(high)}"
+        yield Problem(f"{address}.root_relief_diameter", millimetres(start), limits)
+    # Both ends of the face are relieved: beyond half of it they would overlap.
+    keys = ("end_relief", "end_relief_length")
+    yield from _pair(address, flank, keys, "the length of the end relief along the face", "its amount")
+    length = flank.end_relief_length
+    half = f"up to half of the face, {millimetres(0.5 * width)}"
+    deepest = _DEEPEST * outline.geometry.normal_module
+    deep = f"up to {_DEEPEST:g} normal modules, {millimetres(deepest)}"
+    depths = {key: getattr(flank, key) for key in DEPTHS}
+    teeth = outline.geometry.teeth
+    number = f"the number of a tooth, from '0' to '{teeth - 1}'"
+    # A tip is rounded or chamfered, and keeps an involute and a tip.
+    height = outline.tip_radius - outline.form_radius
+    thickness = outline.tip_radius * 2.0 * float(outline.involute(outline.tip_roll_length)[1])
+    most = 0.5 * thickness / outline.rounding_share
+    either = "the tip is rounded or chamfered: give one of tip_rounding and tip_chamfer"
+    low_chamfer = f"less than the height of the involute, {millimetres(height)}"
+    low_rounding = f"up to {millimetres(most)}, where both rounded edges meet in the middle of the tip"
+    unknown = [item for item in flank.pitch_errors if not item.isdigit() or int(item) >= teeth]
+    yield from told(
+        address,
+        ("end_relief_length", length > 0.5 * width, millimetres(length), half),
+        *((key, abs(depth) > deepest, millimetres(depth), deep) for key, depth in depths.items()),
+        *(("pitch_errors", True, f"'{item}'", number) for item in unknown),
+        ("tip_chamfer", flank.tip_rounding and flank.tip_chamfer, "", either),
+        ("tip_chamfer", flank.tip_chamfer >= height, millimetres(flank.tip_chamfer), low_chamfer),
+        ("tip_rounding", flank.tip_rounding > most, millimetres(flank.tip_rounding), low_rounding),
+    )
+    if flank.topography is not None:
+        yield from _topography(f"{address}.topography", flank.topography, outline, deepest)
+
+
+def _topography(address: str, topography: Topography, outline: ToothOutline, deepest: float) -> Iterator[Problem]:
+    """Measured points lie on the flank, of teeth that exist, and are no slip of the unit."""
+    teeth = outline.geometry.teeth
+    by_diameter = topography.by == "diameter"
+    low = 2.0 * outline.geometry.base_radius if by_diameter else 0.0
+    high = 2.0 * outline.tip_radius if by_diameter else outline.tip_roll_length
+    what = "diameters" if by_diameter else "roll lengths"
+    limits = f"{what} of the flank, from {millimetres(low)} to {millimetres(high)}"
+    deep = f"deviations up to {_DEEPEST:g} normal modules, {millimetres(deepest)} (is its unit right?)"
+    for grid in topography.grids:
+        worst = max(abs(value) for row in grid.deviation for value in row)
+        places = f"{millimetres(grid.places[0])} to {millimetres(grid.places[-1])}"
+        # Measurements run a little past the tip; a grid of another gear, or in another unit, lies far beside.
+        beside = grid.places[0] < low * (1.0 - 1e-9) or grid.places[-1] > 1.1 * high
+        number = f"the number of a tooth, from 0 to {teeth - 1}"
+        yield from told(
+            address,
+            ("tooth", grid.tooth is not None and grid.tooth >= teeth, str(grid.tooth), number),
+            ("deviation", worst > deepest, millimetres(worst), deep),
+            (topography.by, beside, places, limits),
+        )
 
 
 def inertia_problems(layout: Layout) -> Iterator[Problem]:
     """Yield what is missing or impossible in the mass and inertias of gears and disks on their shafts."""
     for name, gear in layout.model.gears.items():
-        yield from _body(layout, f"gears.{name}", name, gear)
+        if gear.body.mesh is None:  # else its mesh has them; reading it waits for an analysis
+            yield from _body(layout, f"gears.{name}", name, gear)
     for name, disk in layout.model.disks.items():
         yield from _body(layout, f"disks.{name}", name, disk)
 
@@ -134,8 +250,6 @@ def inertia_problems(layout: Layout) -> Iterator[Problem]:
 def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterator[Problem]:
     """Mass and inertias: all that the motions of the model need, or the sizes to compute them from."""
     model = layout.model
-    if isinstance(part, Gear) and part.body.mesh is not None:
-        return  # its mesh has them; reading it waits for an analysis
     found: list[Problem] = []
     if inertia_is_given(part):
         found += _given_inertia(model, address, part)
@@ -156,16 +270,17 @@ def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterato
         return
     if not model.has("bending"):
         return
+    polar = f"{body.polar_inertia:.6g} kg m^2"
+    diametral = f"{body.diametral_inertia:.6g} kg m^2"
     if body.polar_inertia > 2.0 * body.diametral_inertia * (1.0 + _SIX_DIGITS) and body.diametral_inertia > 0.0:
         limit = f"at most twice the diametral one, {2 * body.diametral_inertia:.6g} kg m^2"
-        hint = "a flat disk has that, no body has more"
-        yield Problem(f"{address}.polar_inertia", f"{body.polar_inertia:.6g} kg m^2", limit, hint)
+        yield Problem(f"{address}.polar_inertia", polar, limit, "a flat disk has that, no body has more")
     elif isinstance(part, Gear) and part.node_count == 2:
         least = body.mass * part.helix_offset**2
         if body.diametral_inertia - least < -1e-9 * body.diametral_inertia:
             limit = f"at least mass x ((gap + width)/2)^2 = {least:.6g} kg m^2"
             hint = "it is that of the whole gear about its middle; or nodes = 1"
-            yield Problem(f"{address}.diametral_inertia", f"{body.diametral_inertia:.6g} kg m^2", limit, hint)
+            yield Problem(f"{address}.diametral_inertia", diametral, limit, hint)
 
 
 def _given_inertia(model: Tables, address: str, part: Gear | Disk) -> Iterator[Problem]:
@@ -174,157 +289,8 @@ def _given_inertia(model: Tables, address: str, part: Gear | Disk) -> Iterator[P
         if getattr(part, key) is None and any(model.has(motion) for motion in motions):
             yield missing(f"{address}.{key}", "a value beside the other inertias, 0 if it has none")
     if isinstance(part, Disk):
-        for key in ("outer_diameter", "width", "bore"):
-            if (size := getattr(part, key)) is not None:
-                yield _unwanted(f"{address}.{key}", millimetres(size), "a disk has sizes or given inertias, not both")
+        for key in not_default(part, ("outer_diameter", "width", "bore")):
+            size = millimetres(getattr(part, key))
+            yield Problem(f"{address}.{key}", size, _NOTHING, "a disk has sizes or given inertias, not both")
     elif part.body != GearBody():
-        yield _unwanted(f"{address}.body", "a table", "a gear has a body or given inertias, not both")
-
-
-# The ideal ball is rounded up to a multiple of this (m), or of a fortieth of a smaller module.
-_BALL_STEP = 0.25e-3
-
-
-def ball_diameter(gear: Gear, geometry: GearGeometry) -> float:
-    """Diameter (m) of the balls a gear is measured over: given, or the ideal one rounded up."""
-    if gear.ball_diameter is not None:
-        return gear.ball_diameter
-    step = min(_BALL_STEP, geometry.normal_module / 4.0)
-    return step * math.ceil(ideal_ball_diameter(geometry) / step - 1e-9)
-
-
-def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
-    """Yield what is impossible in a tooth whose circles are in order."""
-    try:
-        outline = tooth_outline(geometry)
-    except RotorgearError as error:
-        yield Problem(address, "", str(error))
-        return
-    allowance = gear.allowance
-    for key, value, most, what in (
-        ("upper_thickness_allowance", allowance.upper, 0.0, "0 or a negative length"),
-        ("lower_thickness_allowance", allowance.lower, allowance.upper, "a length not above the upper allowance"),
-    ):
-        if value > most:
-            hint = "allowances make a tooth thinner, for the backlash"
-            yield Problem(f"{address}.{key}", millimetres(value), what, hint)
-    # An amount and the diameter where it starts come together, and the start lies on the involute, below the tip.
-    start = gear.tip_relief_diameter
-    if gear.tip_relief and start is None:
-        yield Problem(f"{address}.tip_relief_diameter", "", "missing", "required: where the tip relief starts")
-    if start is not None and not gear.tip_relief:
-        yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
-    low = 2.0 * outline.form_radius
-    tip_form = outline.tip_form_roll_length(gear.flank.tip_rounding, gear.flank.tip_chamfer)
-    high = 2.0 * math.hypot(geometry.base_radius, tip_form)
-    if start is not None and not low <= start < high:
-        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
-        yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
-    yield from flank_problems(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
-    if gear.accuracy_grade is not None and gear.accuracy_grade > FLANK_CLASSES:
-        yield Problem(
-            f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {FLANK_CLASSES} of ISO 1328-1"
-        )
-    yield from _ball(address, gear, geometry)
-
-
-def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
-    """The ball must touch the flanks of the thinnest tooth below its tip."""
-    thinnest = with_allowance(geometry, gear.allowance.lower)
-    key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
-    try:
-        touched = ball_contact_diameter(thinnest, ball_diameter(gear, geometry))
-    except RotorgearError as error:
-        yield Problem(f"{address}.{key}", "", str(error))
-        return
-    if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
-        wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
-        yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
-
-
-# Deeper modifications, as a share of the normal module, are a slip of the unit.
-_DEEPEST = 0.2
-
-
-def flank_problems(address: str, flank: Flank, outline: ToothOutline, width: float) -> Iterator[Problem]:
-    """Yield what is missing or impossible in the modifications of one gear with a face `width` (m)."""
-    # A root relief starts on the involute: between the form circle, where the root fillet ends, and the tip circle.
-    start = flank.root_relief_diameter
-    keys = ("root_relief", "root_relief_diameter")
-    yield from _pair(address, flank.root_relief, start, keys, "where the root relief starts")
-    low = 2.0 * outline.form_radius
-    high = 2.0 * outline.tip_radius
-    if start is not None and not low < start <= high:
-        limits = f"a diameter on the involute, above {millimetres(low)} to {millimetres(high)}"
-        yield Problem(f"{address}.root_relief_diameter", millimetres(start), limits)
-    # Both ends of the face are relieved: beyond half of it they would overlap.
-    length = flank.end_relief_length
-    keys = ("end_relief", "end_relief_length")
-    yield from _pair(address, flank.end_relief, length, keys, "the length of the end relief along the face")
-    if length > 0.5 * width:
-        limits = f"up to half of the face, {millimetres(0.5 * width)}"
-        yield Problem(f"{address}.end_relief_length", millimetres(length), limits)
-    deepest = _DEEPEST * outline.geometry.normal_module
-    for key in ("root_relief", "crowning", "profile_crowning", "profile_slope", "end_relief", "helix_slope", "bias"):
-        if abs(getattr(flank, key)) > deepest:
-            limits = f"up to {_DEEPEST:g} normal modules, {millimetres(deepest)}"
-            yield Problem(f"{address}.{key}", millimetres(getattr(flank, key)), limits)
-    teeth = outline.geometry.teeth
-    for number in flank.pitch_errors:
-        if not number.isdigit() or int(number) >= teeth:
-            yield Problem(f"{address}.pitch_errors", f"'{number}'", f"the number of a tooth, from '0' to '{teeth - 1}'")
-    yield from _tip_problems(address, flank, outline)
-    if flank.topography is not None:
-        yield from _topography_problems(f"{address}.topography", flank.topography, outline, deepest)
-
-
-def _tip_problems(address: str, flank: Flank, outline: ToothOutline) -> Iterator[Problem]:
-    """A tip is rounded or chamfered, and keeps an involute and a tip."""
-    if flank.tip_rounding and flank.tip_chamfer:
-        yield Problem(
-            f"{address}.tip_chamfer", "", "the tip is rounded or chamfered: give one of tip_rounding and tip_chamfer"
-        )
-    if flank.tip_chamfer >= outline.tip_radius - outline.form_radius:
-        limits = f"less than the height of the involute, {millimetres(outline.tip_radius - outline.form_radius)}"
-        yield Problem(f"{address}.tip_chamfer", millimetres(flank.tip_chamfer), limits)
-    thickness = outline.tip_radius * 2.0 * float(outline.involute(outline.tip_roll_length)[1])
-    most = 0.5 * thickness / outline.rounding_share
-    if flank.tip_rounding > most:
-        limits = f"up to {millimetres(most)}, where both rounded edges meet in the middle of the tip"
-        yield Problem(f"{address}.tip_rounding", millimetres(flank.tip_rounding), limits)
-
-
-def _topography_problems(
-    address: str, topography: Topography, outline: ToothOutline, deepest: float
-) -> Iterator[Problem]:
-    """Measured points lie on the flank, of teeth that exist, and are no slip of the unit."""
-    teeth = outline.geometry.teeth
-    grids = topography.grids
-    for grid in grids:
-        if grid.tooth is not None and grid.tooth >= teeth:
-            yield Problem(f"{address}.tooth", str(grid.tooth), f"the number of a tooth, from 0 to {teeth - 1}")
-        worst = max(abs(value) for row in grid.deviation for value in row)
-        if worst > deepest:
-            limits = f"deviations up to {_DEEPEST:g} normal modules, {millimetres(deepest)} (is its unit right?)"
-            yield Problem(f"{address}.deviation", millimetres(worst), limits)
-        if topography.by == "diameter":
-            low = 2.0 * outline.geometry.base_radius
-            high = 2.0 * outline.tip_radius
-        else:
-            low = 0.0
-            high = outline.tip_roll_length
-        # Measurements run a little past the tip; a grid of another gear, or in another unit, lies far beside.
-        if grid.places[0] < low * (1.0 - 1e-9) or grid.places[-1] > 1.1 * high:
-            what = "diameters" if topography.by == "diameter" else "roll lengths"
-            limits = f"{what} of the flank, from {millimetres(low)} to {millimetres(high)}"
-            yield Problem(
-                f"{address}.{topography.by}", f"{millimetres(grid.places[0])} to {millimetres(grid.places[-1])}", limits
-            )
-
-
-def _pair(address: str, amount: float, place: object, keys: tuple[str, str], what: str) -> Iterator[Problem]:
-    """An amount and its place come together."""
-    if amount and not place:
-        yield Problem(f"{address}.{keys[1]}", "", "missing", f"required: {what}")
-    if place and not amount:
-        yield Problem(f"{address}.{keys[0]}", "", "missing", "required: its amount")
+        yield Problem(f"{address}.body", "a table", _NOTHING, "a gear has a body or given inertias, not both")

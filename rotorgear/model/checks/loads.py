@@ -10,126 +10,107 @@ from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.problems import not_default, told
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import LARGEST
 
 _OF_TORQUES = (
-    "kind",
-    "torque",
-    "power",
-    "speed_power",
-    "ripple",
-    "ripple_order",
-    "step_to",
-    "step_at",
-    "step_duration",
+    *("kind", "torque", "power", "speed_power", "ripple", "ripple_order"),
+    *("step_to", "step_at", "step_duration"),
 )
 _OF_FORCES = ("gear", "point", "order", "order_of", "frequency", "phase")
+# Without one of these the train is not known as a whole, and a balance of torques would only repeat an earlier mistake.
+_OF_THE_TRAIN = {"shafts", "gears", "meshes", "couplings", "operation", "loads"}
 
 
 def loads(model: Tables) -> Iterator[Problem]:
     """Each load is of one kind, at one place, and varies in one way."""
     for name, load in model.loads.items():
-        address = f"loads.{name}"
         if load.is_torque:
-            yield from _torque(address, load)
-            continue
-        given = [key for key in _OF_TORQUES if getattr(load, key) != Load.model_fields[key].default]
-        if given:
-            yield Problem(
-                f"{address}.{given[0]}",
-                "",
-                f"a torque of the train ({', '.join(_OF_TORQUES)}), or a force and moment at a place, not both",
-                "give two loads",
+            lone = load.kind is not None and load.shaft is None
+            ways = "input or output; or give force = [x, y, z] or a moment"
+            beside = ("only beside a force or a moment", "a torque has shaft, at and ripple")
+            yield from told(
+                f"loads.{name}",
+                ("kind", load.kind is None, "", "missing", ways),
+                ("shaft", lone, "", "missing", "the shaft that the torque acts on"),
+                *((key, True, "", *beside) for key in not_default(load, _OF_FORCES)),
             )
-        yield from _place(address, load)
-        point = model.points.get(load.point or "")
-        if point is not None and point.on_casing is not None:
-            yield Problem(
-                f"{address}.point", f"'{load.point}', on a casing", "a point on a shaft", "frf takes it as an input"
-            )
-        yield from _variation(address, load)
+        else:
+            point = model.points.get(load.point or "")
+            yield from _force(f"loads.{name}", load, on_casing=point is not None and point.on_casing is not None)
 
 
-def _torque(address: str, load: Load) -> Iterator[Problem]:
-    if load.kind is None:
-        yield Problem(f"{address}.kind", "", "missing", "input or output; or give force = [x, y, z] or a moment")
-    elif load.shaft is None:
-        yield Problem(f"{address}.shaft", "", "missing", "the shaft that the torque acts on")
-    for key in _OF_FORCES:
-        if getattr(load, key) != Load.model_fields[key].default:
-            yield Problem(
-                f"{address}.{key}", "", "only beside a force or a moment", "a torque has shaft, at and ripple"
-            )
-
-
-def _place(address: str, load: Load) -> Iterator[Problem]:
-    ways = [key for key in ("shaft", "gear", "point") if getattr(load, key) is not None]
-    if len(ways) != 1:
-        yield Problem(address, " and ".join(ways) or "no place", "one of shaft (with at), gear, point")
-    elif ways == ["shaft"] and load.at is None:
-        yield Problem(f"{address}.at", "", "missing", "required beside shaft: z on that shaft")
-    elif ways != ["shaft"] and load.at is not None:
-        yield Problem(f"{address}.at", f"at beside {ways[0]}", f"a {ways[0]} alone, which says where it is", "")
-
-
-def _variation(address: str, load: Load) -> Iterator[Problem]:
-    if load.history is not None and (load.force is not None or load.moment is not None):
-        yield Problem(
-            address, "a history beside force or moment", "one of them; the columns of the history are the forces"
-        )
+def _force(address: str, load: Load, *, on_casing: bool) -> Iterator[Problem]:
+    of_torques = not_default(load, _OF_TORQUES)[:1]
+    either = f"a torque of the train ({', '.join(_OF_TORQUES)}), or a force and moment at a place, not both"
+    places = [key for key in ("shaft", "gear", "point") if getattr(load, key) is not None]
+    place = places[0] if len(places) == 1 else ""
     ways = [key for key in ("order", "frequency", "history") if getattr(load, key) is not None]
-    if len(ways) > 1:
-        yield Problem(address, " and ".join(ways), "one of them, or none for a constant load")
-    if load.phase and load.order is None and load.frequency is None:
-        yield Problem(f"{address}.phase", "a phase", "beside an order or a frequency only", "a constant load has none")
-    over_angle = load.history is not None and load.history.over == "angle"
-    if load.order_of is not None and load.order is None and not over_angle:
-        yield Problem(f"{address}.order_of", "a shaft", "beside an order, or a history over angle", "")
+    history = load.history is not None
+    columns = "one of them; the columns of the history are the forces"
+    phase = load.phase and load.order is None and load.frequency is None
+    lone = load.order_of is not None and load.order is None and not load.over_angle
+    yield from told(
+        address,
+        *((key, True, "", either, "give two loads") for key in of_torques),
+        ("", not place, " and ".join(places) or "no place", "one of shaft (with at), gear, point"),
+        ("at", place == "shaft" and load.at is None, "", "missing", "required beside shaft: z on that shaft"),
+        (
+            "at",
+            place not in ("", "shaft") and load.at is not None,
+            f"at beside {place}",
+            f"a {place} alone, which says where it is",
+        ),
+        ("point", on_casing, f"'{load.point}', on a casing", "a point on a shaft", "frf takes it as an input"),
+        (
+            "",
+            history and (load.force is not None or load.moment is not None),
+            "a history beside force or moment",
+            columns,
+        ),
+        ("", len(ways) > 1, " and ".join(ways), "one of them, or none for a constant load"),
+        ("phase", phase, "a phase", "beside an order or a frequency only", "a constant load has none"),
+        ("order_of", lone, "a shaft", "beside an order, or a history over angle"),
+    )
 
 
 def loads_that_stand_still(layout: Layout) -> Iterator[Problem]:
     """An order, or a history over angle, of a shaft that nothing turns never varies."""
     for name, load in layout.model.loads.items():
-        if load.is_torque:
+        if load.is_torque or (load.order is None and not load.over_angle):
             continue
         shaft = load.order_of or layout.place(f"loads.{name}").shaft
-        over_angle = load.history is not None and load.history.over == "angle"
-        if (load.order is not None or over_angle) and layout.train.ratios.get(shaft, 0) == 0:
-            yield Problem(
-                f"loads.{name}",
-                f"an order or angle of shaft '{shaft}', which stands still",
-                "a shaft that turns",
-                "name one with order_of, or give a frequency",
-            )
-
-
-# Without one of these the train is not known as a whole, and a balance of torques would only repeat an earlier mistake.
-_OF_THE_TRAIN = {"shafts", "gears", "meshes", "couplings", "operation", "loads"}
+        if layout.train.ratios.get(shaft, 0) == 0:
+            still = f"an order or angle of shaft '{shaft}', which stands still"
+            hint = "name one with order_of, or give a frequency"
+            yield Problem(f"loads.{name}", still, "a shaft that turns", hint)
 
 
 def operating_point(model: Tables, broken: Collection[PartName]) -> Iterator[Problem]:
     """Power or torque, not both; a power has a speed; what goes in comes out."""
-    loads_known = not any(table == "loads" for table, _ in broken)
     operation = model.operation
-    if operation:
-        loaded = operation.power is not None or operation.torque is not None
-        if loaded and operation.output_shaft is None and not model.loads and loads_known:
-            yield Problem(
-                "operation.output_shaft", "", "missing", "required beside power or torque: the shaft that takes it"
-            )
-    speed_known = (
-        bool(operation and operation.speed and abs(operation.speed) > 1.0 / LARGEST) or ("operation", "") in broken
-    )
     given: dict[str, Operation | Load] = {f"loads.{name}": load for name, load in model.loads.items()}
+    speed_known = ("operation", "") in broken
+    speed = None
     if operation:
         given["operation"] = operation
+        speed = operation.speed
+        speed_known = speed_known or bool(speed and abs(speed) > 1.0 / LARGEST)
+        loads_known = not any(table == "loads" for table, _ in broken)
+        loaded = operation.power is not None or operation.torque is not None
+        if loaded and operation.output_shaft is None and not model.loads and loads_known:
+            why = "required beside power or torque: the shaft that takes it"
+            yield Problem("operation.output_shaft", "", "missing", why)
+    value = "a power at standstill" if speed is not None else "a power without a speed"
     for address, part in given.items():
-        if part.torque is not None and part.power is not None:
-            yield Problem(address, "torque and power", "one of the two", "the speed joins them")
-        elif part.power is not None and not speed_known:
-            value = "a power at standstill" if operation and operation.speed is not None else "a power without a speed"
-            yield Problem(f"{address}.power", value, "a speed under [operation]", "or give a torque")
+        both = part.torque is not None and part.power is not None
+        alone = part.power is not None and not both and not speed_known
+        yield from told(
+            address,
+            ("", both, "torque and power", "one of the two", "the speed joins them"),
+            ("power", alone, value, "a speed under [operation]", "or give a torque"),
+        )
 
 
 def train_problems(layout: Layout, broken: Collection[PartName]) -> Iterator[Problem]:

@@ -8,11 +8,12 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.pair import working_centre_distance
 from rotorgear.model.checks.casings import counted_twice
-from rotorgear.model.checks.gears import degrees, missing, pressure_angle_problems
+from rotorgear.model.checks.gears import degrees, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.problems import missing, told
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -31,10 +32,13 @@ def mesh_settings(model: Tables) -> Iterator[Problem]:
         if mesh.damping is not None and mesh.damping_ratio:
             yield Problem(address, "damping and damping_ratio", "one of the two")
         yield from pressure_angle_problems(f"{address}.pressure_angle", mesh.pressure_angle)
-        if mesh.tooth_fe.pitches < _LEAST_PITCHES or mesh.tooth_fe.pitches % 2 == 0:
-            yield Problem(f"{address}.tooth_fe.pitches", f"{mesh.tooth_fe.pitches}", "an odd number of at least 3")
-        if mesh.stagger >= 1.0:
-            yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "a share of the mesh period, from 0 to below 1")
+        pitches = mesh.tooth_fe.pitches
+        few = pitches < _LEAST_PITCHES or pitches % 2 == 0
+        yield from told(
+            address,
+            ("tooth_fe.pitches", few, f"{pitches}", "an odd number of at least 3"),
+            ("stagger", mesh.stagger >= 1.0, f"{mesh.stagger:g}", "a share of the mesh period, from 0 to below 1"),
+        )
 
 
 def mesh_problems(layout: Layout) -> Iterator[Problem]:
@@ -69,55 +73,51 @@ def _wind_up(address: str, mesh: MeshLayout, others: list[MeshLayout]) -> Iterat
     for gear in mesh.gears:
         body = fe.body_of(gear.blank)
         if gear.part.integral and body == "wheel" and fe.excludes_torsion(body):
-            yield Problem(
-                f"{address}.tooth_fe",
-                f"a wheel that winds up against its bore, of gear '{gear.name}', which is cut on its shaft",
-                "another body or exclude_torsion = false, or integral = false for the gear",
-            )
-    own = {gear.name for gear in mesh.elastic_gears}
+            got = f"a wheel that winds up against its bore, of gear '{gear.name}', which is cut on its shaft"
+            wanted = "another body or exclude_torsion = false, or integral = false for the gear"
+            yield Problem(f"{address}.tooth_fe", got, wanted)
     elastic = {gear.name: other.name for other in others if other.has_teeth for gear in other.elastic_gears}
     for gear in mesh.gears:
-        if gear.name in elastic and gear.name not in own:
-            yield Problem(
-                f"{address}.tooth_fe",
-                f"the wind-up of gear '{gear.name}' in this mesh",
-                f"body and exclude_torsion as in meshes.{elastic[gear.name]}, which leaves it to the rotor model",
-            )
+        if gear.name in elastic and gear not in mesh.elastic_gears:
+            wanted = f"body and exclude_torsion as in meshes.{elastic[gear.name]}, which leaves it to the rotor model"
+            yield Problem(f"{address}.tooth_fe", f"the wind-up of gear '{gear.name}' in this mesh", wanted)
 
 
 def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
     """Harmonics of a mesh need its frequency; what tells two helices apart needs two."""
-    for key in ("transmission_error", "stiffness_variation", "corner_impact"):
-        if getattr(mesh, key) and not (pinion.teeth and gear.teeth):
-            yield Problem(f"{address}.{key}", "harmonics of a mesh whose frequency is unknown", "teeth of both gears")
-    if mesh.stiffness_variation and not isinstance(mesh.stiffness, int | float):
-        text = "harmonics beside a stiffness that varies itself"
-        yield Problem(f"{address}.stiffness_variation", text, "one of the two")
-    if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
-        wanted = "a share of the mesh cycle between 0 and 1"
-        yield Problem(f"{address}.corner_impact.duration", f"{mesh.corner_impact.duration:g}", wanted)
-    if mesh.rubs:
-        if mesh.friction_coefficient and mesh.lubricant_viscosity:
-            yield Problem(address, "friction_coefficient and lubricant_viscosity", "one of the two")
-        if not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width)):
-            wanted = "teeth, module and width of both gears: they place the contacts"
-            yield Problem(address, "friction between gears without teeth", wanted)
-    if mesh.helix_index_error and pinion.kind != "herringbone":
-        hint = "only a herringbone pair has two helices"
-        yield Problem(f"{address}.helix_index_error", "a value", "nothing here", hint)
+    unknown = not (pinion.teeth and gear.teeth)
+    keys = [key for key in ("transmission_error", "stiffness_variation", "corner_impact") if getattr(mesh, key)]
+    varies = mesh.stiffness_variation and not isinstance(mesh.stiffness, int | float)
+    duration = mesh.corner_impact.duration if mesh.corner_impact else 0.5
+    both = mesh.friction_coefficient and mesh.lubricant_viscosity
+    toothless = not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width))
+    place = "teeth, module and width of both gears: they place the contacts"
+    helix = mesh.helix_index_error and pinion.kind != "herringbone"
+    cycle = "a share of the mesh cycle between 0 and 1"
+    yield from told(
+        address,
+        *((key, unknown, "harmonics of a mesh whose frequency is unknown", "teeth of both gears") for key in keys),
+        ("stiffness_variation", varies, "harmonics beside a stiffness that varies itself", "one of the two"),
+        ("corner_impact.duration", not 0.0 < duration < 1.0, f"{duration:g}", cycle),
+        ("", both, "friction_coefficient and lubricant_viscosity", "one of the two"),
+        ("", mesh.rubs and toothless, "friction between gears without teeth", place),
+        ("helix_index_error", helix, "a value", "nothing here", "only a herringbone pair has two helices"),
+    )
 
 
 def _teeth(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
     """A stiffness model needs teeth, a stagger two helices, and a tilt a face."""
-    if mesh.tilt and not (pinion.width and gear.width):
-        hint = "the flanks resist a tilt over the width of their face"
-        yield Problem(f"{address}.tilt", "true between gears without a width", "a width of both gears", hint)
-    if mesh.stagger and pinion.kind != "herringbone":
-        hint = "one helix has nothing to lead"
-        yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "0, or herringbone gears", hint)
-    if isinstance(mesh.stiffness, str) and pinion.lumped:
-        wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
-        yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")
+    narrow = mesh.tilt and not (pinion.width and gear.width)
+    face = "the flanks resist a tilt over the width of their face"
+    one = mesh.stagger and pinion.kind != "herringbone"
+    named = isinstance(mesh.stiffness, str) and pinion.lumped
+    wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
+    yield from told(
+        address,
+        ("tilt", narrow, "true between gears without a width", "a width of both gears", face),
+        ("stagger", one, f"{mesh.stagger:g}", "0, or herringbone gears", "one helix has nothing to lead"),
+        ("stiffness", named, f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth"),
+    )
 
 
 def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:

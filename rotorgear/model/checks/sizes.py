@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import islice, pairwise
 
 from rotorgear.errors import AnalysisError, Problem
 from rotorgear.model.checks.names import ON_SHAFTS, unknown
-from rotorgear.model.parts.problems import shown
+from rotorgear.model.parts.problems import missing, shown, told
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
     Bearing,
     DampingMatrix,
     NonlinearElement,
-    Pedestal,
     StiffnessMatrix,
     TableRow,
     element_law,
@@ -32,45 +31,47 @@ def motions(model: Tables) -> Iterator[Problem]:
 def materials(model: Tables) -> Iterator[Problem]:
     """A material has one of nu and G beside E, and nu is one of a stable material."""
     for name, material in model.materials.items():
-        address = f"materials.{name}"
         given = (material.poisson_ratio is not None, material.shear_modulus is not None)
-        if not any(given):
-            yield Problem(address, "neither poisson_ratio nor shear_modulus", "one of them")
-        elif all(given):
-            hint = "the other follows from E = 2 G (1 + nu)"
-            yield Problem(address, "poisson_ratio and shear_modulus", "one of them", hint)
-        elif not -1.0 < material.nu < 0.5:
-            hint = "it follows from nu = E/2G - 1" if material.shear_modulus else ""
-            yield Problem(address, f"a Poisson's ratio of {material.nu:.4g}", "one between -1 and 0.5", hint)
+        nu = f"a Poisson's ratio of {material.nu:.4g}"
+        follows = "it follows from nu = E/2G - 1" if material.shear_modulus else ""
+        yield from told(
+            f"materials.{name}",
+            ("", not any(given), "neither poisson_ratio nor shear_modulus", "one of them"),
+            (
+                "",
+                all(given),
+                "poisson_ratio and shear_modulus",
+                "one of them",
+                "the other follows from E = 2 G (1 + nu)",
+            ),
+            ("", sum(given) == 1 and not -1.0 < material.nu < 0.5, nu, "one between -1 and 0.5", follows),
+        )
 
 
 def sections(model: Tables) -> Iterator[Problem]:
-    """Every section has a wall, for the stiffness and for the mass."""
+    """Every section has a wall, for the stiffness and for the mass; the first mistake of each is told."""
     for name, shaft in model.shafts.items():
         for number, section in enumerate(shaft.sections):
-            yield from _section(f"shafts.{name}.sections[{number}]", section)
+            yield from islice(_section(f"shafts.{name}.sections[{number}]", section), 1)
 
 
 def _section(address: str, section: Section) -> Iterator[Problem]:
     outer, bore, outer_end, bore_end = section.stiffness_diameters()
-    if bore >= outer:
-        yield Problem(f"{address}.bore", millimetres(bore), f"less than the outer diameter there, {millimetres(outer)}")
-        return
-    if bore_end >= outer_end:
-        limit = f"less than the outer diameter there, {millimetres(outer_end)}"
-        hint = "" if section.bore_end is not None else "it keeps the bore of the left end: give bore_end"
-        yield Problem(f"{address}.bore_end", millimetres(bore_end), limit, hint)
-        return
+    below = "less than the outer diameter there, "
+    keeps = "" if section.bore_end is not None else "it keeps the bore of the left end: give bore_end"
+    yield from told(
+        address,
+        ("bore", bore >= outer, millimetres(bore), below + millimetres(outer)),
+        ("bore_end", bore_end >= outer_end, millimetres(bore_end), below + millimetres(outer_end), keeps),
+    )
     for key, base in (("mass_outer_diameter_end", "mass_outer_diameter"), ("mass_bore_end", "mass_bore")):
         if getattr(section, key) is not None and getattr(section, base) is None:
             yield Problem(f"{address}.{base}", "", "missing", f"required beside {key}")
-            return
     outer, bore, outer_end, bore_end = section.mass_diameters()
     for inner, room in ((bore, outer), (bore_end, outer_end)):
         if inner > room:
             text = f"at most the outer diameter that counts for the mass there, {millimetres(room)}"
             yield Problem(f"{address}.mass_bore", millimetres(inner), text)
-            return
 
 
 def matrices(model: Tables) -> Iterator[Problem]:
@@ -83,11 +84,13 @@ def matrices(model: Tables) -> Iterator[Problem]:
             yield Problem(f"supports.{name}", "neither stiffness, damping nor fixed", "at least one of them")
     for name, element in model.nonlinear_elements.items():
         address = f"nonlinear_elements.{name}"
-        if element.stiffness is not None and element.table:
-            yield Problem(address, "stiffness and table", "one of the two")
-        if element.damping is not None and element.stiffness is None:
-            wanted = "a stiffness beside it, or neither: then the law's own tangents serve"
-            yield Problem(f"{address}.damping", "damping without stiffness", wanted)
+        wanted = "a stiffness beside it, or neither: then the law's own tangents serve"
+        lone = element.damping is not None and element.stiffness is None
+        yield from told(
+            address,
+            ("", element.stiffness is not None and element.table, "stiffness and table", "one of the two"),
+            ("damping", lone, "damping without stiffness", wanted),
+        )
         yield from six_by_six(address, element.stiffness, element.damping)
         yield from _table(address, element.table)
     for name, coupling in model.couplings.items():
@@ -95,20 +98,34 @@ def matrices(model: Tables) -> Iterator[Problem]:
 
 
 def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
-    if bearing.stiffness is None and not bearing.table and not bearing.has_law:
-        *nouns, last = (kind.noun for kind in Bearing.kinds().values())
-        text = f"stiffness (with damping), a table over speed, {', '.join(nouns)}, or {last}"
-        yield Problem(address, "neither stiffness nor table", text)
-    elif bearing.stiffness is not None and bearing.table:
-        yield Problem(address, "stiffness and table", "one of the two")
-    if bearing.table and bearing.damping is not None:
-        yield Problem(f"{address}.damping", "damping beside a table", "damping in the rows of the table")
+    *nouns, last = (kind.noun for kind in Bearing.kinds().values())
+    ways = f"stiffness (with damping), a table over speed, {', '.join(nouns)}, or {last}"
+    nothing = bearing.stiffness is None and not bearing.table and not bearing.has_law
+    double = bearing.table and bearing.damping is not None
+    yield from told(
+        address,
+        ("", nothing, "neither stiffness nor table", ways),
+        ("", bearing.stiffness is not None and bearing.table, "stiffness and table", "one of the two"),
+        ("damping", double, "damping beside a table", "damping in the rows of the table"),
+    )
     yield from six_by_six(address, bearing.stiffness, bearing.damping)
     yield from _table(address, bearing.table)
     for kind, geometry in bearing.geometries.items():
         yield from geometry.problems(f"{address}.{kind}", bearing.beside(kind))
-    if bearing.pedestal:
-        yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
+    if bearing.pedestal is None:
+        return
+    stiffness = bearing.pedestal.stiffness
+    yield from six_by_six(f"{address}.pedestal", stiffness, bearing.pedestal.damping)
+    for key, matrix in (("stiffness", stiffness), ("damping", bearing.pedestal.damping)):
+        rows = matrix.as_rows() if matrix and stiffness.given else ()
+        tilts = any(value for i, row in enumerate(rows) for j, value in enumerate(row) if max(i, j) > 2)
+        loose = key == "stiffness" and rows and not any(rows[i][i] for i in range(3))
+        hint = "leave the pedestal out if it is rigid"
+        yield from told(
+            f"{address}.pedestal.{key}",
+            ("", tilts, "tilt or torsion", "x, y and axial only", "a pedestal is rigid in tilt"),
+            ("", loose, "none along x, y or z", "a stiffness in one of them", hint),
+        )
 
 
 def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
@@ -119,20 +136,6 @@ def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
         yield Problem(f"{address}.table", f"speeds of {rpm} rpm", wanted)
     for number, row in enumerate(table):
         yield from six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
-
-
-def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:
-    yield from six_by_six(address, pedestal.stiffness, pedestal.damping)
-    if not pedestal.stiffness.given:
-        return
-    for key, matrix in (("stiffness", pedestal.stiffness), ("damping", pedestal.damping)):
-        rows = matrix.as_rows() if matrix else ()
-        if any(value for i, row in enumerate(rows) for j, value in enumerate(row) if max(i, j) > 2):
-            yield Problem(f"{address}.{key}", "tilt or torsion", "x, y and axial only", "a pedestal is rigid in tilt")
-    rows = pedestal.stiffness.as_rows()
-    if not any(rows[i][i] for i in range(3)):
-        hint = "leave the pedestal out if it is rigid"
-        yield Problem(f"{address}.stiffness", "none along x, y or z", "a stiffness in one of them", hint)
 
 
 def six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: DampingMatrix | None) -> Iterator[Problem]:
@@ -148,9 +151,9 @@ def six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: Damping
                 yield Problem(f"{address}.{key}", f"{whole} together with {names}", "one of the two ways to give it")
         if not given:
             yield Problem(f"{address}.{key}", "an empty table", "entries such as radial, axial or tilt, or a matrix")
-        for i in range(6):
-            if matrix.matrix is not None and matrix.matrix[i][i] < 0.0:
-                place = f"{matrix.matrix[i][i]:g} in row {i + 1}, column {i + 1}"
+        for i, row in enumerate(matrix.matrix or ()):
+            if row[i] < 0.0:
+                place = f"{row[i]:g} in row {i + 1}, column {i + 1}"
                 yield Problem(f"{address}.{key}.matrix", place, "0 or more on the diagonal")
 
 
@@ -169,34 +172,35 @@ def _element(address: str, element: NonlinearElement) -> Iterator[Problem]:
         return
     law = law_of(element.law)
     declared = law.declared()
-    known = list(declared)
     wrong = [name for name in element.parameters if name not in declared]
-    for name in wrong:
-        guess = nearest(name, known)
-        hint = f"did you mean '{guess}'?" if guess else "valid here: " + ", ".join(known)
-        yield Problem(f"{address}.parameters.{name}", "", f"unknown parameter of {element.law}", hint)
     _, refused = law_parameters(law, element.parameters)
-    for name, expected in refused.items():
-        yield Problem(f"{address}.parameters.{name}", shown(element.parameters[name]), expected, declared[name].meaning)
-    missing = [
+    absent = [
         name
         for name in law.required()
         if name not in element.parameters and name != law.shaft_ratio and nearest(name, wrong) == ""
     ]
-    for name in missing:
-        yield Problem(f"{address}.parameters.{name}", "", "missing", f"required: {declared[name].meaning}")
-    if wrong or refused or missing:
+    for name in wrong:
+        guess = nearest(name, list(declared))
+        hint = f"did you mean '{guess}'?" if guess else "valid here: " + ", ".join(declared)
+        yield Problem(f"{address}.parameters.{name}", "", f"unknown parameter of {element.law}", hint)
+    for name, expected in refused.items():
+        yield Problem(f"{address}.parameters.{name}", shown(element.parameters[name]), expected, declared[name].meaning)
+    yield from (missing(f"{address}.parameters.{name}", declared[name].meaning) for name in absent)
+    if wrong or refused or absent:
         return
     try:
         made = element_law(element, 1.0)
     except AnalysisError as error:
         yield Problem(f"{address}.parameters", str(error), "parameters that go together")
         return
-    if made.components != len(element.directions):
-        count = f"{made.components} direction{'s'[: made.components != 1]}"
-        yield Problem(f"{address}.directions", shown(list(element.directions)), f"{count}, as {element.law} has")
-    if element.to_at is not None and element.to_shaft is None:
-        yield Problem(f"{address}.to_at", "without to_shaft", "the name of the second shaft beside it")
+    count = f"{made.components} direction{'s'[: made.components != 1]}"
+    other = made.components != len(element.directions)
+    lone = element.to_at is not None and element.to_shaft is None
+    yield from told(
+        address,
+        ("directions", other, shown(list(element.directions)), f"{count}, as {element.law} has"),
+        ("to_at", lone, "without to_shaft", "the name of the second shaft beside it"),
+    )
 
 
 def stations(model: Tables) -> Iterator[Problem]:
@@ -227,11 +231,12 @@ def _station(model: Tables, address: str, shaft: str, at: float | str, offset: f
     run = f"shaft '{shaft}', which runs from {millimetres(part.start)} to {millimetres(part.end)}"
     if not part.sections:
         run = f"shaft '{shaft}', which has no sections and is one point at {millimetres(part.start)}"
-    if offset:
-        value = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
-        yield Problem(address, value, f"both helices on {run}", "nodes = 1 puts the whole gear at one place")
-    else:
-        yield Problem(address, millimetres(z), f"a place on {run}")
+    value = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
+    yield from told(
+        address,
+        ("", offset, value, f"both helices on {run}", "nodes = 1 puts the whole gear at one place"),
+        ("", not offset, millimetres(z), f"a place on {run}"),
+    )
 
 
 def coupled_points(model: Tables) -> Iterator[Problem]:
@@ -240,8 +245,7 @@ def coupled_points(model: Tables) -> Iterator[Problem]:
         address = f"couplings.{name}"
         first = model.shafts[coupling.from_shaft]
         second = model.shafts[coupling.to_shaft]
-        one_shaft = coupling.from_shaft == coupling.to_shaft
-        if one_shaft and first.station(coupling.from_at) == second.station(coupling.to_at):
+        if first is second and first.station(coupling.from_at) == second.station(coupling.to_at):
             yield Problem(address, "one and the same point twice", "two points")
         # Positions may be left out, and torsion alone knows no axes: nothing to compare then.
         if not model.has("bending") or first.position is None or second.position is None:

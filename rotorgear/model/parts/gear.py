@@ -32,6 +32,9 @@ from rotorgear.model.parts.fields import (
 )
 from rotorgear.model.parts.topography import TopographyFile
 
+# Modifications of a flank that are depths.
+DEPTHS = ("root_relief", "crowning", "profile_crowning", "profile_slope", "end_relief", "helix_slope", "bias")
+
 
 class Flank(Part):
     """Modifications and errors of the flanks, along the flank normal. Tip relief stands in the gear itself."""

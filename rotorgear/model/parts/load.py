@@ -231,6 +231,11 @@ class Load(Part):
         return self.force is None and self.moment is None and self.history is None
 
     @property
+    def over_angle(self) -> bool:
+        """Whether it follows a history over the angle of a shaft."""
+        return self.history is not None and self.history.over == "angle"
+
+    @property
     def on_shaft(self) -> str:
         """The shaft of a torque; "" where it names none, which is a problem of the model."""
         return self.shaft or ""

@@ -7,7 +7,7 @@ import math
 import re
 import types
 import typing
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -59,6 +59,24 @@ def shown(value: Any) -> str:
         except (TypeError, ValueError, RecursionError):  # such as a whole number of thousands of digits
             text = "a list" if isinstance(value, list | tuple) else f"a {type(value).__name__} that can't be shown"
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def told(where: str, *rows: tuple[Any, ...]) -> Iterator[Problem]:
+    """Rows of a table of checks that apply: key at `where` or "", whether it is wrong, value, what was expected, and a hint."""
+    for key, wrong, *texts in rows:
+        if wrong:
+            yield Problem(f"{where}.{key}" if key else where, *texts)
+
+
+def missing(where: str, why: str) -> Problem:
+    """The problem of a key that is needed."""
+    return Problem(where, "", "missing", f"required: {why}")
+
+
+def not_default(part: BaseModel, keys: Iterable[str]) -> list[str]:
+    """Which of some keys of a part have another value than their default."""
+    fields = type(part).model_fields
+    return [key for key in keys if getattr(part, key) != fields[key].get_default(call_default_factory=True)]
 
 
 def from_validation(error: ValidationError, root: type[BaseModel], silent: Collection[Loc] = ()) -> list[Problem]:

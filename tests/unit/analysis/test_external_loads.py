@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import ModelError
-from rotorgear.model.checks.plausibility.machine import implausible
+from rotorgear.model.checks.plausibility import implausible
 
 TURN = 2.0 * np.pi
 CANTILEVER = """

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.model.checks.plausibility.machine import implausible
+from rotorgear.model.checks.plausibility import implausible
 
 MODELS = Path(__file__).parents[3] / "models"
 # Address, the value that slipped, and what the warning asks.

@@ -1,0 +1,458 @@
+"""Values that the physics of a machine makes unlikely: address, value, usual range and the likely slip of a unit.
+
+The ranges are wide: they are judged by ratios that do not depend on the size of the machine (slenderness, sag under the weight,
+speed of sound, load per width, eccentricity, shear stress), and a value outside is some ten times off whatever is built.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import pairwise
+from typing import Annotated, Any, get_args, get_origin
+
+from pydantic import BaseModel
+
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.mesh_layout import MeshLayout
+from rotorgear.model.parts.bearings.geometry import Judged
+from rotorgear.model.parts.fields import Unit
+from rotorgear.model.parts.gear import DEPTHS
+from rotorgear.model.parts.load import Load, LoadHistory
+from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.shaft import Section
+from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
+from rotorgear.quantity import RPM_PER_RAD_S
+
+_GRAVITY = 9.81
+# What a value is asked that may be wrong either way, and a share that is too large.
+_ASK = ("is its unit right?", "is its unit right?")
+_PERCENT = ("", "percent meant?")
+# Usual ranges. Speed of sound sqrt(E/rho) in m/s: rubber to beryllium.
+_SOUND = (300.0, 14e3)
+# Densities of solids in kg/m^3, and the units that slip.
+_SOLID = (1.4e3, 2.3e4)
+_DENSITIES = {"g/cm^3": 1e3, "kg/mm^3": 1e9, "t/mm^3": 1e12}
+# Length of a shaft over its largest diameter, and of its largest over its smallest diameter.
+_SLENDER = (0.05, 200.0)
+_STEPPED = 60.0
+# Face width over base diameter; normal module in m.
+_WIDTH = (0.01, 5.0)
+_MODULE = (0.05e-3, 0.1)
+# Mesh stiffness over width in N/m^2 (ISO 6336-1: 1.4e10 to 2.5e10 for steel), and alone in N/m.
+_MESH_PER_WIDTH = (5e8, 3e11)
+_MESH = (1e5, 1e12)
+# Radius of gyration in m; eccentricity of an unbalance in m.
+_GYRATION = (1e-3, 10.0)
+_ECCENTRICITY = 1e-3
+# Errors, reliefs and gaps of flanks over module; face width over module; base diameter over that of the thinnest shaft.
+_ERROR = 0.2
+_DEPTH = 0.1
+_PER_MODULE = (0.8, 300.0)
+_PER_SHAFT = 60.0
+_DAMPING = 0.5
+_VISCOSITY = (5e-5, 3.0)
+# Sag of a rotor on its bearings in m; stiffness of a bearing in N/m that nothing reaches, and what is usual.
+_SAG = 1e-3
+_STIFFEST = 1e12
+_SPRING = "1e6 to 1e10 N/m"
+# Damping of a bearing over the critical one; twist of a coupling under the torque of the operating point in rad.
+_OVERDAMPED = 1e3
+_TWIST = 0.5
+# Surface of a shaft, and gears at their base circles, in m/s.
+_SURFACE = 600.0
+_FLANKS = 400.0
+# Speed over the first bending frequency of a shaft on its bearings.
+_SUPERCRITICAL = 60.0
+# Shear stress of the thinnest part of a shaft in Pa under its torque; stress along a shaft under a force, and by its own weight.
+_SHEAR = (3e4, 1.5e9)
+_STRESS = 1.5e9
+_WEIGHT = 3e8
+_WEIGHTS = (1.5, 300.0)
+_ALPHA = 1e4
+_BETA = 1e-2
+_RIPPLE = 3.0
+# A file of so many rows is sampled; a gap of so many of their spacings is one of missing rows.
+_MANY = 20
+_GAP = 10.0
+# Two turns: more is no angle of a drawing, nor a phase that one would write.
+_ANGLE = 4.0 * math.pi
+
+
+def implausible(layout: Layout) -> Iterator[str]:
+    """Yield a sentence on every value that is far from all that is built."""
+    for address, value, usual, words, slips in _judged(layout):
+        if not usual[0] <= value <= usual[1]:
+            yield f"{address}: {words[0]}; usual is {words[1]}: {slips[0] if value < usual[0] else slips[1]}"
+
+
+def _judged(layout: Layout) -> Iterator[Judged]:
+    yield from _materials(layout)
+    yield from _shafts(layout)
+    yield from _gears(layout)
+    for mesh in layout.meshes:
+        yield from _mesh(f"meshes.{mesh.name}", mesh)
+    for name, bearing in layout.model.bearings.items():
+        yield from _bearing(layout, f"bearings.{name}", bearing)
+    yield from _couplings(layout)
+    yield from _bodies(layout)
+    yield from _operation(layout)
+
+
+def _mass_of(layout: Layout, shaft: str) -> float:
+    """Mass of a shaft and of what stands on it, in kg."""
+    total = 0.0
+    for section in layout.model.shafts[shaft].sections:
+        outer, bore, outer_end, bore_end = section.mass_diameters()
+        area = 0.125 * math.pi * (outer**2 + outer_end**2 - bore**2 - bore_end**2)
+        total += layout.model.material_of(shaft, section).density * section.length * area
+    return total + sum(body.body.mass for body in layout.bodies if body.shaft == shaft)
+
+
+def _thinnest(sections: Iterable[Section]) -> float:
+    """Least outer diameter (m) of the sections that can bend; 0 without any."""
+    return min((section.outer_diameter for section in sections if not section.rigid), default=0.0)
+
+
+def _materials(layout: Layout) -> Iterator[Judged]:
+    for name, material in layout.model.materials.items():
+        sound = math.sqrt(material.youngs_modulus / material.density)
+        speed = (f", with which sound runs at {sound:.3g} m/s", f"{_SOUND[0]:g} to {_SOUND[1]:g} m/s")
+        if material.density < 50.0:
+            known = [unit for unit, factor in _DENSITIES.items() if _SOLID[0] <= factor * material.density <= _SOLID[1]]
+            for unit in known[:1]:  # else without mass on purpose
+                words = (f"{material.density:.6g} kg/m^3{speed[0]}", speed[1])
+                yield f"materials.{name}.density", sound, _SOUND, words, (f"{unit} meant?", f"{unit} meant?")
+        else:
+            low = "MPa meant?" if material.youngs_modulus > 5e3 else "GPa meant?"
+            words = (f"{material.youngs_modulus:.6g} N/m^2{speed[0]}", speed[1])
+            slips = (low, "is its unit right, and that of the density?")
+            yield f"materials.{name}.youngs_modulus", sound, _SOUND, words, slips
+
+
+def _shafts(layout: Layout) -> Iterator[Judged]:
+    for name, shaft in layout.model.shafts.items():
+        largest = [max(section.outer_diameter, section.outer_diameter_end or 0.0) for section in shaft.sections]
+        if not largest:
+            continue
+        thick = max(largest)
+        thin = min(largest)
+        slender = shaft.length / thick
+        got = f"{shaft.length:.4g} m long and up to {thick:.4g} m thick, {slender:.3g} diameters"
+        words = (got, f"{_SLENDER[0]:g} to {_SLENDER[1]:g} diameters")
+        slip = "is a length or diameter in mm?"
+        yield f"shafts.{name}", slender, _SLENDER, words, (slip, slip)
+        if _SLENDER[0] <= slender <= _SLENDER[1]:
+            address = f"shafts.{name}.sections[{largest.index(thick)}].outer_diameter"
+            words = (f"{thick:.4g} m beside {thin:.4g} m", f"up to {_STEPPED:g} times as much")
+            yield address, thick, (0.0, _STEPPED * thin), words, ("", "mm meant?")
+
+
+def _gears(layout: Layout) -> Iterator[Judged]:
+    for gear in layout.gears:
+        address = f"gears.{gear.name}"
+        module = gear.part.normal_module
+        width = gear.part.width
+        diameter = 2.0 * gear.base_radius
+        if module is not None:
+            words = (f"{module:.4g} m", "0.05 to 100 mm")
+            yield f"{address}.normal_module", module, _MODULE, words, ("mm meant?", "mm meant?")
+        if width and diameter:
+            got = f"{width:.4g} m on a base diameter of {diameter:.4g} m"
+            words = (got, f"{_WIDTH[0]:g} to {_WIDTH[1]:g} of it")
+            yield f"{address}.width", width / diameter, _WIDTH, words, (_ASK[0], "mm meant?")
+        if module is not None and width:
+            words = (f"{width:.4g} m, {width / module:.3g} modules", "5 to 60 modules")
+            slips = ("is the module in inches, or the width in another unit?", _ASK[1])
+            yield f"{address}.width", width / module, _PER_MODULE, words, slips
+        if module is not None:
+            depths = {f"flank.{key}": getattr(gear.part.flank, key) for key in DEPTHS}
+            for key, depth in {"tip_relief": gear.part.tip_relief, **depths}.items():
+                words = (f"{depth:.4g} m at a module of {module:.4g} m", f"up to {_DEPTH:g} of it")
+                yield f"{address}.{key}", abs(depth), (0.0, _DEPTH * module), words, ("", "um meant?")
+        thin = _thinnest(gear.shaft_part.sections)
+        if thin and diameter:
+            got = f"{diameter:.4g} m of its base circle on a shaft of {thin:.4g} m"
+            words = (got, f"up to {_PER_SHAFT:g} times as much")
+            yield address, diameter / thin, (0.0, _PER_SHAFT), words, ("", "mm meant?")
+
+
+def _mesh(address: str, mesh: MeshLayout) -> Iterator[Judged]:
+    part = mesh.part
+    given = mesh.given_mean
+    if given is not None:
+        width = mesh.width * mesh.helices
+        low, high = (_MESH_PER_WIDTH[0] * width, _MESH_PER_WIDTH[1] * width) if width else _MESH
+        words = (f"{given:.4g} N/m", f"{low:.2g} to {high:.2g} N/m")
+        yield f"{address}.stiffness", given, (low, high), words, ("N/um or N/(mm um) meant?", _ASK[1])
+    module = mesh.pinion.part.normal_module
+    if module:
+        for item in part.transmission_error:
+            words = (f"{item.amplitude:.4g} m at a module of {module:.4g} m", f"up to {_ERROR:g} of it")
+            error = (0.0, _ERROR * module)
+            yield f"{address}.transmission_error", item.amplitude, error, words, ("", "um meant?")
+        for key in ("backlash", "index_error"):
+            gap = getattr(part, key) or 0.0
+            words = (f"{gap:.4g} m", "below the module")
+            yield f"{address}.{key}", abs(gap), (0.0, module), words, ("", "um or mm meant?")
+    words = (f"{part.friction_coefficient:.4g}", "0.02 to 0.1")
+    yield f"{address}.friction_coefficient", part.friction_coefficient, (0.0, 1.0), words, _PERCENT
+    oil = part.lubricant_viscosity
+    if oil:
+        words = (f"{oil:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
+        yield f"{address}.lubricant_viscosity", oil, _VISCOSITY, words, (_ASK[0], "mPa s (cP) meant?")
+    words = (f"{part.damping_ratio:.4g}", "0.02 to 0.2")
+    yield f"{address}.damping_ratio", part.damping_ratio, (0.0, _DAMPING), words, _PERCENT
+
+
+def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]:
+    mass = _mass_of(layout, bearing.shaft)
+    sharing = sum(other.shaft == bearing.shaft for other in layout.model.bearings.values())
+    weight = _GRAVITY * mass / sharing if layout.model.has("bending") else 0.0
+    matrix = bearing.stiffness or (bearing.table[0].stiffness if bearing.table else None)
+    if matrix is not None:
+        yield from _stiffness(f"{address}.stiffness", matrix, weight)
+    if bearing.pedestal is not None:
+        yield from _stiffness(f"{address}.pedestal.stiffness", bearing.pedestal.stiffness, weight, given=True)
+    diameters = [section.outer_diameter for section in layout.model.shafts[bearing.shaft].sections]
+    for kind, geometry in bearing.geometries.items():
+        for key, value, usual, words, slips in geometry.judged():
+            yield f"{address}.{kind}.{key}", value, usual, words, slips
+        if diameters:  # the size of what surrounds the shaft against the shaft
+            size = geometry.surrounds
+            thin = min(diameters)
+            thick = max(diameters)
+            fits = (geometry.fits[0] * thin, geometry.fits[1] * thick)
+            got = f"{size:.4g} m on a shaft of {thin:.4g} to {thick:.4g} m"
+            words = (got, f"{fits[0]:.2g} to {fits[1]:.2g} m")
+            yield f"{address}.{kind}.{geometry.ring}", size, fits, words, (_ASK[0], "mm meant?")
+    if bearing.stiffness is not None and bearing.damping is not None:
+        # Damping across the shaft against that which is critical with its stiffness and the mass of the rotor.
+        stiffness = max(bearing.stiffness.as_rows()[i][i] for i in range(2))
+        damping = max(bearing.damping.as_rows()[i][i] for i in range(2))
+        if stiffness > 0.0 and mass:
+            ratio = damping / (2.0 * math.sqrt(stiffness * mass))
+            got = f"{damping:.4g} N s/m, {ratio:.3g} of the critical damping"
+            yield f"{address}.damping", ratio, (0.0, _OVERDAMPED), (got, f"up to {_OVERDAMPED:g} of it"), _ASK
+
+
+def _stiffness(address: str, matrix: StiffnessMatrix, weight: float, *, given: bool = False) -> Iterator[Judged]:
+    """Stiffness across the shaft against the weight on it; `given`: directions without one are rigid."""
+    rows = matrix.as_rows()
+    across = [rows[i][i] for i in range(2) if rows[i][i] or not given]
+    if not any(any(row) for row in rows):
+        if not given:
+            yield address, 0.0, (1.0, 1.0), ("0 in all directions", _SPRING), ("it holds nothing; leave it out", "")
+    elif across:
+        softest = min(across)
+        yield address, max(across), (-math.inf, _STIFFEST), (f"{max(across):.4g} N/m", _SPRING), _ASK
+        if max(across) > 0.0:
+            sag = f"{softest:.4g} N/m, on which its rotor sags by {1e3 * weight / (softest or 1.0):.3g} mm"
+            words = (sag if softest else "no stiffness across", _SPRING)
+            yield address, weight, (0.0, _SAG * softest), words, ("", "N/mm or N/um meant?")
+
+
+def _couplings(layout: Layout) -> Iterator[Judged]:
+    """Twist of couplings under the torque of the operating point."""
+    operation = layout.model.operation
+    if operation is None:
+        return
+    speed = abs(operation.speed or 0.0)
+    torque = operation.torque or (operation.power / speed if operation.power and speed else 0.0)
+    for name, coupling in layout.model.couplings.items():
+        stiffness = coupling.stiffness.as_rows()[5][5]
+        ratio = abs(float(layout.train.ratio(coupling.from_shaft)))
+        if stiffness > 0.0 and ratio:
+            twist = torque / ratio / stiffness
+            whole = (
+                f"{stiffness:.4g} N m/rad, which the whole torque of the operating point would twist by {twist:.3g} rad"
+            )
+            words = (whole, f"up to {_TWIST:g} rad")
+            yield f"couplings.{name}.stiffness", twist, (0.0, _TWIST), words, ("", "kN m/rad meant?")
+
+
+def _bodies(layout: Layout) -> Iterator[Judged]:
+    for body in layout.bodies:
+        mass = body.body.mass
+        polar = body.body.polar_inertia
+        if mass and polar:
+            radius = math.sqrt(polar / mass)
+            got = f"{polar:.4g} kg m^2 on {mass:.4g} kg, a radius of gyration of {radius:.3g} m"
+            slip = "kg mm^2 or g meant?"
+            words = (got, f"{_GYRATION[0]:g} to {_GYRATION[1]:g} m")
+            yield f"{body.part}.polar_inertia", radius, _GYRATION, words, (slip, slip)
+    for name, unbalance in layout.model.unbalances.items():
+        mass = _mass_of(layout, unbalance.shaft)
+        if mass:
+            size = unbalance.magnitude
+            got = f"{size:.4g} kg m, which puts its rotor off by {1e3 * size / mass:.3g} mm"
+            words = (got, f"up to {1e3 * _ECCENTRICITY:g} mm")
+            yield f"unbalances.{name}.magnitude", size, (0.0, _ECCENTRICITY * mass), words, ("", "g mm meant?")
+
+
+def _operation(layout: Layout) -> Iterator[Judged]:
+    """Gravity, damping, speed, weight, torques and forces, and angles."""
+    model = layout.model
+    if model.operation and any(model.operation.gravity or ()):
+        size = math.sqrt(sum(x * x for x in model.operation.gravity or ()))
+        slips = ("is it in g?", "mm/s^2 meant?")
+        yield "operation.gravity", size, _WEIGHTS, (f"{size:.4g} m/s^2", "9.81 m/s^2"), slips
+    ratio = model.damping.modal_ratio
+    alpha = model.damping.rayleigh_alpha
+    beta = model.damping.rayleigh_beta
+    yield "damping.modal_ratio", ratio, (0.0, _DAMPING), (f"{ratio:.4g}", "0.005 to 0.05"), _PERCENT
+    yield "damping.rayleigh_beta", beta, (0.0, _BETA), (f"{beta:.4g} s", f"up to {_BETA:g} s"), ("", "us meant?")
+    yield "damping.rayleigh_alpha", alpha, (0.0, _ALPHA), (f"{alpha:.4g} 1/s", f"up to {_ALPHA:g} 1/s"), _ASK
+    yield from [item for item in _speeds(layout) if item[1] > item[2][1]][:1]
+    # Stress of the thickest section of a shaft under its own weight in the middle between its ends.
+    for name, shaft in model.shafts.items():
+        thick = max((section.outer_diameter for section in shaft.sections), default=0.0)
+        if thick:
+            mass = _mass_of(layout, name)
+            stress = 8.0 * _GRAVITY * mass * shaft.length / (math.pi * thick**3)
+            got = f"{mass:.4g} kg with what it carries, under which it would have {1e-6 * stress:.3g} MPa"
+            slips = ("", "is a mass in g, or a density off?")
+            yield f"shafts.{name}", stress, (0.0, _WEIGHT), (got, "up to 300 MPa"), slips
+    yield from _loads(layout)
+    for name, load in model.loads.items():
+        if load.history is not None:
+            sections = model.shafts[load.shaft].sections if load.shaft is not None else ()
+            yield from _history(f"loads.{name}.history", load.history, _thinnest(sections))
+    for table in type(model).model_fields:
+        parts = getattr(model, table)
+        for name, part in parts.items() if isinstance(parts, dict) else ():
+            yield from _angles(f"{table}.{name}", part)
+
+
+def _speeds(layout: Layout) -> Iterator[Judged]:
+    """Speeds of shafts, gears and bearings: the first that is beyond all that is built is told."""
+    model = layout.model
+    if not model.operation or not model.operation.speed:
+        return
+    speeds = {name: abs(model.operation.speed * layout.train.ratio(name)) for name in model.shafts}
+
+    def row(shaft: str, value: float, most: float, what: str, usual: str) -> Judged:
+        words = (f"{speeds[shaft] * RPM_PER_RAD_S:.4g} rpm of shaft '{shaft}', {what}", usual)
+        return "operation.speed", value, (0.0, most), words, ("", "rpm meant?")
+
+    def runs(shaft: str, value: float, most: float, what: str) -> Judged:
+        return row(shaft, value, most, f"{what} at {value:.3g} m/s", f"up to {most:g} m/s")
+
+    for name, shaft in model.shafts.items():
+        largest = max((section.outer_diameter for section in shaft.sections), default=0.0)
+        yield runs(name, 0.5 * largest * speeds[name], _SURFACE, "whose surface runs")
+    for gear in layout.gears:
+        yield runs(gear.shaft, gear.base_radius * speeds[gear.shaft], _FLANKS, f"whose gear '{gear.name}' runs")
+    for name, bearing in model.bearings.items():
+        if (inside := bearing.geometry) is not None:
+            value = 0.5 * inside.surrounds * speeds[bearing.shaft]
+            yield runs(bearing.shaft, value, inside.fastest, inside.runs.format(name))
+    for name in model.shafts if model.has("bending") else ():
+        first = _first_bending(layout, name)
+        if first:
+            times = speeds[name] / first
+            what = f"{times:.3g} times its first bending frequency on rigid bearings"
+            yield row(name, times, _SUPERCRITICAL, what, f"up to {_SUPERCRITICAL:g} times")
+
+
+def _first_bending(layout: Layout, name: str) -> float | None:
+    """Estimate sqrt(48 E I/(l^3 m)) in rad/s of a shaft between its outermost bearings; None without two."""
+    model = layout.model
+    shaft = model.shafts[name]
+    places = [layout.place(f"bearings.{key}")[1] for key, one in model.bearings.items() if one.shaft == name]
+    span = max(places) - min(places) if places else 0.0
+    elastic = [section for section in shaft.sections if not section.rigid]
+    if span <= 0.0 or not elastic or span < 0.2 * shaft.length:
+        return None
+    inertia = 0.0
+    length = 0.0
+    for section in elastic:
+        outer, bore, *_ = section.mass_diameters()
+        inertia += section.length / (math.pi / 64.0 * (outer**4 - bore**4))
+        length += section.length
+    modulus = model.material_of(name, elastic[0]).youngs_modulus
+    mass = _mass_of(layout, name)
+    return math.sqrt(48.0 * modulus * length / inertia / (span**3 * mass)) if mass else None
+
+
+def _loads(layout: Layout) -> Iterator[Judged]:
+    """Torques, powers and forces against the strength of their shafts."""
+    model = layout.model
+    given: dict[str, tuple[Operation | Load, str]] = {
+        f"loads.{name}": (load, load.shaft) for name, load in model.loads.items() if load.shaft is not None
+    }
+    if model.operation:
+        given["operation"] = (model.operation, model.operation.input_shaft)
+    speed = model.operation.speed if model.operation else None
+    for address, (part, shaft) in given.items():
+        thinnest = _thinnest(model.shafts[shaft].sections)
+        ripple = getattr(part, "ripple", 0.0)
+        yield f"{address}.ripple", ripple, (0.0, _RIPPLE), (f"{ripple:.4g}", "0 to 1"), _PERCENT
+        if not thinnest:
+            continue
+        force = math.sqrt(sum(x * x for x in getattr(part, "force", None) or ()))
+        yield _along(f"{address}.force", force, thinnest)
+        turning = abs(speed * layout.train.ratio(shaft)) if speed else 0.0
+        torque = part.torque or (part.power / turning if part.power and turning else 0.0)
+        if torque:
+            stress = 16.0 * torque / (math.pi * thinnest**3)
+            thick = f"in a shaft of {1e3 * thinnest:.3g} mm"
+            words = (f"{torque:.4g} N m, a shear stress of {1e-6 * stress:.3g} MPa {thick}", "0.03 to 1500 MPa")
+            slips = ("kN m or kW meant?", "N mm or W meant?")
+            yield f"{address}.{'torque' if part.torque else 'power'}", stress, _SHEAR, words, slips
+
+
+def _along(address: str, force: float, thickness: float) -> Judged:
+    """A force against the strength of a shaft of a thickness along its axis."""
+    stress = 4.0 * force / (math.pi * thickness**2)
+    got = f"{force:.4g} N, a stress of {1e-6 * stress:.3g} MPa in a shaft of {1e3 * thickness:.3g} mm"
+    return address, stress, (0.0, _STRESS), (got, "up to 1500 MPa"), _ASK
+
+
+def _history(address: str, history: LoadHistory, thinnest: float) -> Iterator[Judged]:
+    """Forces of a file against the strength of their shaft, and rows that are missing among many."""
+    columns = zip(history.components, history.values, strict=True)
+    forces = [abs(x) for name, row in columns if name[0] == "f" for x in row]
+    if thinnest and forces:
+        yield _along(address, max(forces), thinnest)
+    spacings = [b - a for a, b in pairwise(history.places)]
+    usual = sorted(spacings)[len(spacings) // 2]
+    widest = max(spacings)
+    if len(spacings) >= _MANY:
+        begin = history.places[spacings.index(widest)]
+        unit = "s" if history.over == "time" else "rad"
+        words = (f"no row from {begin:.6g} to {begin + widest:.6g} {unit}", f"one every {usual:.4g} {unit}")
+        slip = "are rows missing? it is taken as linear between them"
+        yield address, widest, (0.0, _GAP * usual), words, ("", slip)
+
+
+@lru_cache
+def _angle_names(part: type[BaseModel]) -> tuple[str, ...]:
+    """Names of the fields of a part that are angles."""
+
+    def marked(kind: Any) -> bool:
+        if get_origin(kind) is Annotated:
+            return any(isinstance(item, Unit) and item.dimension == "angle" for item in get_args(kind)[1:])
+        return any(marked(each) for each in get_args(kind))
+
+    def is_angle(field: Any) -> bool:
+        return marked(field.annotation) or any(isinstance(m, Unit) and m.dimension == "angle" for m in field.metadata)
+
+    return tuple(name for name, field in part.model_fields.items() if is_angle(field))
+
+
+def _angles(address: str, part: Any) -> Iterator[Judged]:
+    """Angles of a part and of the parts in it that go round more than twice."""
+    if isinstance(part, tuple):
+        for number, item in enumerate(part):
+            yield from _angles(f"{address}[{number}]", item)
+    elif isinstance(part, BaseModel):
+        angles = _angle_names(type(part))
+        for name in type(part).model_fields:
+            value = getattr(part, name)
+            if name in angles and isinstance(value, float):
+                words = (f"{value:.6g} rad, {math.degrees(value):.6g} deg", "-720 to 720 deg")
+                yield f"{address}.{name}", value, (-_ANGLE, _ANGLE), words, ("deg meant?", "deg meant?")
+            elif isinstance(value, tuple | BaseModel):
+                yield from _angles(f"{address}.{name}", value)

@@ -1,1 +1,0 @@
-"""Values that the physics of a machine makes unlikely."""
