@@ -64,6 +64,8 @@ _EXPONENT_OR_RECIPROCAL = re.compile(r"\^\s*-?[0-9](?![0-9])|^1(?=\s*/)")
 LARGEST = 1e30
 # Revolutions per minute in a radian per second.
 RPM_PER_RAD_S = 30.0 / math.pi
+ZERO_CELSIUS = 273.15  # 0 deg C in K
+GRAVITY = 9.80665  # standard acceleration of gravity in m/s^2
 _TURN = 2.0 * math.pi
 # Factors to SI where a frequency and a rotational speed would be mixed up by dimensional analysis alone.
 _RPM = _TURN / 60
@@ -82,7 +84,7 @@ _SPEED_UNITS = {
 _FREQUENCY_UNITS = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6, "mHz": 1e-3, "cpm": 1 / 60, "rpm": 1 / 60, "rad/s": 1 / _TURN}
 # Temperatures have a zero of their own: factor to K, and K at 0 of the unit.
 _TEMPERATURE_UNITS = {"K": (1.0, 0.0), "degF": (5.0 / 9.0, 459.67 * 5.0 / 9.0)}
-_TEMPERATURE_UNITS |= dict.fromkeys(("degC", "°C", "C"), (1.0, 273.15))
+_TEMPERATURE_UNITS |= dict.fromkeys(("degC", "°C", "C"), (1.0, ZERO_CELSIUS))
 
 
 class QuantityError(ValueError):

@@ -12,25 +12,10 @@ import numpy as np
 from rotorgear.elements.matrices import ElementMatrices
 
 
-def grounded_spring(stiffness: np.ndarray, damping: np.ndarray) -> ElementMatrices:
-    """Return a 6x6 stiffness and damping between a node and the ground; only the dofs they touch carry strains."""
-    return _spring(np.eye(6), np.asarray(stiffness, float), np.asarray(damping, float))
-
-
-def linking_spring(
-    stiffness: np.ndarray, damping: np.ndarray, first: np.ndarray, second: np.ndarray
-) -> ElementMatrices:
-    """Return a 6x6 stiffness and damping between two nodes at the points `first` and `second` (3,) in m."""
+def between(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Displacements (6, 12) of the second of two nodes relative to the first, which stand at two points (3,) in m."""
     middle = 0.5 * (np.asarray(first, float) + np.asarray(second, float))
-    relative = np.hstack([-rigid_transfer(middle - first), rigid_transfer(middle - second)])
-    return _spring(relative, np.asarray(stiffness, float), np.asarray(damping, float))
-
-
-def seated_spring(stiffness: np.ndarray, damping: np.ndarray, arm: np.ndarray) -> ElementMatrices:
-    """Return a 6x6 stiffness and damping between a seat, carried rigidly by `arm` (3,) to its bearing, and a node there."""
-    return _spring(
-        np.hstack([-rigid_transfer(arm), np.eye(6)]), np.asarray(stiffness, float), np.asarray(damping, float)
-    )
+    return np.hstack([-rigid_transfer(middle - first), rigid_transfer(middle - second)])
 
 
 def rigid_transfer(arm: np.ndarray) -> np.ndarray:
@@ -41,8 +26,10 @@ def rigid_transfer(arm: np.ndarray) -> np.ndarray:
     return T
 
 
-def _spring(relative: np.ndarray, K: np.ndarray, C: np.ndarray) -> ElementMatrices:
-    """Spring K and damper C (6, 6) on the relative displacements (6, d)."""
+def spring(relative: np.ndarray, stiffness: np.ndarray, damping: np.ndarray) -> ElementMatrices:
+    """A stiffness and a damping (6, 6) on the relative displacements (6, d) of d dofs; only those they touch carry strains."""
+    K = np.asarray(stiffness, float)
+    C = np.asarray(damping, float)
     # Only a symmetric stiffness has a strain energy; the rest (cross-coupling of a fluid film) is circulation.
     symmetric = 0.5 * (K + K.T)
     skew = 0.5 * (K - K.T)

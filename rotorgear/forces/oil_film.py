@@ -29,9 +29,9 @@ from scipy.optimize import brentq
 
 from rotorgear.forces.inside import OilField
 from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.quantity import ZERO_CELSIUS
 
 TURN = 2.0 * np.pi
-CELSIUS = 273.15
 # Mineral oil does not stay what it is above, deg C.
 _HOTTEST = 200.0
 # Beyond these the equation or the grid does not describe the film: diameters, share of the clearance, Taylor's number.
@@ -52,14 +52,14 @@ def oil_viscosity(grade: float, density: float, temperature: float) -> float:
     Args:
         grade: kinematic viscosity at 40 deg C in m^2/s. density: kg/m^3. temperature: K.
     """
-    power = _SLOPE / (temperature - CELSIUS + _POLE) - _SHIFT
+    power = _SLOPE / (temperature - ZERO_CELSIUS + _POLE) - _SHIFT
     return float(_LEAST_VISCOSITY * (density * grade / _LEAST_VISCOSITY) ** power)
 
 
 def oil_temperature(grade: float, density: float, viscosity: float) -> float:
     """Return the temperature in K at which the oil has a dynamic viscosity in Pa s."""
     power = np.log(viscosity / _LEAST_VISCOSITY) / np.log(density * grade / _LEAST_VISCOSITY)
-    return float(_SLOPE / (power + _SHIFT) - _POLE + CELSIUS)
+    return float(_SLOPE / (power + _SHIFT) - _POLE + ZERO_CELSIUS)
 
 
 def film_temperature(grade: float, density: float, inlet: float, rise: float) -> float:
@@ -172,11 +172,11 @@ class OilFilm(ForceLaw):
     def too_hot(self) -> str:
         """Why the film does not hold at its temperature, as a clause; or ""."""
         T = self.temperature if self.heats else None
-        if T is None or T - CELSIUS <= _HOTTEST:
+        if T is None or T - ZERO_CELSIUS <= _HOTTEST:
             return ""
         return (
-            f"the film would be at {T - CELSIUS:.3g} degC, hotter than mineral oil bears (at most {_HOTTEST:g} degC): too little "
-            "oil leaves it for its power loss; check clearance, grade, speed and load, or give the viscosity"
+            f"the film would be at {T - ZERO_CELSIUS:.3g} degC, hotter than mineral oil bears (at most {_HOTTEST:g} degC): too "
+            "little oil leaves it for its power loss; check clearance, grade, speed and load, or give the viscosity"
         )
 
     @property

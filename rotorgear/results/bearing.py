@@ -9,14 +9,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.quantity import RPM_PER_RAD_S, ZERO_CELSIUS
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Column, Table, error_words, grid, heading, table_of, written
 
 _COMPONENTS = ("x", "y", "z", "tilt_x", "tilt_y")
 _NEGLIGIBLE = 1e-9
-_CELSIUS = 273.15
 
 
 class RollingElementRow(Record):
@@ -265,7 +264,7 @@ class BearingSheet(ModelResult, kind="bearing"):
         yield ("side flow", f"{6e4 * film.side_flow:.4g} l/min")
         yield ("power loss", f"{film.power_loss:.5g} W")
         if film.film_temperature is not None and film.outlet_temperature is not None:
-            mean, outlet = film.film_temperature - _CELSIUS, film.outlet_temperature - _CELSIUS
+            mean, outlet = film.film_temperature - ZERO_CELSIUS, film.outlet_temperature - ZERO_CELSIUS
             yield ("oil", f"in at {2.0 * mean - outlet:.4g} degC, out at {outlet:.4g} degC")
             yield ("film", f"{mean:.4g} degC, {1e3 * film.film_viscosity:.4g} mPa s")
 

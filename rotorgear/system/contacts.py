@@ -76,15 +76,12 @@ def contact_lines(system: System) -> ContactLines:
         v[dofs, k] = strain[0, 0]
         turned[dofs, k] = _quarter_turn(strain[0, 0])
         rotation[dofs[:12], k] = rotation_vector(state)
-        contact = state.contact
-        mesh = system.layout.mesh(contact.mesh).part
-        gap[k] = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
+        gap[k] = state.gap(system.model.meshes[state.contact.mesh])
         v_t = face_strains(contact_geometry(state), face_of(system.layout, state))[1]
         tilt[dofs, k] = v_t
         tilted[dofs, k] = _quarter_turn(v_t)
         start[k] = state.start or 0.0
         if state.face is not None:
-            gap[k] += state.face.shift
             tilt_stiffness[k] = state.face.tilt_stiffness
             couple[k] = state.face.couple
     T = system.dofs.transform.T

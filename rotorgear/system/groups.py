@@ -22,12 +22,11 @@ from rotorgear.elements.gear_mesh import (
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motions
 from rotorgear.elements.shaft_bubbles import bubble_motions
-from rotorgear.elements.spring import grounded_spring, linking_spring, seated_spring
+from rotorgear.elements.spring import between, rigid_transfer, spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.spring import matrix_rows
 from rotorgear.model.layout.state import MeshForce, State
-from rotorgear.model.parts.supports import Bearing, NonlinearElement
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import CASING, Element, Nodes
 
@@ -126,7 +125,6 @@ def constant_groups(state: State, nodes: Nodes) -> list[ElementGroup]:
     """Groups that do not depend on speed, except through gyroscopic and circulatory terms in proportion to it."""
     layout = state.layout
     model = layout.model
-    springs = state.springs
     found = [group for name in model.shafts for group in _shaft(layout, nodes, name)]
     for body in layout.bodies:
         b = body.body
@@ -148,35 +146,19 @@ def constant_groups(state: State, nodes: Nodes) -> list[ElementGroup]:
         matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry), face)
         found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, mesh_dofs(layout, nodes, force)))
     found += [_casing(layout, nodes, name) for name in model.casings]
-    for name, bearing in model.bearings.items():
-        pedestal = bearing.pedestal
-        if pedestal is not None:
-            part = f"bearings.{name}.pedestal"
-            dofs = node_dofs(nodes.of_pedestal(name))
-            matrices = grounded_spring(matrix_rows(pedestal.stiffness), matrix_rows(pedestal.damping))
-            found.append(ElementGroup(part, bearing.shaft, matrices, dofs))
-            if pedestal.mass:
-                found.append(ElementGroup(part, bearing.shaft, rigid_body(pedestal.mass, 0.0, 0.0), dofs))
-        spring = springs[f"bearings.{name}"]
-        if not spring.varies:
-            found.append(_bearing(layout, nodes, name, bearing, spring.stiffness[0], spring.damping[0]))
-    for name, support in model.supports.items():
-        node = nodes.at(*layout.place(f"supports.{name}"))
-        spring = springs[f"supports.{name}"]
-        matrices = grounded_spring(spring.stiffness[0], spring.damping[0])
-        found.append(ElementGroup(f"supports.{name}", support.shaft, matrices, node_dofs(node)))
-    for name, element in model.nonlinear_elements.items():
-        spring = springs[f"nonlinear_elements.{name}"]
-        if not spring.varies:
-            found.append(_element(layout, nodes, name, element, spring.stiffness[0], spring.damping[0]))
-    for name in model.couplings:
-        first, second = layout.places(f"couplings.{name}")
-        spring = springs[f"couplings.{name}"]
-        matrices = linking_spring(
-            spring.stiffness[0], spring.damping[0], np.array([0, 0, first.z]), np.array([0, 0, second.z])
-        )
-        dofs = node_dofs(nodes.at(*first), nodes.at(*second))
-        found.append(ElementGroup(f"couplings.{name}", "", matrices, dofs))
+    for table in ("bearings", "supports", "nonlinear_elements", "couplings"):
+        for name, part in getattr(model, table).items():
+            pedestal = part.pedestal if table == "bearings" else None
+            if pedestal is not None:
+                dofs = node_dofs(nodes.of_pedestal(name))
+                matrices = spring(np.eye(6), matrix_rows(pedestal.stiffness), matrix_rows(pedestal.damping))
+                found.append(ElementGroup(f"{table}.{name}.pedestal", part.shaft, matrices, dofs))
+                if pedestal.mass:
+                    weight = rigid_body(pedestal.mass, 0.0, 0.0)
+                    found.append(ElementGroup(f"{table}.{name}.pedestal", part.shaft, weight, dofs))
+            held = state.springs[f"{table}.{name}"]
+            if not held.varies:
+                found.append(_spring_group(layout, nodes, f"{table}.{name}", held.stiffness[0], held.damping[0]))
     return found
 
 
@@ -186,14 +168,45 @@ def table_groups(state: State, nodes: Nodes, speed: float) -> list[ElementGroup]
     Raises:
         AnalysisError: the speed of a bearing's shaft lies outside its table.
     """
-    layout = state.layout
-    found = []
-    for make, table in ((_bearing, "bearings"), (_element, "nonlinear_elements")):
-        for name, part in getattr(layout.model, table).items():
-            address = f"{table}.{name}"
-            if state.springs[address].varies:
-                found.append(make(layout, nodes, name, part, *state.spring_at(address, speed)))
-    return found
+    return [
+        _spring_group(state.layout, nodes, address, *state.spring_at(address, speed))
+        for address, held in state.springs.items()
+        if held.varies
+    ]
+
+
+def _spring_group(
+    layout: Layout, nodes: Nodes, address: str, stiffness: np.ndarray, damping: np.ndarray
+) -> ElementGroup:
+    """What linear analyses take of a bearing, support, coupling or nonlinear element."""
+    table, _, name = address.partition(".")
+    part = getattr(layout.model, table)[name]
+    shaft = "" if table == "couplings" or getattr(part, "to_shaft", None) else part.shaft
+    dofs, relative = relative_motion(layout, nodes, address)
+    return ElementGroup(address, shaft, spring(relative, stiffness, damping), dofs[None])
+
+
+def relative_motion(layout: Layout, nodes: Nodes, address: str) -> tuple[np.ndarray, np.ndarray]:
+    """Dofs (d,) that a bearing, support, coupling or nonlinear element joins, and its six relative displacements, (6, d).
+
+    They are those of its shaft against what it stands on: the ground, a seat in a casing, a pedestal or another shaft.
+    """
+    table, _, name = address.partition(".")
+    first, *other = layout.places(address)
+    dofs = node_dofs(nodes.at(*first))[0]
+    if table == "couplings":
+        points = [np.array([0.0, 0.0, place.z]) for place in (first, *other)]
+        return np.concatenate([dofs, node_dofs(nodes.at(*other[0]))[0]]), between(*points)
+    seat = layout.seat(address) if table in ("bearings", "nonlinear_elements") else None
+    if seat is not None:
+        ground = nodes.of_seat(seat.casing, seat.number)
+        return np.concatenate([ground, dofs]), np.hstack([-rigid_transfer(seat.arm), np.eye(6)])
+    pedestal = layout.model.bearings[name].pedestal if table == "bearings" else None
+    if pedestal is None and not other:
+        return dofs, np.eye(6)
+    # A law knows relative displacements of two nodes, whatever lies between them.
+    ground = node_dofs(nodes.of_pedestal(name) if pedestal is not None else nodes.at(*other[0]))[0]
+    return np.concatenate([ground, dofs]), np.hstack([-np.eye(6), np.eye(6)])
 
 
 def _casing(layout: Layout, nodes: Nodes, name: str) -> ElementGroup:
@@ -347,58 +360,3 @@ def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) ->
             diagonals[0][5], diagonals[1][5], geometry.pinion_base_radius, geometry.gear_base_radius
         )
     return 2.0 * mesh.damping_ratio * float(np.sqrt(force.contact.stiffness * equivalent))
-
-
-def resists_tilt(group: ElementGroup) -> bool:
-    """Whether a group is a mesh with a stiffness against the tilt of its flanks."""
-    B = group.matrices.strain
-    return group.part.startswith("meshes.") and B is not None and B.shape[1] == 2
-
-
-def tilt_only(group: ElementGroup) -> ElementGroup:
-    """A mesh that resists a tilt without the spring along its flank normal, whose force is a law of its own."""
-    m = group.matrices
-    assert m.strain is not None
-    assert m.modulus is not None
-    viscosity = None if m.viscosity is None else m.viscosity[:, 1:, 1:]
-    return replace(
-        group, matrices=ElementMatrices(strain=m.strain[:, 1:], modulus=m.modulus[:, 1:, 1:], viscosity=viscosity)
-    )
-
-
-def tilt_damper(group: ElementGroup) -> ElementGroup:
-    """The damper alone of a mesh that resists a tilt, whose force and moment are a law of their own."""
-    only = tilt_only(group)
-    return replace(only, matrices=replace(only.matrices, modulus=None))
-
-
-def _bearing(
-    layout: Layout, nodes: Nodes, name: str, bearing: Bearing, stiffness: np.ndarray, damping: np.ndarray
-) -> ElementGroup:
-    node = nodes.at(*layout.place(f"bearings.{name}"))
-    part = f"bearings.{name}"
-    seat = layout.seat(part)
-    if seat is not None:
-        dofs = np.hstack([nodes.of_seat(seat.casing, seat.number)[None], node_dofs(node)])
-        return ElementGroup(part, bearing.shaft, seated_spring(stiffness, damping, seat.arm), dofs)
-    if bearing.pedestal is None:
-        return ElementGroup(part, bearing.shaft, grounded_spring(stiffness, damping), node_dofs(node))
-    origin = np.zeros(3)
-    matrices = linking_spring(stiffness, damping, origin, origin)
-    return ElementGroup(part, bearing.shaft, matrices, node_dofs(nodes.of_pedestal(name), node))
-
-
-def _element(
-    layout: Layout, nodes: Nodes, name: str, element: NonlinearElement, stiffness: np.ndarray, damping: np.ndarray
-) -> ElementGroup:
-    """What linear analyses take of a nonlinear element: springs and dampers from its shaft to the ground or another shaft."""
-    part = f"nonlinear_elements.{name}"
-    node, *other = (nodes.at(*place) for place in layout.places(part))
-    seat = layout.seat(part)
-    if seat is not None:
-        dofs = np.hstack([nodes.of_seat(seat.casing, seat.number)[None], node_dofs(node)])
-        return ElementGroup(part, element.shaft, seated_spring(stiffness, damping, seat.arm), dofs)
-    if not other:
-        return ElementGroup(part, element.shaft, grounded_spring(stiffness, damping), node_dofs(node))
-    origin = np.zeros(3)  # the law knows relative displacements of two nodes, whatever lies between them
-    return ElementGroup(part, "", linking_spring(stiffness, damping, origin, origin), node_dofs(other[0], node))

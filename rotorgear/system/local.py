@@ -6,30 +6,22 @@ numbers and centre lines (model/layout/state.py). Nothing here becomes a sign th
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.interpolate import PchipInterpolator
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
+from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
-from rotorgear.system.groups import (
-    ElementGroup,
-    contact_geometry,
-    face_of,
-    mesh_damping,
-    mesh_dofs,
-    resists_tilt,
-    tilt_damper,
-    tilt_only,
-)
+from rotorgear.system.groups import ElementGroup, contact_geometry, face_of, mesh_damping, mesh_dofs
 from rotorgear.system.loads import external_load, weight_loads
 from rotorgear.system.local_parts import (
     LocalPart,
@@ -39,12 +31,10 @@ from rotorgear.system.local_parts import (
     expansion_stiffness,
     external_parts,
     friction_part,
-    is_rolling,
     load_parts,
     unbalance_parts,
     varying_load,
     without_linear_part,
-    without_stiffness,
 )
 from rotorgear.system.system import System
 
@@ -83,19 +73,22 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     """
     from rotorgear.solvers.time.local_forces import gather
 
-    groups = tuple(
-        without_stiffness(group) if is_rolling(system, group) else group
-        for group in system.groups_at(speed)
-        if not group.part.startswith(("meshes.", "nonlinear_elements."))
-    )
+    laws = {f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law}
     mapped = _faces(system) if along_faces else {}
-    contacts = [group for group in system.groups if group.part.startswith("meshes.")]
-    resisting = [
-        tilt_damper(group) if k in mapped else tilt_only(group)
-        for k, group in enumerate(contacts)
-        if resists_tilt(group)
-    ]
-    groups = (*groups, *resisting)
+    resisting = (
+        _against_tilt(group, along=k in mapped)
+        for k, group in enumerate(group for group in system.groups if group.part.startswith("meshes."))
+    )
+    groups = (
+        *(
+            replace(group, matrices=replace(group.matrices, modulus=None, circulation=None))
+            if group.part in laws
+            else group
+            for group in system.groups_at(speed)
+            if not group.part.startswith(("meshes.", "nonlinear_elements."))
+        ),
+        *(group for group in resisting if group is not None),
+    )
     K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
     C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
     damping = system.model.damping
@@ -153,61 +146,73 @@ def torque_load(system: System) -> np.ndarray:
 
 def _faces(system: System) -> dict[int, FaceMap]:
     """Maps over the tilt of the flanks by number of the contact, where loaded teeth have one."""
-    load = system.state.about_nominal_flanks
-    found = {k: load.face_map(force) for k, force in enumerate(load.forces)}
+    state = system.state.about_nominal_flanks
+    found = {k: state.face_map(force) for k, force in enumerate(state.forces)}
     return {k: teeth for k, teeth in found.items() if teeth is not None}
 
 
-def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
-    load = system.state.about_nominal_flanks
-    found = []
-    for number, force in enumerate(load.forces):
+def _against_tilt(group: ElementGroup, *, along: bool) -> ElementGroup | None:
+    """What of a mesh resists a tilt, without the spring along its flank normal, whose force is a law of its own; None without it.
+
+    Where the law is one of the tilt as well (`along`), the damper alone is left.
+    """
+    m = group.matrices
+    if m.strain is None or m.modulus is None or m.strain.shape[1] != 2:
+        return None
+    viscosity = None if m.viscosity is None else m.viscosity[:, 1:, 1:]
+    modulus = None if along else m.modulus[:, 1:, 1:]
+    return replace(group, matrices=ElementMatrices(strain=m.strain[:, 1:], modulus=modulus, viscosity=viscosity))
+
+
+def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart]:
+    """The contacts of all helices, each with what goes with it: impacts at its corners, friction, and the flank behind it."""
+    state = system.state.about_nominal_flanks
+    for number, force in enumerate(state.forces):
         contact = force.contact
+        address = f"meshes.{contact.mesh}"
+        helices = len(state.of_mesh(contact.mesh))
+        label = contact.mesh if helices == 1 else f"{contact.mesh} helix {contact.helix + 1}"
         geometry = contact_geometry(force)
-        label = f"{contact.mesh} helix {contact.helix + 1}"
-        if len(load.of_mesh(contact.mesh)) == 1:
-            label = contact.mesh
-        spring = _mesh_law(system, force, geometry, load.phase(contact) or 0.0)
-        part = f"meshes.{contact.mesh}"
-        dofs = mesh_dofs(system.layout, system.nodes, force)[0]
-        face = face_of(system.layout, force)
+        spring = _mesh_law(system, force, geometry, state.phase(contact) or 0.0)
         along = faces.get(number)
         # Flanks that tilt have their approach in the middle of the face, others at the place where they carry.
+        dofs = mesh_dofs(system.layout, system.nodes, force)[0]
+        face = face_of(system.layout, force)
         strains = face_strains(geometry, replace(face, place=0.0)) if along else face_strains(geometry, face)[:1]
         columns = columns_at(system, dofs, strains)
         approach = columns[:, :1]
-        law: MeshContact | LoadedTeeth = spring
-        coast_law: MeshContact | LoadedTeeth = _back(spring)
-        blow = []
-        teeth = along or load.contact_map(force)
-        if teeth is not None:
-            # A map begins where its flanks touch, a spring about a mean state does not.
-            touching = replace(spring, error_mean=_gap(system, replace(force, face=None) if along else force))
-            law = _loaded_teeth(touching, teeth, force, load.path_phase(contact) or 0.0)
-            if spring.impact:
-                impact = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
-                blow.append(LocalPart(part, f"{label} impact", impact, approach))
-            if spring.gap != "bilateral":
-                other_teeth = load.coast_map(force)
-                assert other_teeth is not None  # its working load is that of the other flank
-                phase = load.on_other_flank(contact.mesh).path_phase(contact) or 0.0
-                coast_law = _loaded_teeth(_back(touching), other_teeth, force.on_other_flank, phase)
-                if spring.gap == "dead zone" and not along:
-                    law = replace(law, coast=coast_law)
         rotation = columns_at(system, dofs[:12], rotation_vector(force)[None])[:, 0]
         transverse = float(np.cos(contact.base_helix_angle))
-        working = LocalPart(part, label, law, columns, rotation, transverse)
-        found += [working, *blow] if along else [*blow, working]
-        rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], approach)
-        if rubbing is not None:
-            found.append(rubbing)
+
+        working: MeshContact | LoadedTeeth = spring
+        behind: MeshContact | LoadedTeeth = _back(spring)
+        teeth = along or state.contact_map(force)
+        blows = []
+        if teeth is not None:
+            # A map begins where its flanks touch, a spring about a mean state does not.
+            gap = (replace(force, face=None) if along else force).gap(system.model.meshes[contact.mesh])
+            touching = replace(spring, error_mean=gap)
+            working = _loaded_teeth(touching, teeth, force, state.path_phase(contact) or 0.0)
+            if spring.impact:
+                impact = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
+                blows.append(LocalPart(address, f"{label} impact", impact, approach))
+            if spring.gap != "bilateral":
+                coast = state.coast_map(force)
+                assert coast is not None  # its working load is that of the other flank
+                phase = state.on_other_flank(contact.mesh).path_phase(contact) or 0.0
+                behind = _loaded_teeth(_back(touching), coast, force.on_other_flank, phase)
+                if spring.gap == "dead zone" and not along:
+                    working = replace(working, coast=behind)
+        # Forces are summed in the order of their parts.
+        part = LocalPart(address, label, working, columns, rotation, transverse)
+        yield from (part, *blows) if along else (*blows, part)
+        yield from friction_part(system, force, geometry, label, spring, dofs[:12], approach)
         # Coast flanks behind those that tilt stand askew as in the mean state, and so are no part of the same law.
         if spring.gap == "unilateral" or (along and spring.gap == "dead zone"):
             turned = replace(geometry, torque_sense=-geometry.torque_sense)
-            own_normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
-            column = own_normal if spring.gap == "unilateral" else -approach
-            found.append(LocalPart(part, f"{label} back", coast_law, column, -rotation, transverse))
-    return found
+            normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
+            column = normal if spring.gap == "unilateral" else -approach
+            yield LocalPart(address, f"{label} back", behind, column, -rotation, transverse)
 
 
 def _loaded_teeth(spring: MeshContact, teeth: ContactMap | FaceMap, force: MeshForce, phase: float) -> LoadedTeeth:
@@ -249,7 +254,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         ramp = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
-    error = _gap(system, force)
+    error = force.gap(mesh)
     if force.start is not None:  # a tangent about a mean state carries nothing elsewhere than the contact does
         error -= force.start / contact.stiffness
     impact = mesh.corner_impact
@@ -273,13 +278,6 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         pieces=cycle_pieces(system, force),
         **blow,
     )
-
-
-def _gap(system: System, force: MeshForce) -> float:
-    """What must close before a contact carries (m): index errors, and what the tilt of its state adds at its place."""
-    mesh = system.layout.mesh(force.contact.mesh).part
-    gap = mesh.index_error + (mesh.helix_index_error if force.contact.helix else 0.0)
-    return gap if force.face is None else gap + force.face.shift
 
 
 def _back(law: MeshContact) -> MeshContact:
@@ -335,6 +333,8 @@ def teeth_law(
         face: how the mean state carries along a face that has maps.
         more: further parameters of the law.
     """
+    from scipy.interpolate import PchipInterpolator
+
     from rotorgear.forces.loaded_teeth import LoadedTeeth
     from rotorgear.gears.maps.contact_map import ContactMap
 
@@ -352,14 +352,3 @@ def teeth_law(
         given |= {"place": face.place, "tilt_stiffness": face.tilt_stiffness}
     moment = np.stack([PchipInterpolator(one.load, one.moment, axis=1)(load) for one in maps])
     return LoadedTeeth(load, approach, stiffness, tilt=teeth.tilt, moment=moment, **given)
-
-
-def face_law(face_map: FaceMap, stiffness: float, gap: float) -> LoadedTeeth:
-    """(F, M) of approach and tilt without damping, at an angle that is 2 pi times the place u on the map.
-
-    Args:
-        face_map: of the helix.
-        stiffness: of its mean state along the flank normal (N/m).
-        gap: index error (m).
-    """
-    return teeth_law(face_map, stiffness, gap, order=1.0)

@@ -7,26 +7,30 @@ A law is imported where a model has it, because its import compiles it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
-from rotorgear.elements.spring import rigid_transfer
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
-from rotorgear.model.parts.supports import Bearing, element_law
+from rotorgear.model.parts.supports import element_law
+from rotorgear.quantity import ZERO_CELSIUS
 from rotorgear.solvers.time.local_system import Rotation
-from rotorgear.system.groups import ElementGroup, node_dofs
+from rotorgear.system.groups import node_dofs, relative_motion
 from rotorgear.system.loads import wrench_load
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
     from rotorgear.forces.mesh_contact import MeshContact
+
+
+# Temperatures in deg C beyond which mineral oil is no liquid, and Vogel's equation no viscosity.
+_LIQUID = (-60.0, 200.0)
 
 
 @dataclass(frozen=True)
@@ -60,27 +64,42 @@ def columns_at(system: System, dofs: np.ndarray, rows: np.ndarray) -> np.ndarray
     return found
 
 
+def _joined(system: System, address: str, law: ForceLaw, components: list[int]) -> LocalPart:
+    """A law between a shaft and what its part stands on, along some of the six relative displacements."""
+    film = system.state.films.get(address)
+    if film is not None:
+        law = law.kept_at(film.temperature, film.inlet)  # type: ignore[attr-defined]
+    dofs, relative = relative_motion(system.layout, system.nodes, address)
+    return LocalPart(address, address.partition(".")[2], law, columns_at(system, dofs, relative[components]))
+
+
 def element_parts(system: System) -> Iterator[LocalPart]:
     """Yield the general nonlinear elements: displacements of their shaft, against the ground or another shaft."""
     for name, element in system.model.nonlinear_elements.items():
-        part = f"nonlinear_elements.{name}"
-        rows = np.eye(6)[[DOF_NAMES.index(direction) for direction in element.directions]]
-        node, *other = (system.nodes.at(*place) for place in system.layout.places(part))
-        columns = columns_at(system, node_dofs(node)[0], rows)
-        for second in other:
-            columns -= columns_at(system, node_dofs(second)[0], rows)
-        seat = system.layout.seat(part)
-        if seat is not None:
-            at_seat = rows @ rigid_transfer(seat.arm)
-            columns -= columns_at(system, system.nodes.of_seat(seat.casing, seat.number), at_seat)
-        law = _kept(system, part, element_law(element, float(system.train.ratio(element.shaft))))
-        yield LocalPart(part, name, law, columns)
+        law = element_law(element, float(system.train.ratio(element.shaft)))
+        along = [DOF_NAMES.index(direction) for direction in element.directions]
+        yield _joined(system, f"nonlinear_elements.{name}", law, along)
 
 
-def _kept(system: System, part: str, law: ForceLaw) -> ForceLaw:
-    """A law with what the state keeps of its film."""
-    film = system.state.films.get(part)
-    return law.kept_at(film.temperature, film.inlet) if film else law  # type: ignore[attr-defined]
+def bearing_parts(system: System) -> Iterator[LocalPart]:
+    """Yield the bearings with a force law: rolling elements or an oil film.
+
+    Raises:
+        AnalysisError: the oil of a film would flow in as no liquid.
+    """
+    operation = system.model.operation
+    built_for = -1.0 if operation and (operation.speed or 0.0) < 0.0 else 1.0
+    for name, bearing in system.model.bearings.items():
+        if not bearing.has_law:
+            continue
+        inlet = bearing.film.inlet_temperature if bearing.film is not None else None
+        if inlet is not None and not _LIQUID[0] <= inlet - ZERO_CELSIUS <= _LIQUID[1]:
+            raise AnalysisError(
+                f"bearings.{name}: the oil would flow in at {inlet - ZERO_CELSIUS:.4g} degC, where mineral oil is no liquid "
+                f"({_LIQUID[0]:g} to {_LIQUID[1]:g} degC); check inlet_temperature and its unit"
+            )
+        law = bearing.law(float(system.train.ratio(bearing.shaft)), built_for)
+        yield _joined(system, f"bearings.{name}", law, list(range(law.components)))
 
 
 def without_linear_part(system: System) -> list[LocalPart]:
@@ -117,40 +136,6 @@ def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
     return np.diag(largest)
 
 
-def is_rolling(system: System, group: ElementGroup) -> bool:
-    """Whether the stiffness of a group gives way to the force law of a bearing."""
-    table, _, name = group.part.partition(".")
-    return table == "bearings" and name in system.model.bearings and system.model.bearings[name].has_law
-
-
-def without_stiffness(group: ElementGroup) -> ElementGroup:
-    """Return a group with its dampers only."""
-    return replace(group, matrices=replace(group.matrices, modulus=None, circulation=None))
-
-
-def bearing_parts(system: System) -> Iterator[LocalPart]:
-    """Yield the bearings with a force law: rolling elements or an oil film."""
-    operation = system.model.operation
-    built_for = -1.0 if operation and (operation.speed or 0.0) < 0.0 else 1.0
-    for name, bearing in system.model.bearings.items():
-        if not bearing.has_law:
-            continue
-        check_oil(f"bearings.{name}", bearing)
-        law = _kept(
-            system, f"bearings.{name}", bearing_law(bearing, float(system.train.ratio(bearing.shaft)), built_for)
-        )
-        rows = np.eye(6)[: law.components]
-        dofs = node_dofs(system.nodes.at(*system.layout.place(f"bearings.{name}")))[0]
-        seat = system.layout.seat(f"bearings.{name}")
-        if seat is not None:
-            dofs = np.concatenate([dofs, system.nodes.of_seat(seat.casing, seat.number)])
-            rows = np.hstack([rows, -rows @ rigid_transfer(seat.arm)])
-        if bearing.pedestal is not None:
-            dofs = np.concatenate([dofs, node_dofs(system.nodes.of_pedestal(name))[0]])
-            rows = np.hstack([rows, -rows])
-        yield LocalPart(f"bearings.{name}", name, law, columns_at(system, dofs, rows))
-
-
 def friction_part(
     system: System,
     force: MeshForce,
@@ -159,13 +144,13 @@ def friction_part(
     contact: MeshContact,
     dofs: np.ndarray,
     column: np.ndarray,
-) -> LocalPart | None:
-    """Friction of one helix; None where the mesh has none."""
+) -> Iterator[LocalPart]:
+    """Yield the friction of one helix, where the mesh has one."""
     both = system.layout.mesh(force.contact.mesh)
     mesh = both.part
     pair = both.pair
     if not mesh.rubs or pair is None:
-        return None
+        return
     from rotorgear.forces.mesh_friction import MeshFriction
 
     teeth = both.pinion.geometry
@@ -189,7 +174,7 @@ def friction_part(
         rolling=float(rolling),
     )
     across = columns_at(system, dofs, np.array([[1.0], [sense]]) * sliding_vectors(geometry))
-    return LocalPart(f"meshes.{both.name}", f"{label} friction", law, np.hstack([column, across]))
+    yield LocalPart(f"meshes.{both.name}", f"{label} friction", law, np.hstack([column, across]))
 
 
 def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
@@ -274,35 +259,3 @@ def varying_load(system: System, name: str) -> Load | None:
     table, _, own = name.partition(".")
     load = system.model.loads.get(own) if table == "loads" else None
     return load if load is not None and load.varies else None
-
-
-# Temperatures in deg C beyond which mineral oil is no liquid, and Vogel's equation no viscosity.
-_CELSIUS = 273.15
-
-_LIQUID = (-60.0, 200.0)
-
-
-def check_oil(address: str, bearing: Bearing) -> None:
-    """The oil of a film in heat balance flows in as a liquid.
-
-    Raises:
-        AnalysisError: it does not.
-    """
-    given = bearing.film.inlet_temperature if bearing.film is not None else None
-    if given is not None and not _LIQUID[0] <= given - _CELSIUS <= _LIQUID[1]:
-        raise AnalysisError(
-            f"{address}: the oil would flow in at {given - _CELSIUS:.4g} degC, where mineral oil is no liquid "
-            f"({_LIQUID[0]:g} to {_LIQUID[1]:g} degC); check inlet_temperature and its unit"
-        )
-
-
-def bearing_law(bearing: Bearing, ratio: float, sense: float) -> ForceLaw:
-    """The law of a bearing that has one.
-
-    Args:
-        bearing: with a geometry. ratio: turns of its shaft for each turn of the reference.
-        sense: of rotation of the reference for which it is built, 1 or -1.
-    """
-    assert bearing.geometry is not None
-    linear = [row[i] for i, row in enumerate(bearing.stiffness.as_rows())] if bearing.stiffness else [0.0] * 6
-    return bearing.geometry.law(ratio, sense, linear)

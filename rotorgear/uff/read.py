@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.quantity import GRAVITY
 from rotorgear.uff.blocks import Block, Where, blocks_of, columns, is_whole, numbers_in, numbers_of, sizes_of, whole_in
 from rotorgear.uff.datasets import (
     ACCELERATION,
@@ -53,7 +54,7 @@ _LABELS = {
     "mm/s": 1e-3,
     "m/s2": 1.0,
     "mm/s2": 1e-3,
-    "g": 9.80665,
+    "g": GRAVITY,
     "n": 1.0,
     "kn": 1e3,
     "lbf": 4.4482216152605,

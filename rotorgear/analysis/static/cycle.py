@@ -318,7 +318,7 @@ class _Problem:
         """The law of each contact that has a face map, by its number."""
         stiffness = self.equilibrium.lines.stiffness
         return {
-            i: face_law(face_map, float(stiffness[i]), float(self.gap[i]))
+            i: teeth_law(face_map, float(stiffness[i]), float(self.gap[i]), order=1.0)
             for i, face_map in enumerate(self.face_maps)
             if face_map is not None
         }

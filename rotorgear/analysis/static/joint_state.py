@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.model.layout.state import FaceState
-from rotorgear.system.local import face_law
+from rotorgear.system.local import teeth_law
 
 if TYPE_CHECKING:
     from rotorgear.gears.maps.contact_map import ContactMap
@@ -109,7 +109,7 @@ class JointState:
         if contact_map is not None:
             return contact_map.force(delta - self.gap[contact], u)
         assert face_map is not None
-        law = face_law(face_map, float(self.stiffness[contact]), float(self.gap[contact]))
+        law = teeth_law(face_map, float(self.stiffness[contact]), float(self.gap[contact]), order=1.0)
         tilt = cycle.tilt[:, contact]
         d = np.stack([delta - self._places[contact] * tilt, tilt], axis=1)
         return law.evaluate_many(d, 0.0 * d, angle=2.0 * math.pi * u).force[:, 0]

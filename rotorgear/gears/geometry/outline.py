@@ -23,7 +23,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
@@ -77,6 +76,8 @@ def _point(outline: ToothOutline, share: np.ndarray) -> tuple[np.ndarray, np.nda
 
 def root_section(outline: ToothOutline) -> RootSection:
     """Section at the 30 degree tangent of a tooth."""
+    from scipy.optimize import brentq  # here: it loads much, and models without gears have no need of it
+
     ends = (2.0 * _STEP, 1.0 - 2.0 * _STEP)
     steeper = [tangent_angle(outline, share) - TANGENT for share in ends]
     # A short fillet may have no such tangent: then its nearer end stands for it.
@@ -274,5 +275,7 @@ def _crossing(g: GearGeometry, base_half_angle: float) -> tuple[float, float]:
     last = int(inside[-1])
     if last == _SCAN - 1:
         raise AnalysisError(_cut_through(g))
+    from scipy.optimize import brentq
+
     angle = brentq(outside, angles[last + 1], angles[last], xtol=1e-15, rtol=1e-14)
     return roll(angle), float(angle)

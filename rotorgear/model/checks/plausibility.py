@@ -23,9 +23,8 @@ from rotorgear.model.parts.load import Load, LoadHistory
 from rotorgear.model.parts.operation import Operation
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.quantity import GRAVITY, RPM_PER_RAD_S
 
-_GRAVITY = 9.81
 # What a value is asked that may be wrong either way, and a share that is too large.
 _ASK = ("is its unit right?", "is its unit right?")
 _PERCENT = ("", "percent meant?")
@@ -209,7 +208,7 @@ def _mesh(address: str, mesh: MeshLayout) -> Iterator[Judged]:
 def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]:
     mass = _mass_of(layout, bearing.shaft)
     sharing = sum(other.shaft == bearing.shaft for other in layout.model.bearings.values())
-    weight = _GRAVITY * mass / sharing if layout.model.has("bending") else 0.0
+    weight = GRAVITY * mass / sharing if layout.model.has("bending") else 0.0
     matrix = bearing.stiffness or (bearing.table[0].stiffness if bearing.table else None)
     if matrix is not None:
         yield from _stiffness(f"{address}.stiffness", matrix, weight)
@@ -310,7 +309,7 @@ def _operation(layout: Layout) -> Iterator[Judged]:
         thick = max((section.outer_diameter for section in shaft.sections), default=0.0)
         if thick:
             mass = _mass_of(layout, name)
-            stress = 8.0 * _GRAVITY * mass * shaft.length / (math.pi * thick**3)
+            stress = 8.0 * GRAVITY * mass * shaft.length / (math.pi * thick**3)
             got = f"{mass:.4g} kg with what it carries, under which it would have {1e-6 * stress:.3g} MPa"
             slips = ("", "is a mass in g, or a density off?")
             yield f"shafts.{name}", stress, (0.0, _WEIGHT), (got, "up to 300 MPa"), slips

@@ -89,6 +89,11 @@ class MeshForce:
         """The same contact where the flanks on the other side of the teeth work."""
         return replace(self, torque_sense=-self.torque_sense, pinion_drives=not self.pinion_drives, start=None)
 
+    def gap(self, mesh: Mesh) -> float:
+        """What must close before the contact carries (m): index errors, and what the tilt of its state adds at its place."""
+        own = mesh.index_error + (mesh.helix_index_error if self.contact.helix else 0.0)
+        return own if self.face is None else own + self.face.shift
+
     def about_face(self, face: FaceLoad, given: float, kind: Kind) -> MeshForce:
         """The contact linear about the load along its face; `given` is the misalignment (m) before the shafts tilt."""
         spring = face.static if kind == "static" else face.dynamic

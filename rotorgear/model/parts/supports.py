@@ -161,6 +161,17 @@ class Bearing(Part):
         """Whether its geometry gives a force law."""
         return self.geometry is not None
 
+    def law(self, ratio: float, sense: float) -> ForceLaw:
+        """The force law of a bearing that is given by its geometry.
+
+        Args:
+            ratio: turns of its shaft for each turn of the reference.
+            sense: of rotation of the reference for which it is built, 1 or -1.
+        """
+        assert self.geometry is not None
+        linear = [row[i] for i, row in enumerate(self.stiffness.as_rows())] if self.stiffness else [0.0] * 6
+        return self.geometry.law(ratio, sense, linear)
+
     @property
     def has_film(self) -> bool:
         """Whether oil carries in it, which it does only while its shaft turns."""

@@ -7,7 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.elements.shaft import shaft_elements
-from rotorgear.elements.spring import linking_spring, rigid_transfer
+from rotorgear.elements.spring import between, rigid_transfer, spring
 from tests.models import RHO, STEEL, elements
 
 
@@ -87,7 +87,7 @@ def test_two_points_on_different_axes_joined_by_a_coupling_are_free_in_all_rigid
     rng = np.random.default_rng(3)
     first = np.array([0.1, -0.2, 0.3])
     second = np.array([-0.2, 0.1, 0.9])
-    link = linking_spring(np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), np.zeros((6, 6)), first, second)
+    link = spring(between(first, second), np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), np.zeros((6, 6)))
     both = np.vstack([rigid_transfer(first), rigid_transfer(second)])
     assert link.strain is not None
     assert np.abs(link.strain[0] @ both @ rng.normal(size=6)).max() < 1e-14

@@ -9,14 +9,15 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.forces.oil_film import CELSIUS, film_temperature, oil_temperature, oil_viscosity
+from rotorgear.forces.oil_film import film_temperature, oil_temperature, oil_viscosity
 from rotorgear.forces.thrust_film import ThrustFilm
 from rotorgear.forces.tilting_pads import TiltingPads
+from rotorgear.quantity import ZERO_CELSIUS
 from tests.unit.analysis.bearing.test_bearing import journal_rotor
 
-OIL = {"grade": 46e-6, "inlet_temperature": 45.0 + CELSIUS}
+OIL = {"grade": 46e-6, "inlet_temperature": 45.0 + ZERO_CELSIUS}
 GRID = {"around": 60, "along": 4}
-MU = oil_viscosity(46e-6, 870.0, 45.0 + CELSIUS)
+MU = oil_viscosity(46e-6, 870.0, 45.0 + ZERO_CELSIUS)
 JOURNAL = JournalFilm(MU, 0.05, 0.05, 1e-4, follows=True, **GRID, **OIL)
 PADS = TiltingPads(MU, 0.05, 0.05, 1e-4, preload=0.3, at=-1.0, **GRID, **OIL)
 THRUST = ThrustFilm(MU, 40e-3, 70e-3, 60e-6, pads=6, arc=0.9, taper=40e-6, around=12, across=6, **OIL)
@@ -31,8 +32,8 @@ def test_oils_have_the_viscosities_of_their_grade(grade, at_100):
     """
     rho = 870.0
     hot = rho * (1.0 - 60.0 * 7e-4)
-    assert oil_viscosity(1e-6 * grade, rho, 40.0 + CELSIUS) / rho == pytest.approx(1e-6 * grade, rel=1e-4)
-    assert 1e6 * oil_viscosity(1e-6 * grade, rho, 100.0 + CELSIUS) / hot == pytest.approx(at_100, rel=0.05)
+    assert oil_viscosity(1e-6 * grade, rho, 40.0 + ZERO_CELSIUS) / rho == pytest.approx(1e-6 * grade, rel=1e-4)
+    assert 1e6 * oil_viscosity(1e-6 * grade, rho, 100.0 + ZERO_CELSIUS) / hot == pytest.approx(at_100, rel=0.05)
 
 
 def test_temperature_is_the_inverse_of_viscosity():
@@ -87,7 +88,7 @@ def test_film_and_equilibrium_agree_and_small_motions_are_those_of_the_warm_film
     sheet = rg.bearing(heated(), speeds=["1500 rpm", "3000 rpm"], stability=False)
     film = sheet.film
     assert sheet.consistency < 1e-6
-    heat = 870.0 * 1900.0 * film.side_flow * (film.outlet_temperature - 45.0 - CELSIUS)
+    heat = 870.0 * 1900.0 * film.side_flow * (film.outlet_temperature - 45.0 - ZERO_CELSIUS)
     assert heat == pytest.approx(film.power_loss, rel=1e-7)
     assert (
         sheet.over_speed[0].film_temperature
@@ -104,7 +105,7 @@ def test_film_and_equilibrium_agree_and_small_motions_are_those_of_the_warm_film
 
 def test_an_isothermal_film_has_the_viscosity_of_its_inlet():
     film = rg.bearing(heated(heat_share=0.0), speeds=[], stability=False).film
-    assert film.film_temperature == pytest.approx(45.0 + CELSIUS, abs=1e-9)
+    assert film.film_temperature == pytest.approx(45.0 + ZERO_CELSIUS, abs=1e-9)
     assert film.film_viscosity == pytest.approx(MU, rel=1e-12)
 
 

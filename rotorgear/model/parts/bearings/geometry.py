@@ -15,6 +15,7 @@ from pydantic import Field
 
 from rotorgear.errors import Problem
 from rotorgear.model.parts.fields import Density, Part, Ratio, SpecificHeat, Temperature, Viscosity
+from rotorgear.quantity import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
@@ -81,7 +82,6 @@ _FILM = (1e-4, 0.02)
 
 _VISCOSITY = (5e-5, 3.0)
 
-_CELSIUS = 273.15
 
 _INLET = (233.15, 423.15)
 
@@ -199,7 +199,7 @@ class Oil(BearingGeometry):
             words = (f"{self.viscosity:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
             yield "viscosity", self.viscosity, _VISCOSITY, words, ("is its unit right?", "mPa s (cP) meant?")
         if self.inlet_temperature is not None:
-            words = (f"{self.inlet_temperature - _CELSIUS:.4g} degC", "-40 to 150 degC")
+            words = (f"{self.inlet_temperature - ZERO_CELSIUS:.4g} degC", "-40 to 150 degC")
             slips = ("degC meant, not K?", "is its unit right?")
             yield "inlet_temperature", self.inlet_temperature, _INLET, words, slips
         words = (f"{self.density:.4g} kg/m^3", f"{_OIL[0]:g} to {_OIL[1]:g} kg/m^3")

@@ -177,7 +177,7 @@ def test_a_split_torque_gearbox_stands_in_its_films_at_its_own_loads_and_runs_st
         name = row.part.removeprefix("bearings.")
         assert found.bearing_force[name][:2] == pytest.approx(-row.force, rel=1e-6)
         bearing = model.bearings[name]
-        law = bearing_law(bearing, float(model.layout.train.ratio(bearing.shaft)), 1.0)
+        law = bearing.law(float(model.layout.train.ratio(bearing.shaft)), 1.0)
         there = law.settled(row.displacement).evaluate(row.displacement, speed=speed)
         np.testing.assert_allclose(there.force, row.force, rtol=0.0, atol=1e-6 * np.abs(row.force).max())
         np.testing.assert_allclose(there.in_displacement, row.stiffness, rtol=1e-12)
