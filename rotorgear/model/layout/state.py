@@ -25,6 +25,7 @@ from rotorgear.model.layout.assembly import ToothNumbers, tooth_numbers
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
 from rotorgear.model.layout.spring import Spring, given_spring
+from rotorgear.model.parts.mesh import Mesh
 from rotorgear.note import Note
 
 if TYPE_CHECKING:

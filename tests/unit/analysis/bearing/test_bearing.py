@@ -10,7 +10,6 @@ from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.journal_film import JournalFilm
 from rotorgear.forces.rolling import line_pressure, point_pressure
-from rotorgear.system.local_parts import bearing_law
 from tests.models import disk_in_bearing
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
