@@ -290,8 +290,8 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
         else:
             surface = beam(start, end, 0.3 * radius)
             to_second = np.arange(8) >= 4
-        carried = [skeleton.rigid(s, z, surface.points) for s, z in zip(shafts, (z1, z2), strict=True)]
-        yield Piece(f"couplings.{name}", "coupling", shafts[0], surface, _select(carried, to_second.astype(int)))
+        by_ends = [skeleton.rigid(s, z, surface.points) for s, z in zip(shafts, (z1, z2), strict=True)]
+        yield Piece(f"couplings.{name}", "coupling", shafts[0], surface, _select(by_ends, to_second.astype(int)))
 
 
 def _select(choices: list[Attachment], which: np.ndarray) -> Attachment:
