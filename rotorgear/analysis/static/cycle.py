@@ -32,7 +32,7 @@ from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.layout.state import FaceState
 from rotorgear.solvers.sparse.newton import Settled, settle
-from rotorgear.system.local import face_law
+from rotorgear.system.local import teeth_law
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
