@@ -24,17 +24,28 @@ _MOST_HEADER_LINES = 40
 _CLOSES = re.compile(rb"[\r\n]{0,2} {0,4}-1 *(?:[\r\n]|\Z)")
 # What programs write before or after the sets; nothing is lost with it.
 _BLANK = "\x00\x1a \t\r\n"
+# Columns may touch (-1.0E+00-1.0E+00), exponents may have a D, three digits, or no letter at all (0.1-100).
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,3}|[+-]\d{3}(?!\d*\.))?")
+# Nothing that is measured is larger, in any unit; what is comes from columns that have run together.
+_LARGEST = 1e100
+_LONGEST_WHOLE = 1e10
 
 
 @dataclass(frozen=True)
 class Block:
-    """One dataset: its number, the line of the file it begins in, its identifier and lines of text, and bytes of a binary one."""
+    """One dataset: its file, its number, the line it begins in, its identifier and lines of text, and bytes of a binary one."""
 
+    file: str
     number: int
     line: int
     identifier: str
     lines: tuple[str, ...]
     data: bytes | None = None
+
+    def problem(self, row: int, expected: str, value: str = "") -> ModelError:
+        """An error at a row of the set, counted from 1; row 0 is the set as a whole."""
+        address = f"{self.file}:{self.line + row} (dataset {self.number})"
+        return ModelError([Problem(address, value, expected)], self.file)
 
 
 @dataclass
@@ -89,7 +100,7 @@ def blocks_of(data: bytes, name: str) -> list[Block]:
         if _BINARY.match(text):
             found.append(_binary(cursor, text, name))
         else:
-            found.append(Block(int(number[1]), first, text, _text_lines(cursor, int(number[1]), name)))
+            found.append(Block(name, int(number[1]), first, text, _text_lines(cursor, int(number[1]), name)))
     return found
 
 
@@ -126,7 +137,7 @@ def _binary(cursor: _Cursor, identifier: str, name: str) -> Block:
         size = closing.start() - start
     cursor.at = closing.end()
     cursor.line += 1
-    return Block(58, first, identifier, lines, cursor.data[start : start + size])
+    return Block(name, 58, first, identifier, lines, cursor.data[start : start + size])
 
 
 def sizes_of(lines: tuple[str, ...]) -> tuple[int, ...]:
@@ -154,56 +165,37 @@ def _problem(name: str, line: int, expected: str, value: str = "") -> ModelError
     return ModelError([Problem(f"{name}:{line}", value, expected)], name)
 
 
-# Columns may touch (-1.0E+00-1.0E+00), exponents may have a D, three digits, or no letter at all (0.1-100).
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,3}|[+-]\d{3}(?!\d*\.))?")
-
-
-# Nothing that is measured is larger, in any unit; what is comes from columns that have run together.
-_LARGEST = 1e100
-_LONGEST_WHOLE = 1e10
-
-
-class Where:
-    """A dataset in a file, for messages about its lines."""
-
-    def __init__(self, file: str, number: int, first_line: int) -> None:
-        self.file = file
-        self.number = number
-        self.first_line = first_line
-
-    def problem(self, row: int, expected: str, value: str = "") -> ModelError:
-        """An error at a row of the set, counted from 1; row 0 is the set as a whole."""
-        address = f"{self.file}:{self.first_line + row} (dataset {self.number})"
-        return ModelError([Problem(address, value, expected)], self.file)
-
-
-def numbers_in(text: str, where: Where, row: int) -> list[float]:
+def numbers_in(text: str, block: Block, row: int) -> list[float]:
     """The numbers in a row.
 
     Raises:
         ModelError: something that is no finite number.
     """
     rest = _NUMBER.sub(" ", text).strip()
-    values = [] if rest else [_value(found) for found in _NUMBER.findall(text)]
+    # An exponent without a letter: 0.1-100.
+    parts = (
+        re.sub(r"([\d.])([+-]\d{3})\Z", r"\1e\2", found.upper().replace("D", "E")) for found in _NUMBER.findall(text)
+    )
+    values = [] if rest else [float(part) for part in parts]
     if rest or not all(abs(value) < _LARGEST for value in values):
-        raise where.problem(row, "numbers", repr(text.strip()[:60]))
+        raise block.problem(row, "numbers", repr(text.strip()[:60]))
     return values
 
 
-def numbers_of(rows: Iterable[tuple[int, str]], where: Where) -> NDArray[np.float64]:
+def numbers_of(rows: Iterable[tuple[int, str]], block: Block) -> NDArray[np.float64]:
     """The numbers in several rows, each with its place in the set."""
-    return np.array([value for row, text in rows for value in numbers_in(text, where, row)])
+    return np.array([value for row, text in rows for value in numbers_in(text, block, row)])
 
 
-def whole_in(text: str, where: Where, row: int, least: int) -> list[int]:
+def whole_in(text: str, block: Block, row: int, least: int) -> list[int]:
     """The whole numbers in a row, at least so many.
 
     Raises:
         ModelError: fewer of them, or others.
     """
-    values = numbers_in(text, where, row)
+    values = numbers_in(text, block, row)
     if len(values) < least or not all(map(is_whole, values[:least])):
-        raise where.problem(row, f"{least} whole numbers", repr(text.strip()[:60]))
+        raise block.problem(row, f"{least} whole numbers", repr(text.strip()[:60]))
     return [int(value) for value in values]
 
 
@@ -220,8 +212,3 @@ def columns(text: str, widths: Iterable[int]) -> list[str]:
         fields.append(text[at : at + width].strip())
         at += width
     return fields
-
-
-def _value(text: str) -> float:
-    mantissa = re.fullmatch(r"([+-]?[\d.]+)([+-]\d{3})", text)
-    return float(f"{mantissa[1]}e{mantissa[2]}") if mantissa else float(text.upper().replace("D", "E"))

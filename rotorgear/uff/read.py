@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
 from rotorgear.quantity import GRAVITY
-from rotorgear.uff.blocks import Block, Where, blocks_of, columns, is_whole, numbers_in, numbers_of, sizes_of, whole_in
+from rotorgear.uff.blocks import Block, blocks_of, columns, is_whole, numbers_in, numbers_of, sizes_of, whole_in
 from rotorgear.uff.datasets import (
     ACCELERATION,
     DISPLACEMENT,
@@ -66,38 +66,37 @@ _LENGTHS = (DISPLACEMENT, VELOCITY, ACCELERATION)
 _FORCES = (REACTION, FORCE)
 
 
-def read_function(block: Block, units: Units, file: str) -> tuple[Function, list[str]]:
+def read_function(block: Block, units: Units) -> tuple[Function, list[str]]:
     """Return a function in SI, and sentences on what had to be guessed.
 
     Raises:
         ModelError: a header that makes no sense, fewer values than it says, numbers that are not finite.
     """
-    where = Where(file, 58, block.line)
     lines = block.lines
     if len(lines) < 11:
-        raise where.problem(0, f"eleven header lines of a function, {len(lines)} are there")
-    kind, response, reference = _freedoms(lines[5], where)
-    form = numbers_in(lines[6], where, 7)
+        raise block.problem(0, f"eleven header lines of a function, {len(lines)} are there")
+    kind, response, reference = _freedoms(lines[5], block)
+    form = numbers_in(lines[6], block, 7)
     if len(form) < 3 or form[0] not in _KINDS or form[1] < 0 or not is_whole(form[1]):
         expected = "ordinate type 2, 4, 5 or 6, number of values and spacing"
-        raise where.problem(7, expected, repr(lines[6].strip()[:60]))
+        raise block.problem(7, expected, repr(lines[6].strip()[:60]))
     count = int(form[1])
     if count == 0:
-        raise where.problem(7, "the function has no values")
+        raise block.problem(7, "the function has no values")
     even = form[2] != 0
     first, step, z = ([*form[3:6], 0.0, 0.0, 0.0])[:3]
     notes: list[str] = []
     if block.data is None:
         rows = [(k, text) for k, text in enumerate(lines[11:], start=12) if text.strip()]
-        x, values = _parted(numbers_of(rows, where), count, int(form[0]), even, where)
+        x, values = _parted(numbers_of(rows, block), count, int(form[0]), even, block)
     else:
-        x, values, notes = _from_bytes(block, count, int(form[0]), even, where)
+        x, values, notes = _from_bytes(block, count, int(form[0]), even)
     if even and not step > 0.0 and count > 1:
-        raise where.problem(7, "a step of the abscissa above 0", f"{step:g}")
+        raise block.problem(7, "a step of the abscissa above 0", f"{step:g}")
     at = first + step * np.arange(len(values), dtype=float) if x is None else x
     if not (np.isfinite(at).all() and np.isfinite(values).all()):
-        raise where.problem(12, "finite numbers")
-    axes = [_axis(lines[k], where, k + 1) for k in (7, 8, 9, 10)]
+        raise block.problem(12, "finite numbers")
+    axes = [_axis(lines[k], block, k + 1) for k in (7, 8, 9, 10)]
     factor, unsure = _to_si(axes[1], axes[2], units)
     found = Function(
         kind,
@@ -119,7 +118,7 @@ def read_function(block: Block, units: Units, file: str) -> tuple[Function, list
 _FREEDOMS = re.compile(r"\s*(\d+)\s+-?\d+\s+-?\d+\s+-?\d+\s+\S+\s+(\d+)\s+([+-]?\d)\s+\S+\s+(\d+)\s+([+-]?\d)\s*")
 
 
-def _freedoms(text: str, where: Where) -> tuple[int, tuple[int, int], tuple[int, int]]:
+def _freedoms(text: str, block: Block) -> tuple[int, tuple[int, int], tuple[int, int]]:
     """Function type, then node and direction of response and reference.
 
     Many programs miss the columns by one or two, but leave blanks between: only what that does not settle is cut by columns.
@@ -130,17 +129,17 @@ def _freedoms(text: str, where: Where) -> tuple[int, tuple[int, int], tuple[int,
     try:
         kind, node, direction, other, along = (int(part) for part in parts)
     except ValueError:
-        raise where.problem(6, "function type, response and reference", repr(text.strip()[:70])) from None
+        raise block.problem(6, "function type, response and reference", repr(text.strip()[:70])) from None
     if abs(direction) > 6 or abs(along) > 6:
-        raise where.problem(6, "directions from -6 to 6", repr(text.strip()[:70]))
+        raise block.problem(6, "directions from -6 to 6", repr(text.strip()[:70]))
     return kind, (node, direction), (other, along)
 
 
-def _axis(text: str, where: Where, row: int) -> tuple[int, str]:
+def _axis(text: str, block: Block, row: int) -> tuple[int, str]:
     """Specific data type and unit label of an axis."""
     code = re.match(r"\s*(-?\d+)?(?:\s|\Z)", text)
     if code is None:
-        raise where.problem(row, "the specific data type of an axis", repr(text.strip()[:40]))
+        raise block.problem(row, "the specific data type of an axis", repr(text.strip()[:40]))
     label = columns(text, (25, 21, 21))[2]
     return int(code[1] or 0), "" if label.upper() == "NONE" else label
 
@@ -162,7 +161,7 @@ def _to_si(numerator: tuple[int, str], denominator: tuple[int, str], units: Unit
 
 
 def _parted(
-    numbers: NDArray[np.float64], count: int, kind: int, even: bool, where: Where
+    numbers: NDArray[np.float64], count: int, kind: int, even: bool, block: Block
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | NDArray[np.complex128]]:
     """Abscissa (None where even) and ordinates of `count` values that stand one after the other."""
     parts = 2 if kind in _COMPLEX else 1
@@ -173,25 +172,25 @@ def _parted(
         count //= 2
         rest = numbers[:0]
     if len(numbers) < count * each:
-        raise where.problem(
+        raise block.problem(
             12, f"the header says {count} values, but only {len(numbers) // each} are there: the set is cut"
         )
     if len(rest) > 6 or rest.any():
-        raise where.problem(12, f"the header says {count} values, but {len(numbers) / each:g} are there")
+        raise block.problem(12, f"the header says {count} values, but {len(numbers) / each:g} are there")
     table = numbers[: count * each].reshape(count, each)
     values = table[:, -2] + 1j * table[:, -1] if parts == 2 else table[:, -1]
     return (None if even else table[:, 0].copy()), values
 
 
 def _from_bytes(
-    block: Block, count: int, kind: int, even: bool, where: Where
+    block: Block, count: int, kind: int, even: bool
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | NDArray[np.complex128], list[str]]:
     """The same from binary data, with sentences on what had to be guessed."""
     data = block.data or b""
     fields = block.identifier[block.identifier.lower().index("b") + 1 :].split()
     order, form = ([int(field) if field.isdigit() else 0 for field in fields[:2]] + [0, 0])[:2]
     if form in _OTHER_FLOATS:
-        raise where.problem(0, f"IEEE numbers (format 2); the file has those of {_OTHER_FLOATS[form]}")
+        raise block.problem(0, f"IEEE numbers (format 2); the file has those of {_OTHER_FLOATS[form]}")
     size = "f8" if kind in (4, 6) else "f4"
     parts = 2 if kind in _COMPLEX else 1
     each = parts * int(size[1])
@@ -200,8 +199,8 @@ def _from_bytes(
     length = length or next((size_ for size_ in sizes if size_ <= len(data)), None)
     if length is None:
         if not sizes:
-            raise where.problem(7, "ordinate type, number of values and spacing as whole numbers")
-        raise where.problem(11, f"{min(sizes)} bytes by the header, but only {len(data)} are there: the set is cut")
+            raise block.problem(7, "ordinate type, number of values and spacing as whole numbers")
+        raise block.problem(11, f"{min(sizes)} bytes by the header, but only {len(data)} are there: the set is cut")
     found = []
     for mark in ("<", ">") if order == _LITTLE else (">", "<"):
         layout = np.dtype([("y", mark + size, (parts,))])
@@ -217,7 +216,7 @@ def _from_bytes(
         _, x, y = other
         notes.append("binary functions (58b) have another byte order than they say: read in the order that makes sense")
     elif declared < 0.5:
-        raise where.problem(11, "the bytes are no numbers of a measured size in either order: the set is damaged")
+        raise block.problem(11, "the bytes are no numbers of a measured size in either order: the set is damaged")
     return x, (y[:, 0] + 1j * y[:, 1] if parts == 2 else y[:, 0]), notes
 
 
@@ -264,7 +263,7 @@ def read_universal(path: str | Path) -> UniversalFile:
     blocks = blocks_of(data, file.name)
     if not blocks:
         raise ModelError([Problem(str(file), "", "a universal file (UFF) with datasets", "it has none")], str(file))
-    stated = [_units(block, file.name) for block in blocks if block.number == 164]
+    stated = [_units(block) for block in blocks if block.number == 164]
     units = stated[0] if stated else Units()
     notes = [] if stated else [f"{file.name} states no units (dataset 164): taken as m and N"]
     nodes: list[Nodes] = []
@@ -276,16 +275,14 @@ def read_universal(path: str | Path) -> UniversalFile:
         match block.number:
             case 164:
                 units = stated.pop(0)
-            case 15:
-                nodes.append(_nodes_15(block, units, file.name))
-            case 2411:
-                nodes.append(_nodes_2411(block, units, file.name))
+            case 15 | 2411:
+                nodes.append(_nodes(block, units))
             case 82:
-                lines.append(_line(block, file.name))
+                lines.append(_line(block))
             case 55:
-                shapes.append(_shape(block, file.name))
+                shapes.append(_shape(block))
             case 58:
-                found, unsure = read_function(block, units, file.name)
+                found, unsure = read_function(block, units)
                 functions.append(found)
                 notes += unsure
             case number:
@@ -301,20 +298,19 @@ def read_universal(path: str | Path) -> UniversalFile:
     )
 
 
-def _units(block: Block, file: str) -> Units:
-    where = Where(file, 164, block.line)
+def _units(block: Block) -> Units:
     if len(block.lines) < 2:
-        raise where.problem(0, "a units code, and factors of length and force")
+        raise block.problem(0, "a units code, and factors of length and force")
     code, description = columns(block.lines[0], (10, 20))
     rows = [(k, text) for k, text in enumerate(block.lines[1:], start=2) if text.strip()]
-    factors = numbers_of(rows, where)
+    factors = numbers_of(rows, block)
     if not code.isdigit() or len(factors) < 2 or not (factors[:2] > 0.0).all():
-        raise where.problem(2, "a units code, and factors of length and force above 0", " ".join(block.lines)[:70])
+        raise block.problem(2, "a units code, and factors of length and force above 0", " ".join(block.lines)[:70])
     given = (float(factors[0]), float(factors[1]))
     known = _CODES.get(int(code))
     if known and not np.allclose(given, known, rtol=0.01):
         # One of the two is wrong, and nobody here can tell which: a thousand times is not to be guessed.
-        raise where.problem(
+        raise block.problem(
             2,
             f"the factors {known[0]:g} and {known[1]:g} that units code {code} means; correct one of the two, or make it 9 "
             "(the user's own)",
@@ -323,35 +319,26 @@ def _units(block: Block, file: str) -> Units:
     return Units(*given, description, int(code))
 
 
-def _nodes_15(block: Block, units: Units, file: str) -> Nodes:
-    where = Where(file, 15, block.line)
-    rows = [numbers_in(text, where, k) for k, text in enumerate(block.lines, start=1) if text.strip()]
+def _nodes(block: Block, units: Units) -> Nodes:
+    """Datasets 15, a line a node, and 2411, two lines a node."""
+    rows = [numbers_in(text, block, k) for k, text in enumerate(block.lines, start=1) if text.strip()]
+    if block.number == 2411:
+        if len(rows) % 2 or any(len(row) < 4 for row in rows[::2]) or any(len(row) != 3 for row in rows[1::2]):
+            raise block.problem(0, "two lines a node: four whole numbers, then x, y and z")
+        rows = [[*head[:4], *xyz] for head, xyz in zip(rows[::2], rows[1::2], strict=True)]
     for k, row in enumerate(rows, start=1):
         if len(row) != 7:
-            raise where.problem(
-                k, "number, two coordinate systems, colour, x, y and z of a node", f"{len(row)} numbers"
-            )
-    return _table(np.array(rows).reshape(-1, 7)[:, [0, 2, 3, 4, 5, 6]], units, where)
-
-
-def _nodes_2411(block: Block, units: Units, file: str) -> Nodes:
-    where = Where(file, 2411, block.line)
-    rows = [numbers_in(text, where, k) for k, text in enumerate(block.lines, start=1) if text.strip()]
-    if len(rows) % 2 or any(len(row) < 4 for row in rows[::2]) or any(len(row) != 3 for row in rows[1::2]):
-        raise where.problem(0, "two lines a node: four whole numbers, then x, y and z")
-    table = [[head[0], head[2], head[3], *xyz] for head, xyz in zip(rows[::2], rows[1::2], strict=True)]
-    return _table(np.array(table).reshape(-1, 6), units, where)
-
-
-def _table(rows: np.ndarray, units: Units, where: Where) -> Nodes:
-    if not len(rows):
-        raise where.problem(0, "the set has no nodes")
-    if not np.isfinite(rows).all():
-        raise where.problem(0, "finite coordinates of nodes")
-    if not all(map(is_whole, rows[:, :3].ravel())):
-        raise where.problem(0, "whole numbers of nodes, coordinate systems and colours")
-    whole = rows[:, :3].astype(int)
-    return Nodes(whole[:, 0], rows[:, 3:] / units.length, whole[:, 1], whole[:, 2])
+            expected = "number, two coordinate systems, colour, x, y and z of a node"
+            raise block.problem(k, expected, f"{len(row)} numbers")
+    table = np.array(rows).reshape(-1, 7)[:, [0, 2, 3, 4, 5, 6]]
+    if not len(table):
+        raise block.problem(0, "the set has no nodes")
+    if not np.isfinite(table).all():
+        raise block.problem(0, "finite coordinates of nodes")
+    if not all(map(is_whole, table[:, :3].ravel())):
+        raise block.problem(0, "whole numbers of nodes, coordinate systems and colours")
+    whole = table[:, :3].astype(int)
+    return Nodes(whole[:, 0], table[:, 3:] / units.length, whole[:, 1], whole[:, 2])
 
 
 def _joined(nodes: list[Nodes], file: str) -> Nodes | None:
@@ -372,31 +359,29 @@ def _joined(nodes: list[Nodes], file: str) -> Nodes | None:
     return Nodes(found.numbers[keep], found.positions[keep], found.systems[keep], found.colours[keep])
 
 
-def _line(block: Block, file: str) -> TraceLine:
-    where = Where(file, 82, block.line)
+def _line(block: Block) -> TraceLine:
     if len(block.lines) < 2:
-        raise where.problem(0, "number and name of a trace line, and its nodes")
-    number, count = whole_in(block.lines[0], where, 1, 2)[:2]
+        raise block.problem(0, "number and name of a trace line, and its nodes")
+    number, count = whole_in(block.lines[0], block, 1, 2)[:2]
     rows = [(k, text) for k, text in enumerate(block.lines[2:], start=3) if text.strip()]
-    numbers = numbers_of(rows, where)
+    numbers = numbers_of(rows, block)
     if not all(map(is_whole, numbers)):
-        raise where.problem(3, "numbers of nodes")
+        raise block.problem(3, "numbers of nodes")
     nodes = numbers.astype(int)
     if len(nodes) < count:
-        raise where.problem(3, f"{count} nodes of the trace line, {len(nodes)} are there: the set is cut")
+        raise block.problem(3, f"{count} nodes of the trace line, {len(nodes)} are there: the set is cut")
     return TraceLine(number, block.lines[1].strip(), nodes[:count])
 
 
-def _shape(block: Block, file: str) -> Shape:
-    where = Where(file, 55, block.line)
+def _shape(block: Block) -> Shape:
     lines = block.lines
     if len(lines) < 8:
-        raise where.problem(0, "eight header lines of a shape, and rows of nodes: the set is cut")
-    _, analysis, _, data_type, kind, each = whole_in(lines[5], where, 6, 6)[:6]
+        raise block.problem(0, "eight header lines of a shape, and rows of nodes: the set is cut")
+    _, analysis, _, data_type, kind, each = whole_in(lines[5], block, 6, 6)[:6]
     if kind not in (2, 5) or each < 1:
-        raise where.problem(6, "data type 2 (real) or 5 (complex), and numbers a node", repr(lines[5].strip()))
-    mode = [*whole_in(lines[6], where, 7, 3), 1][3]
-    facts = numbers_in(lines[7], where, 8)
+        raise block.problem(6, "data type 2 (real) or 5 (complex), and numbers a node", repr(lines[5].strip()))
+    mode = [*whole_in(lines[6], block, 7, 3), 1][3]
+    facts = numbers_in(lines[7], block, 8)
     eigenvalue = None
     if analysis == _NORMAL:
         frequency = facts[0] if facts else math.nan
@@ -407,8 +392,8 @@ def _shape(block: Block, file: str) -> Shape:
         frequency = size / (2.0 * math.pi)
         damping = -eigenvalue.real / size if size > 0.0 else 0.0
     else:
-        raise where.problem(6, "a normal (2) or complex (3, 7) mode", f"analysis type {analysis}")
-    nodes, values = _node_values(lines[8:], each * (2 if kind == 5 else 1), where)
+        raise block.problem(6, "a normal (2) or complex (3, 7) mode", f"analysis type {analysis}")
+    nodes, values = _node_values(lines[8:], each * (2 if kind == 5 else 1), block)
     if kind == 5:
         values = values[:, 0::2] + 1j * values[:, 1::2]
     return Shape(
@@ -423,27 +408,27 @@ def _shape(block: Block, file: str) -> Shape:
     )
 
 
-def _node_values(lines: tuple[str, ...], each: int, where: Where) -> tuple[np.ndarray, np.ndarray]:
+def _node_values(lines: tuple[str, ...], each: int, block: Block) -> tuple[np.ndarray, np.ndarray]:
     """Numbers of nodes (n,), and `each` numbers at every one (n, each)."""
-    rows = [(k, numbers_in(text, where, k)) for k, text in enumerate(lines, start=9) if text.strip()]
+    rows = [(k, numbers_in(text, block, k)) for k, text in enumerate(lines, start=9) if text.strip()]
     if not rows:
-        raise where.problem(9, "the shape has no nodes")
+        raise block.problem(9, "the shape has no nodes")
     nodes: list[int] = []
     values: list[list[float]] = []
     at = 0
     while at < len(rows):
         row, head = rows[at]
         if len(head) != 1 or not is_whole(head[0]):
-            raise where.problem(row, "the number of a node in a line of its own", f"{len(head)} numbers")
+            raise block.problem(row, "the number of a node in a line of its own", f"{len(head)} numbers")
         at += 1
         found: list[float] = []
         while len(found) < each and at < len(rows):
             found += rows[at][1]
             at += 1
         if len(found) != each:
-            raise where.problem(rows[at - 1][0], f"{each} values at node {int(head[0])}", str(len(found)))
+            raise block.problem(rows[at - 1][0], f"{each} values at node {int(head[0])}", str(len(found)))
         if int(head[0]) in nodes and found != values[nodes.index(int(head[0]))]:
-            raise where.problem(row, "every node once", f"node {int(head[0])} again, with other values")
+            raise block.problem(row, "every node once", f"node {int(head[0])} again, with other values")
         nodes.append(int(head[0]))
         values.append(found)
     return np.array(nodes), np.array(values)

@@ -16,7 +16,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from rotorgear.analysis.bearing.state import (
-    Carried,
     address_of,
     by_its_law,
     carried,
@@ -148,8 +147,34 @@ def bearing(
     asked = (
         [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
     )
-    found, notes = _states(own, sorted(asked, key=abs), progress)
-    rows = [_row(speed, law_at(equilibrium, address), ratio * speed) for speed, equilibrium in found.items()]
+    # Each equilibrium is begun where the one before stands; a speed without one is a warning.
+    found: dict[float, Equilibrated] = {}
+    notes = []
+    near: Sequence[LawState] = ()
+    rows = []
+    for number, at in enumerate(dict.fromkeys(sorted(asked, key=abs))):
+        progress(0.3 + 0.2 * number / len(asked), f"{at * RPM_PER_RAD_S:.6g} rpm")
+        try:
+            found[at] = equilibrium_of(own, at, near)
+        except AnalysisError as missing:
+            notes.append(f"{at * RPM_PER_RAD_S:.6g} rpm is left out: {missing}")
+            continue
+        near = found[at].laws
+        there = law_at(found[at], address)
+        mass, whirl = rigid_threshold(there.stiffness[:2, :2], there.damping[:2, :2], ratio * at)
+        rows.append(
+            BearingSpeed(
+                speed=at,
+                load=there.force,
+                displacement=there.d,
+                stiffness=there.stiffness,
+                damping=there.damping,
+                critical_mass=mass,
+                whirl_ratio=whirl,
+                film_temperature=getattr(there.part.law, "temperature", None),
+                log_decrement=None,
+            )
+        )
     threshold = None
     if stability and found:
         progress(0.5, "stability")
@@ -159,6 +184,13 @@ def bearing(
         rows = [replace(row, log_decrement=one) for row, one in zip(rows, least, strict=True)]
         progress(0.85, "threshold")
         threshold = decrements.threshold(list(found), least, laws)
+    # What the sheet says of the inside, under its name there.
+    told: dict[str, Any] = {}
+    if inside is not None:
+        declared = BearingSheet.declarations[inside.told_as]
+        assert declared.record is not None
+        records = tuple(declared.record(**row) for row in inside.told(law, here.force, here.d, ratio * given))
+        told = {inside.told_as: records if declared.axes else records[0]}
     progress(1.0, "done")
     return BearingSheet(
         model=model,
@@ -174,7 +206,7 @@ def bearing(
         bearing_stiffness=here.stiffness,
         bearing_damping=here.damping,
         averaged=bool(law.cycle()) and bool(given),
-        **_told(inside, here, ratio * given),
+        **told,
         over_speed=tuple(rows),
         threshold_speed=threshold[0] if threshold else None,
         threshold_frequency_hz=threshold[1] if threshold else None,
@@ -184,48 +216,6 @@ def bearing(
         left_out=tuple(_left_out(model, address, law, inside)),
         warnings=tuple(notes),
         method="equilibrium of the whole gearbox, Newton's method; tangents of the bearing's law",
-    )
-
-
-def _told(inside: RollingLoads | OilField | None, here: Carried, shaft_speed: float) -> dict[str, Any]:
-    """What the sheet says of the inside, under its name there."""
-    if inside is None:
-        return {}
-    declared = BearingSheet.declarations[inside.told_as]
-    assert declared.record is not None
-    records = tuple(declared.record(**row) for row in inside.told(here.law, here.force, here.d, shaft_speed))
-    return {inside.told_as: records if declared.axes else records[0]}
-
-
-def _states(model: Model, speeds: list[float], progress: Progress) -> tuple[dict[float, Equilibrated], list[str]]:
-    """The equilibria at speeds, each begun where the one before stands; a speed without one is a warning."""
-    found: dict[float, Equilibrated] = {}
-    notes = []
-    near: Sequence[LawState] = ()
-    for number, speed in enumerate(dict.fromkeys(speeds)):
-        progress(0.3 + 0.2 * number / len(speeds), f"{speed * RPM_PER_RAD_S:.6g} rpm")
-        try:
-            found[speed] = equilibrium_of(model, speed, near)
-        except AnalysisError as error:
-            notes.append(f"{speed * RPM_PER_RAD_S:.6g} rpm is left out: {error}")
-            continue
-        near = found[speed].laws
-    return found, notes
-
-
-def _row(speed: float, state: LawState, shaft_speed: float) -> BearingSpeed:
-    """A row over speed but for its decrement."""
-    mass, whirl = rigid_threshold(state.stiffness[:2, :2], state.damping[:2, :2], shaft_speed)
-    return BearingSpeed(
-        speed=speed,
-        load=state.force,
-        displacement=state.d,
-        stiffness=state.stiffness,
-        damping=state.damping,
-        critical_mass=mass,
-        whirl_ratio=whirl,
-        film_temperature=getattr(state.part.law, "temperature", None),
-        log_decrement=None,
     )
 
 
