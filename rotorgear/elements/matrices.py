@@ -3,11 +3,16 @@
 Stiffness and damping come as B^T D B, with the strain-displacement matrix B (strains, or relative displacements, from the
 degrees of freedom) and the constitutive matrix D. So an upper floor can take energies and powers element by element, as
 squares of strains: u^T K u of a stiff model is a small difference of large terms and loses its digits.
+
+Analyses of one model compute the same elements again and again: results of equal data are kept (`kept_by_content`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import lru_cache, wraps
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -63,3 +68,66 @@ class ElementMatrices:
         if self.strain is None or D is None:
             return None
         return np.asarray(np.swapaxes(self.strain, 1, 2) @ D @ self.strain)
+
+
+Record = TypeVar("Record")
+Result = TypeVar("Result")
+Others = ParamSpec("Others")
+
+
+def kept_by_content(
+    rows: int, results: int
+) -> Callable[
+    [Callable[Concatenate[Record, Others], Result]],
+    Callable[Concatenate[Record, Others], Result],
+]:
+    """A decorator of compute(record, ...), whose argument and result are dataclasses of arrays: equal records are computed once.
+
+    The arrays of a kept result are read-only, because several callers share them.
+
+    Args:
+        rows: records with more rows than this are computed each time, and not kept.
+        results: number of results that are kept, the latest ones.
+    """
+
+    def decorated(
+        compute: Callable[Concatenate[Record, Others], Result],
+    ) -> Callable[Concatenate[Record, Others], Result]:
+        def computed(content: _ByContent[Record], *args: Any, **options: Any) -> Result:
+            result = compute(content.record, *args, **options)
+            for array in _arrays(result):
+                array.setflags(write=False)
+            return result
+
+        known: Callable[..., Result] = lru_cache(maxsize=results)(computed)
+
+        @wraps(compute)
+        def kept(record: Record, *args: Others.args, **options: Others.kwargs) -> Result:
+            if max(len(array) for array in _arrays(record)) > rows:
+                return compute(record, *args, **options)
+            return known(_ByContent(record), *args, **options)
+
+        return kept
+
+    return decorated
+
+
+class _ByContent(Generic[Record]):
+    """A record of arrays that equals every other of its class with the same arrays."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record
+        self._content = (type(record), *((array.dtype.str, array.shape, array.tobytes()) for array in _arrays(record)))
+        self._hash = hash(self._content)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _ByContent) and self._content == other._content
+
+
+def _arrays(record: Any) -> list[np.ndarray]:
+    """The fields of a record that are arrays."""
+    values = [getattr(record, item.name) for item in fields(record)]
+    return [value for value in values if isinstance(value, np.ndarray)]

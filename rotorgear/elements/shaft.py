@@ -16,8 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.elements.by_content import kept_by_content
-from rotorgear.elements.matrices import ElementMatrices
+from rotorgear.elements.matrices import ElementMatrices, kept_by_content
 from rotorgear.elements.shaft_bubbles import bubble_motions, shaft_bubbles
 from rotorgear.elements.shaft_section import (
     ShaftElements,

@@ -2,7 +2,7 @@
 
 With the Legendre polynomials P_k on -1..1 and phi_k(x) = sqrt((2k-1)/2) int_{-1}^x P_{k-1}, k >= 2 (Szabo and Babuska, Finite
 Element Analysis, 1991): deflection k = 2..p+1, slope, stretch and twist k = 2..p. The nodal functions are exact static ones, so
-their strain energy with any bubble is zero: the stiffness of the bubbles stands beside that of the nodes, and only inertia
+their strain energy with any bubble is zero: the stiffness of the bubbles is uncoupled from that of the nodes, and only inertia
 joins them. Without shear deformation the slope is the derivative of the deflection, whose bubbles are int int P_k, k = 2..p.
 """
 

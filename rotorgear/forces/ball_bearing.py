@@ -1,15 +1,15 @@
 """Ball bearing: Hertz contacts of Z balls that turn with the cage, clearance, and coupling of radial, axial and tilting motion.
 
-Ball j stands at phi_j = order * angle + phase + 2 pi j/Z. With the distance A = r_i + r_e - D_w of the groove centres at rest,
+Ball j is at phi_j = order * angle + phase + 2 pi j/Z. With the distance A = r_i + r_e - D_w of the groove centres at rest,
 the inner one moves by
 
     u = x cos phi + y sin phi,   w = z + R_i (tx sin phi - ty cos phi)
     delta = sqrt((A cos a0 + u)^2 + (A sin a0 + w)^2) - A,   Q = c_p delta^(3/2) where delta > 0
 
 and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative except for the motion
-of the balls. A deep groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0.
+of the balls. The rings of a deep groove bearing are centred: A cos a0 = A - s/2, A sin a0 = 0.
 
-Several rows share the bearing: row r stands at l_r along the shaft and takes a push towards + or - z (sigma_r), with
+Several rows share the bearing: row r is at l_r along the shaft and takes a push towards + or - z (sigma_r), with
 
     u = (x + l_r ty) cos phi + (y - l_r tx) sin phi,   A sin a0 -> sigma_r A sin a0
 

@@ -1,6 +1,6 @@
 """Inside a bearing in a state of its law: loads of rolling elements, or the pressure of a film with its flow and loss.
 
-A sheet tells of it under the name `told_as`, in records whose values `told` gives by their names.
+Results list it under the name `told_as`, in records whose values `told` gives by their names.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ class RollingLoads:
 
     Attributes:
         row: number of its row from -z, (z,); of the diagonal in a four-point bearing.
-        angle: where each one stands, (z,) rad from +x about +z.
+        angle: place of each one, (z,) rad from +x about +z.
         contact_angle: of its load against the plane across the shaft, (z,) rad; 0 for one that carries nothing.
-        load: (z,) N. deflection: of both contacts together, (z,) m, negative where it stands apart.
+        load: (z,) N. deflection: of both contacts together, (z,) m, negative where it has a gap.
         inner_pressure, outer_pressure: largest Hertz pressure at the inner and the outer ring, (z,) Pa.
     """
 
@@ -89,15 +89,15 @@ class FilmField(OilField):
     z: np.ndarray
 
     def told(self, law: Any, load: np.ndarray, d: np.ndarray, shaft_speed: float) -> Iterator[dict[str, Any]]:
-        """The same, where the journal stands, and Sommerfeld's number."""
+        """The same, the place of the journal, and Sommerfeld's number."""
         W = float(np.hypot(*load[:2]))
         # From the load to the line of centres, positive in the sense of rotation.
         angle = np.arctan2(d[1], d[0]) - np.arctan2(load[1], load[0])
         turns = abs(shaft_speed) / (2.0 * np.pi)
         area = 2.0 * law.radius * law.length
-        for own in super().told(law, load, d, shaft_speed):
+        for film in super().told(law, load, d, shaft_speed):
             yield {
-                **own,
+                **film,
                 "eccentricity": float(np.hypot(*d[:2])) / law.clearance,
                 "attitude": float(np.sign(shaft_speed) * (np.mod(angle + np.pi, 2.0 * np.pi) - np.pi)),
                 "sommerfeld": law.viscosity * turns * area / W * (law.radius / law.clearance) ** 2 if W else np.inf,

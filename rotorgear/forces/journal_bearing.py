@@ -94,6 +94,7 @@ class JournalBearing(ForceLaw):
     """Plain cylindrical journal bearing, short, with a film that cavitates."""
 
     title: ClassVar[str] = "short journal bearing"
+    components: ClassVar[int] = 2
     # The film takes its energy from the rotation of the journal, and whirls it where that is too much.
     passive: ClassVar[bool] = False
     shaft_ratio: ClassVar[str] = "order"
@@ -108,11 +109,6 @@ class JournalBearing(ForceLaw):
         "", "eccentricity over c at which the journal lies on the shell", 0.95, above=0.0, below=1.0
     )
     wall: float = parameter("N/m", "stiffness of the shell", 1e9, least=0.0)
-
-    @property
-    def components(self) -> int:
-        """Two."""
-        return 2
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""

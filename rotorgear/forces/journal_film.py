@@ -1,6 +1,6 @@
 """Journal bearing of finite length, plain or with lobes: Reynolds' equation on a grid, as journal_pressure.py solves it.
 
-A plain bearing needs a line where fresh oil comes in at p = 0. It stands at `inlet`, or follows the widest gap: then statics look
+A plain bearing needs a line where fresh oil comes in at p = 0. It is at `inlet`, or follows the widest gap: then statics look
 for the equilibrium with it, and linear analyses and motions in time take it to stay there.
 
 Lobes: c_p = c/(1 - m), preload m, and the gap of the centred journal is least at `offset` of the arc of a lobe in the sense of
@@ -73,7 +73,7 @@ class JournalFilm(JournalOil):
         """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
         t, z, pressure = self.pressure(d, speed=speed)
         p = self.settled(d).parameters()
-        own = self.pad_clearance
+        c_pad = self.pad_clearance
         omega = self.order * speed
         across = int(p[AROUND]) - 1
         dz = 0.5 * self.length / self.along
@@ -83,7 +83,7 @@ class JournalFilm(JournalOil):
         for pad in range(self.lobes):
             rows = slice(pad * across, (pad + 1) * across)
             _, extent, least = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
-            h = own - d[0] * np.cos(t[rows]) - d[1] * np.sin(t[rows]) - self.preload * own * np.cos(t[rows] - least)
+            h = c_pad - d[0] * np.cos(t[rows]) - d[1] * np.sin(t[rows]) - self.preload * c_pad * np.cos(t[rows] - least)
             step = self.radius * extent / int(p[AROUND])
             gap[rows] = h
             flow += side_flow(h, pressure[rows], dz, step, self.viscosity)

@@ -60,7 +60,7 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
     dz = 0.5 * p[LENGTH] / along
     per_t = 1.0 / (p[RADIUS] * dt) ** 2
     per_z = 1.0 / dz**2
-    own = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    c_pad = p[CLEARANCE] / (1.0 - p[PRELOAD])
     cosine = np.zeros(around + 1)
     sine = np.zeros(around + 1)
     h = np.zeros(around + 1)
@@ -71,12 +71,12 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
         t = start + i * dt
         cosine[i] = np.cos(t)
         sine[i] = np.sin(t)
-        h[i] = own - x * cosine[i] - y * sine[i] - p[PRELOAD] * own * np.cos(t - least)
+        h[i] = c_pad - x * cosine[i] - y * sine[i] - p[PRELOAD] * c_pad * np.cos(t - least)
         if i < around:
             t += 0.5 * dt
             middle_c[i] = np.cos(t)
             middle_s[i] = np.sin(t)
-            middle[i] = own - x * middle_c[i] - y * middle_s[i] - p[PRELOAD] * own * np.cos(t - least)
+            middle[i] = c_pad - x * middle_c[i] - y * middle_s[i] - p[PRELOAD] * c_pad * np.cos(t - least)
     push = np.zeros(n)
     wedge = 6.0 * p[VISCOSITY] * omega / dt
     squeeze = 12.0 * p[VISCOSITY]

@@ -246,9 +246,9 @@ class ForceLaw(ABC):
     def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0, points: int | None = None) -> Linearised:
         """Mean force, stiffness and damping about displacements d and velocities v (k,), as linear analyses take them.
 
-        What varies in time is left out (`mean`). Rolling elements and the like that turn are averaged over a `cycle`, at so many
-        `points` (32), because an analysis at speed may not depend on where one of them happens to stand; at speed 0 they stand
-        still, at angle 0.
+        What varies in time is left out (`mean`). Rolling elements and the like that turn are averaged over a `cycle`, at
+        `points` (32) places, because an analysis at speed may not depend on where one of them happens to be; at speed 0 they
+        are at angle 0.
         """
         still = self.mean()
         k = self.components

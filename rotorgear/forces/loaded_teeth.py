@@ -16,7 +16,7 @@ with the displacements d = d_1 in the middle of the face and d_2 = tilt (m/m, cl
 W(x, tilt, u) is a Hermite cubic in the tilt between two of those for which the contact was solved, with its force and moment
 there: W_k and M_k are the integrals of F_k and dM_k/dx over x. So F and M follow from one energy, at those tilts they are the
 contact's own, and both are nothing where the teeth part. Beyond the first and the last tilt the moment stays as it is there.
-Damping acts at the place z_e of the face where the stiffness of the mean state stands.
+Damping acts at the place z_e of the face where the stiffness of the mean state has its centre.
 
 Damping goes with the stiffness that carries, from zero at first touch over one step of x: c is what it is at k. It never pulls
 where `contact_damping` is non-adhesive; "penetration" is c x/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440).
@@ -297,6 +297,7 @@ class LoadedTeeth(ForceLaw):
     """Contact of one helix by the map of its loaded teeth, or by maps at several tilts of its flanks."""
 
     title: ClassVar[str] = "loaded teeth"
+    can_part: ClassVar[bool] = True
     conserves: ClassVar[bool] = True
 
     load: np.ndarray = parameter("N", "loads F_j along the flank normal, (l,), rising from 0")  # noqa: RUF009
@@ -364,11 +365,6 @@ class LoadedTeeth(ForceLaw):
     def components(self) -> int:
         """The approach, and the tilt where there are maps at several."""
         return 2 if self.tilt.size else 1
-
-    @property
-    def can_part(self) -> bool:
-        """The flanks push only."""
-        return True
 
     @property
     def known_up_to(self) -> float:

@@ -29,7 +29,7 @@ from rotorgear.solvers.time.compiled import force_function, schedule_function
 # The words of model files, and the kinds of contact and damping that compiled code branches on.
 GAPS = {"dead zone": DEAD_ZONE, "unilateral": UNILATERAL, "bilateral": BILATERAL}
 DAMPINGS = {"non-adhesive": NON_ADHESIVE, "adhesive": ADHESIVE, "penetration": PENETRATION}
-# Teeth that part excite at least so many harmonics of their mesh order.
+# Least number of harmonics of the mesh order that teeth which part excite.
 _PARTING = 3
 # Coefficients of a tabulated stiffness below this share of the largest do not count as harmonics.
 _SMALL = 0.02
@@ -99,13 +99,13 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
         i = 0
         while i < pieces - 1 and share >= p[place + PIECE * (i + 1) + START] - _ON_JUMP:
             i += 1
-        own = place + PIECE * i
-        length = (p[own + PIECE + START] if i < pieces - 1 else 1.0) - p[own + START]
-        rise = p[own + LAST] - p[own + FIRST]
-        value = p[own + FIRST] + rise * (share - p[own + START]) / length
-        if abs(share - p[own + START]) <= _ON_JUMP:
+        at = place + PIECE * i
+        length = (p[at + PIECE + START] if i < pieces - 1 else 1.0) - p[at + START]
+        rise = p[at + LAST] - p[at + FIRST]
+        value = p[at + FIRST] + rise * (share - p[at + START]) / length
+        if abs(share - p[at + START]) <= _ON_JUMP:
             # On a jump: the mean of both sides, which keeps the order of an implicit method.
-            value = 0.5 * (p[own + FIRST] + p[place + PIECE * ((i + pieces - 1) % pieces) + LAST])
+            value = 0.5 * (p[at + FIRST] + p[place + PIECE * ((i + pieces - 1) % pieces) + LAST])
         s[K_NOW] = p[K] * value
         s[K_RATE] = p[K] * rise / length * rate / _TURN
     s[PUSH_NOW] = 0.0

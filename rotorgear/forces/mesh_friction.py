@@ -70,26 +70,26 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
         while first - pitch >= p[PATH_START]:
             first -= pitch
         for j in range(MOST):
-            own = PLACES + PLACE * (MOST * i + j)
+            at = PLACES + PLACE * (MOST * i + j)
             xi = first + j * pitch
-            s[own + XI] = 0.0
-            s[own + MU] = 0.0
+            s[at + XI] = 0.0
+            s[at + MU] = 0.0
             if not p[PATH_START] <= xi <= p[PATH_END]:
                 continue
             count += 1
-            s[own + XI] = xi
-            s[own + MU] = p[COEFFICIENT]
+            s[at + XI] = xi
+            s[at + MU] = p[COEFFICIENT]
             if p[VISCOSITY] > 0.0:
                 slide = max(abs(xi * s[W]), p[SMOOTH])
                 roll = max(abs(p[ROLLING] * speed), p[SMOOTH])
                 x = 29.66 * p[LINE_LOAD] / (p[VISCOSITY] * slide * roll * roll)
-                s[own + MU] = min(max(0.0127 * np.log10(max(x, 1.0)), 0.0), _LARGEST_MU)
+                s[at + MU] = min(max(0.0127 * np.log10(max(x, 1.0)), 0.0), _LARGEST_MU)
     s[COUNT] = count
 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
-    """Friction across the line of action and its moment; the normal force itself acts in a law of its own."""
+    """Friction across the line of action and its moment; another law applies the normal force itself."""
     for i in range(3):
         F[i] = 0.0
     for i in range(9):
@@ -109,11 +109,11 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     N = abs(n[0])
     sign = 1.0 if n[0] >= 0.0 else -1.0
     for i in range(MOST * int(p[SLICES])):
-        own = PLACES + PLACE * i
-        mu = s[own + MU]
+        at = PLACES + PLACE * i
+        mu = s[at + MU]
         if mu == 0.0:
             continue
-        xi = s[own + XI]
+        xi = s[at + XI]
         driven = xi * s[W]
         slide = driven + v[1] + xi * v[2]
         t = np.tanh(slide / p[SMOOTH])
@@ -140,6 +140,8 @@ class MeshFriction(ForceLaw):
     """Sliding friction of one helix of a mesh."""
 
     title: ClassVar[str] = "tooth friction"
+    # Along the normal, across the line of action, and relative rotation.
+    components: ClassVar[int] = 3
 
     contact: MeshContact = parameter("", "the normal contact that gives N")  # noqa: RUF009
     base_pitch: float = parameter("m", "transverse base pitch p_bt", above=0.0)
@@ -161,11 +163,6 @@ class MeshFriction(ForceLaw):
             raise refuse(self, "end", "an end of the path of contact beyond its start")
         if self.end - self.start >= 4.0 * self.base_pitch:
             raise refuse(self, "end", "fewer than four teeth in contact")
-
-    @property
-    def components(self) -> int:
-        """Along the normal, across the line of action, and relative rotation."""
-        return 3
 
     @property
     def slices(self) -> int:

@@ -194,6 +194,7 @@ class JournalOil(OilFilm):
     """A journal of radius R in a film of length L."""
 
     grid: ClassVar[tuple[str, ...]] = ("around", "along")
+    components: ClassVar[int] = 2
 
     radius: float = parameter("m", "radius R of the journal", above=0.0)
     length: float = parameter("m", "length L of the bearing", above=0.0)
@@ -217,11 +218,6 @@ class JournalOil(OilFilm):
     def cells(self) -> str:
         """Around the journal and along all of it."""
         return f"{self.around} x {2 * self.along}"
-
-    @property
-    def components(self) -> int:
-        """Two."""
-        return 2
 
     @property
     def extents(self) -> np.ndarray:

@@ -3,7 +3,7 @@
     delta = x cos phi + y sin phi - s/2,   Q = c_l delta^(10/9) where delta > 0,   c_l = 35948 L^(8/9) (N, mm)
 
 for both rings together, rollers aligned with the raceways (ISO/TS 16281:2008).
-Roller j stands at phi_j = order * angle + phase + 2 pi j/Z.
+Roller j is at phi_j = order * angle + phase + 2 pi j/Z.
 """
 
 from __future__ import annotations
@@ -64,6 +64,7 @@ class RollerBearing(RollingElements):
     """Cylindrical roller bearing with two relative displacements: x and y of the inner ring against the outer one."""
 
     title: ClassVar[str] = "cylindrical roller bearing"
+    components: ClassVar[int] = 2
 
     rollers: int = parameter("", "number of rollers Z", least=3)
     length: float = parameter("m", "effective length L of a roller", above=0.0)
@@ -78,11 +79,6 @@ class RollerBearing(RollingElements):
     def elements(self) -> int:
         """Z."""
         return self.rollers
-
-    @property
-    def components(self) -> int:
-        """Two."""
-        return 2
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""

@@ -142,6 +142,8 @@ class RollingElements(ForceLaw):
     """A bearing with five relative displacements, whose elements turn with the cage. Subclasses declare these parameters."""
 
     conserves: ClassVar[bool] = True
+    uses_velocity: ClassVar[bool] = False
+    components: ClassVar[int] = 5
 
     order: float
     phase: float
@@ -151,16 +153,6 @@ class RollingElements(ForceLaw):
     @abstractmethod
     def elements(self) -> int:
         """Number Z of elements of a row."""
-
-    @property
-    def components(self) -> int:
-        """Five: x, y, z of the inner ring against the outer one, and tilts about x and y."""
-        return 5
-
-    @property
-    def uses_velocity(self) -> bool:
-        """Deflections only."""
-        return False
 
     def state_size(self) -> int:
         """Angle and speed of the cage."""

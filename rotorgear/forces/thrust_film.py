@@ -45,6 +45,7 @@ class ThrustFilm(OilFilm):
     """Thrust bearing of sector pads: five displacements of the collar, of which those along x and y press on nothing."""
 
     title: ClassVar[str] = "thrust bearing"
+    components: ClassVar[int] = 5
     grid: ClassVar[tuple[str, ...]] = ("around", "across")
 
     inner_radius: float = parameter("m", "inner radius r_i of the pads", above=0.0)
@@ -79,11 +80,6 @@ class ThrustFilm(OilFilm):
             raise refuse(
                 self, "taper", "a depth above 0 in fixed pads, or a pivot of tilting ones: flat pads carry nothing"
             )
-
-    @property
-    def components(self) -> int:
-        """Five."""
-        return 5
 
     @property
     def extents(self) -> np.ndarray:

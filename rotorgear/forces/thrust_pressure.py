@@ -6,8 +6,8 @@ With p = 0 on all edges of a pad,
     q = sigma (z, tx, ty),   phi = (1, r sin t, -r cos t),   sigma = +1 where the pads take a push towards +z
 
 in finite volumes of second order. Forces are int p phi dA, tangents those of the discrete film. A tilting pad has one more field,
-phi_3 = r sin(t - t_p) about the radius through its pivot at t_p, and stands where G_3 = int p phi_3 dA = 0. Below the least gap
-h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active set (film_grid.py).
+phi_3 = r sin(t - t_p) about the radius through its pivot at t_p, and its equilibrium is G_3 = int p phi_3 dA = 0. Below the least
+gap h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active set (film_grid.py).
 
 Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961), chs. 3 and 4.
 """
@@ -210,11 +210,11 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
 
     slope (3, 2): change of q[3] with the other three and with their velocities.
     """
-    own = p[CLEARANCE] / p[OUTER]
+    tilt_unit = p[CLEARANCE] / p[OUTER]
     least = p[LEAST] * p[CLEARANCE]
     pivot = start + abs(p[PIVOT]) * p[ARC]
-    low = -1e3 * own
-    high = 1e3 * own
+    low = -1e3 * tilt_unit
+    high = 1e3 * tilt_unit
     # Tilts that leave the least gap at the edges of the pad.
     for corner in range(4):
         t = start + (p[ARC] if corner % 2 else 0.0)
@@ -240,7 +240,7 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
         q[3] = 0.5 * (low + high)
     for _ in range(_ITERATIONS):
         sector_film(p, omega, start, q, v, 3, 4, G, K, C, pressure)
-        if (abs(G[0]) > 0.0 and abs(G[3]) <= _LEVEL * abs(G[0]) * p[OUTER]) or high - low < 1e-14 * own:
+        if (abs(G[0]) > 0.0 and abs(G[3]) <= _LEVEL * abs(G[0]) * p[OUTER]) or high - low < 1e-14 * tilt_unit:
             break
         # More tilt closes the trailing edge, where the film presses more.
         if G[3] > 0.0:
@@ -253,9 +253,9 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
         q[3] = step if low < step < high else 0.5 * (low + high)
     sector_film(p, omega, start, q, v, 0, 4, G, K, C, pressure)
     for m in range(3):
-        if most - q[3] < 1e-9 * own:
+        if most - q[3] < 1e-9 * tilt_unit:
             slope[m, 1] = 0.0
-        elif q[3] - lowest < 1e-9 * own:
+        elif q[3] - lowest < 1e-9 * tilt_unit:
             slope[m, 0] = slope[m, 1]
             slope[m, 1] = 0.0
         else:

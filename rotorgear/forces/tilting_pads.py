@@ -54,14 +54,14 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
     F_t = 0 lies on that edge; one that nothing presses has no force.
     """
     around = int(p[AROUND])
-    own = p[CLEARANCE] / (1.0 - p[PRELOAD])
-    low = -1e3 * own
-    high = 1e3 * own
+    c_pad = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    low = -1e3 * c_pad
+    high = 1e3 * c_pad
     low_slope = 0.0
     high_slope = 0.0
     for i in range(around + 1):
         t = start + extent * i / around - pivot
-        room = own - (xi + p[PRELOAD] * own) * np.cos(t) - _EDGE * p[CLEARANCE]
+        room = c_pad - (xi + p[PRELOAD] * c_pad) * np.cos(t) - _EDGE * p[CLEARANCE]
         if np.sin(t) > 1e-12 and room / np.sin(t) < high:
             high = room / np.sin(t)
             high_slope = -np.cos(t) / np.sin(t)
@@ -77,7 +77,7 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
         K[:] = 0.0
         C[:] = 0.0
         pad_film(p, omega, xi, eta, v_xi, 0.0, start - pivot, extent, 0.0, F, K, C, pressure)
-        if abs(F[1]) <= _LEVEL * abs(F[0]) or high - low < 1e-14 * own:
+        if abs(F[1]) <= _LEVEL * abs(F[0]) or high - low < 1e-14 * c_pad:
             break
         # More tilt presses the trailing edge, which lies at larger angles where the journal turns about +z.
         if F[1] > 0.0:
@@ -89,9 +89,9 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
         step = eta - F[1] / K[3] if K[3] != 0.0 else low
         eta = step if low < step < high else 0.5 * (low + high)
     slope[1] = 0.0
-    if most - eta < 1e-9 * own:
+    if most - eta < 1e-9 * c_pad:
         slope[0] = high_slope
-    elif eta - least < 1e-9 * own:
+    elif eta - least < 1e-9 * c_pad:
         slope[0] = low_slope
     else:
         slope[0] = -K[2] / K[3] if K[3] != 0.0 else 0.0
@@ -101,16 +101,16 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
-    """Force of the journal on its pads and the shell; pads follow its place, and do not squeeze oil by their own turning."""
+    """Force of the journal on its pads and the shell; pads follow its place, and squeeze no oil as they turn."""
     place = np.zeros(5)
     touches = place_in_shell(d, p[CONTACT] * p[CLEARANCE], place)
     omega = s[SPEED]
     film = np.zeros(2)
     k = np.zeros(4)
     Kv[:] = 0.0
-    own_f = np.zeros(2)
-    own_k = np.zeros(4)
-    own_c = np.zeros(4)
+    pad_F = np.zeros(2)
+    pad_K = np.zeros(4)
+    pad_C = np.zeros(4)
     slope = np.zeros(2)
     pressure = np.zeros((int(p[AROUND]) - 1, int(p[ALONG])))
     for pad in range(int(p[PADS])):
@@ -119,13 +119,13 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         n = np.sin(p[at + 2])
         xi = place[0] * c + place[1] * n
         v_xi = v[0] * c + v[1] * n
-        tilted(p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], own_f, own_k, own_c, pressure, slope)
-        if own_f[0] <= 0.0:
+        tilted(p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], pad_F, pad_K, pad_C, pressure, slope)
+        if pad_F[0] <= 0.0:
             continue
-        stiff = own_k[0] + own_k[1] * slope[0]
-        damp = own_c[0] + own_k[1] * slope[1]
-        film[0] += own_f[0] * c
-        film[1] += own_f[0] * n
+        stiff = pad_K[0] + pad_K[1] * slope[0]
+        damp = pad_C[0] + pad_K[1] * slope[1]
+        film[0] += pad_F[0] * c
+        film[1] += pad_F[0] * n
         k[0] += stiff * c * c
         k[1] += stiff * c * n
         k[2] += stiff * c * n
@@ -223,7 +223,7 @@ class TiltingPads(JournalOil):
         """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
         p = self.parameters()
         around = int(p[AROUND])
-        own = self.pad_clearance
+        c_pad = self.pad_clearance
         step = self.radius * self.arc / around
         dz = 0.5 * self.length / self.along
         nodes = []
@@ -232,7 +232,7 @@ class TiltingPads(JournalOil):
         for pad, (e_r, _, _, _, eta, pressure) in enumerate(self._each_pad(np.asarray(d, float), speed)):
             start, extent, q = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
             t = start + extent * np.arange(1, around) / around
-            h = own - (float(e_r @ d) + self.preload * own) * np.cos(t - q) - float(eta) * np.sin(t - q)
+            h = c_pad - (float(e_r @ d) + self.preload * c_pad) * np.cos(t - q) - float(eta) * np.sin(t - q)
             nodes.append((t, h, pressure))
             flow += side_flow(h, pressure, dz, step, self.viscosity)
             loss += power_loss(h, pressure, dz, step, self.viscosity, self.radius * self.order * speed)

@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.elements.by_content import kept_by_content
+from rotorgear.elements.matrices import kept_by_content
 from rotorgear.elements.shaft import ShaftElements, distinct_elements
 from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
 from rotorgear.errors import ConvergenceError

@@ -31,7 +31,7 @@ from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.layout.state import FaceState
-from rotorgear.solvers.sparse.newton import Settled, settle
+from rotorgear.solvers.sparse.newton import LocalEquilibrium, local_equilibrium
 from rotorgear.system.local import teeth_law
 
 if TYPE_CHECKING:
@@ -282,7 +282,7 @@ class _Problem:
         again = which.ravel()
         return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again], tilt[again], moment[again])
 
-    def _at(self, curves: list[_Curve]) -> Settled:
+    def _at(self, curves: list[_Curve]) -> LocalEquilibrium:
         """Equilibrium of the mapped contacts on the curves of one position."""
         mapped = len(self.mapped)
         # Places of the displacements of each curve among the moving ones.
@@ -296,7 +296,7 @@ class _Problem:
                 F[at], tangent[np.ix_(at, at)] = curve(d[at])
             return F, tangent
 
-        return settle(self.start[self.moving], self.compliance[self.moving], self.springs, laws)
+        return local_equilibrium(self.start[self.moving], self.compliance[self.moving], self.springs, laws)
 
     def mean_tangent(self, contact: int, cycle: Cycle) -> tuple[float, FaceState | None]:
         """Mean tangent (N/m) of a mapped contact over its cycle, and along its face where it has a face map."""

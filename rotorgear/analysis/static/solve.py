@@ -22,7 +22,7 @@ from rotorgear.model.layout.state import OperatingPoint
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.note import Note
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.solvers.sparse.newton import EVALUATIONS, settle
+from rotorgear.solvers.sparse.newton import EVALUATIONS, local_equilibrium
 from rotorgear.solvers.sparse.nullspace import StaticSolver, UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
@@ -227,7 +227,7 @@ def _laws_at_rest(
             return np.concatenate([state.force for state in states]), tangents
 
         films = sum(law.many_kinks for law in laws)
-        found = settle(
+        found = local_equilibrium(
             B.T @ solved[:, 0],
             B.T @ solved[:, 1:],
             k,

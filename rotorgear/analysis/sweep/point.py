@@ -19,7 +19,13 @@ from rotorgear.model.model import Model
 from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Columns
 from rotorgear.solvers.lanes.own_laws import own_laws
 from rotorgear.solvers.lanes.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces, unbalanced
+from rotorgear.solvers.time.contact_equilibrium import (
+    Equilibrium,
+    equilibrium,
+    forces_at_rest,
+    free_motions,
+    unbalanced,
+)
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.local import LocalModel, local_model
@@ -202,7 +208,7 @@ def still(
     """
     rest = equilibrium(local, free)
     mean = tuple(law.mean() for law in local.forces.laws)
-    static = still_forces(local, mean, rest.free)
+    static = forces_at_rest(local, mean, rest.free)
     if not np.all(np.isfinite(static)):
         # Contacts that are open at rest: what the driving flanks alone would carry.
         static = local.forces.reference_stiffness @ (local.B.T @ rest.q)

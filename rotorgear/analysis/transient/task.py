@@ -16,7 +16,7 @@ from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotatio
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, still_forces
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, forces_at_rest
 from rotorgear.solvers.time.local_system import Integrator, state_at_rest
 from rotorgear.solvers.time.run import Schedule
 from rotorgear.system.local import LocalModel, local_model
@@ -58,7 +58,7 @@ def prepare(
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
     rest = equilibrium(local.local)
-    force = still_forces(local.local, tuple(part.law.mean() for part in local.parts))
+    force = forces_at_rest(local.local, tuple(part.law.mean() for part in local.parts))
     seen = channels(local)
     observed = seen.observed(local.local.n, local.local.m)
     local = replace(local, local=replace(local.local, observed=observed))

@@ -57,7 +57,7 @@ def _pressed(C: np.ndarray, gap: np.ndarray, total: float, active: np.ndarray) -
     index = np.flatnonzero(active)
     right = np.ones((len(index), 2), order="F")
     right[:, 1] = gap[index]
-    # LAPACK itself: systems are small and many, and what stands around it costs as much as their factorisation.
+    # LAPACK itself: systems are small and many, and the checks of scipy cost as much as their factorisation.
     _, solved, failed = dposv(C[index[:, None], index].T, right, overwrite_a=True, overwrite_b=True)
     if failed:
         raise ConvergenceError(
@@ -90,4 +90,4 @@ def _primal(C: np.ndarray, gap: np.ndarray, total: float) -> tuple[np.ndarray, f
         leaving = np.flatnonzero(falling)[np.argmin(steps)]
         active[leaving] = False
         force[leaving] = 0.0
-    raise ConvergenceError("The contact did not settle: the compliance is too badly conditioned. Use a finer preset.")
+    raise ConvergenceError("The contact did not converge: the compliance is too badly conditioned. Use a finer preset.")

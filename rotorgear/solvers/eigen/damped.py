@@ -17,7 +17,6 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.krylov import BlockKrylov
 from rotorgear.solvers.eigen.quadratic import (
     InverseState,
-    Quadratic,
     corrected,
     first_guess,
     infinite_states,
@@ -90,8 +89,8 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
         if search.krylov.size == 0:
             return search
         mu, _, residuals = search.ritz()
-        settled = mu[residuals < 0.3][: 2 * _BLOCK]
-        near = np.abs(inverse.sigma + 1.0 / (settled if settled.size else mu[:1]))
+        converging = mu[residuals < 0.3][: 2 * _BLOCK]
+        near = np.abs(inverse.sigma + 1.0 / (converging if converging.size else mu[:1]))
         lowest = float(np.exp(np.mean(np.log(np.maximum(near, np.finfo(float).tiny)))))
         if 0.1 <= lowest <= 10.0:
             return search
@@ -123,21 +122,16 @@ def solve(search: Search, rows: int | None, below: float | None, dense: bool = F
             for i in np.flatnonzero(errors > _SOUND):
                 pairs.values[i], pairs.vectors[:, i], spent = newton(quadratic, pairs.values[i], pairs.vectors[:, i])
                 search.factorisations += spent
-            if _sound(quadratic, pairs.values[shown], pairs.vectors[:, shown]):
+            # All pairs must satisfy the pencil, and none may be there twice: a wide spectrum may blur a Krylov basis too much.
+            values = pairs.values[shown]
+            V = pairs.vectors[:, shown] / np.linalg.norm(pairs.vectors[:, shown], axis=0)
+            close = np.abs(values[:, None] - values) <= _SOUND * np.abs(values)
+            close &= np.abs(V.conj().T @ V) > 1.0 - _SOUND
+            if np.all(quadratic.residuals(values, V) <= _SOUND) and np.count_nonzero(close) == values.size:
                 return pairs
             break
         wanted += max(8, wanted // 4)
     return _dense(search, rows)
-
-
-def _sound(quadratic: Quadratic, values: np.ndarray, V: np.ndarray) -> bool:
-    """Whether all pairs satisfy the pencil and none was found twice: a wide spectrum may blur a Krylov basis too much."""
-    if np.any(quadratic.residuals(values, V) > _SOUND):
-        return False
-    V = V / np.linalg.norm(V, axis=0)
-    close = np.abs(values[:, None] - values) <= _SOUND * np.abs(values)
-    close &= np.abs(V.conj().T @ V) > 1.0 - _SOUND
-    return int(np.count_nonzero(close)) == values.size
 
 
 def _arnoldi(search: Search, wanted: int) -> Pairs:
@@ -166,7 +160,7 @@ def _arnoldi(search: Search, wanted: int) -> Pairs:
 
 
 def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
-    """Expand until the first `wanted` Ritz values have settled: all mu (m,) and coordinates (m, m)."""
+    """Expand until the first `wanted` Ritz values have converged: all mu (m,) and coordinates (m, m)."""
     krylov = search.krylov
     goal = int(3.25 * wanted)
     while True:

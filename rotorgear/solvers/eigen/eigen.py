@@ -35,7 +35,10 @@ from rotorgear.solvers.sparse.pencil import (
 )
 
 _DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
-_FEW = (100, 12)  # above so many unknowns it is not, where so many times the modes are fewer than those
+_FEW = (
+    100,
+    12,
+)  # it is slower already above 100 unknowns where 12 times the number of modes is less than that of unknowns
 _SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
 _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
 _UNCOUNTED = (0.0, 0)  # a shift below which there is nothing to count

@@ -128,7 +128,7 @@ class BlockKrylov:
         return image
 
     def _reserve(self, size: int) -> None:
-        """Make room for a basis of so many columns."""
+        """Make room for a basis of `size` columns."""
         if size > self._V.shape[1]:
             room = 2 * size
             V = np.empty((self._V.shape[0], room), order="F")

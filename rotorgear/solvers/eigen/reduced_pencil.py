@@ -103,7 +103,7 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
         pencil: M, D, K (r, r).
         shift: sigma > 0 in rad/s, best near the geometric mean of the lowest and the highest |s| that count.
         smallest: |s| below which an eigenvalue is that of a rigid-body motion and left out.
-        count: so many oscillating pairs at most.
+        count: largest number of oscillating pairs.
 
     Raises:
         ConvergenceError: K + sigma D + sigma^2 M is singular.

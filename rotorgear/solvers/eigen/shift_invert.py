@@ -22,7 +22,7 @@ from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
 _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
 _CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
-# The same for a basis of other modes: of the lower ones, so large a part, that others are made of; the upper ones correct them.
+# The same for a basis of other modes: the lower ones, this share of all, carry the others; the upper ones only correct them.
 _CONVERGED_BASIS = 1e-4
 _LOWER = 0.7
 _BEGIN = 1.4  # Krylov vectors for each mode of a basis, before its residuals are first looked at; 2 for modes that are counted
@@ -32,7 +32,7 @@ _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes
 # Highest eigenvalue / |sigma| from which modes in the middle are rounding to both dense solvers, of 16 digits each: the whole
 # space is then handed on, and the Jacobi iteration on strains (ritz.py) tells its modes apart.
 _TOO_FAR_FOR_TWO = 1e26
-_NEAR = 100.0  # neighbouring eigenvalues are apart by so many times their rounding, or count as equal
+_NEAR = 100.0  # multiple of their rounding below which neighbouring eigenvalues count as equal
 Modes = tuple[np.ndarray, np.ndarray]
 
 
@@ -153,7 +153,7 @@ def basis_vectors(operator: ShiftInvert, count: int) -> np.ndarray:
 
 
 def _ritz_vectors(operator: ShiftInvert, converged: int, enough: int, begin: int, tolerance: float) -> np.ndarray:
-    """Ritz vectors (n, enough), of which so many have residuals below a tolerance, from `begin` Krylov vectors or more."""
+    """Ritz vectors (n, enough), `converged` of them with residuals below a tolerance, from at least `begin` Krylov vectors."""
     krylov = operator.krylov
     goal = begin
     while True:

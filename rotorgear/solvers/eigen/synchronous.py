@@ -5,7 +5,7 @@ Between two speeds a and b the matrices are affine, D = D_0 + W D_1 and K = K_0 
     [ K_0 + s (p D_0 - i K_1) + s^2 (p^2 M - i p D_1) ] x = 0 ,       W = Im s
 
 which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. A stiffness W^2 K_2, of elastic bodies
-that turn, stands beside p^2 M as -K_2. The pencil is inverted at s = i (a + b)/2, so that all speeds between a and b lie in the
+that turn, adds to p^2 M as -K_2. The pencil is inverted at s = i (a + b)/2, so that all speeds between a and b lie in the
 disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
 found from it by a secant, each trial an eigenpair of the pencil at a real W.
 """
@@ -30,7 +30,7 @@ _RADIUS = 1.15  # of half the range
 _HEAVY = 0.7  # |Re s| / |s| from which on a mode no longer oscillates in a way that can be followed
 _BEYOND = 0.15  # of a speed, how far damped roots may move when they are polished
 _MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
-_SETTLED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
+_CONVERGED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
 BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
 
 
@@ -87,7 +87,7 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
     """All speeds above `low` and up to `high` at which an oscillating mode has the frequency `order` times the speed, ascending.
 
     Raises:
-        ConvergenceError: a root does not settle to 1e-10, or a count by pivot signs (undamped systems) says that one is missing.
+        ConvergenceError: a root does not converge to 1e-10, or a count by pivot signs (undamped systems) misses one.
     """
     with single_thread(family.M.shape[0]):
         # Another centre and another start vector where a count says that one was missed.
@@ -159,7 +159,7 @@ def _largest(
             mu, X = eigs(operator, k=count, ncv=min(size, 2 * count + 20), which="LM", v0=start, tol=1e-11)
         except ArpackNoConvergence as error:
             raise ConvergenceError(
-                f"the {count} critical speeds nearest to the middle of the range did not settle"
+                f"the {count} critical speeds nearest to the middle of the range did not converge"
             ) from error
         if np.abs(mu).min() < least:
             return mu, X
@@ -184,7 +184,7 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
         value = z * quadratic.w0
         v = v * quadratic.scale
         gap = value.imag - order * speed
-        if abs(gap) <= _SETTLED * order * speed:
+        if abs(gap) <= _CONVERGED * order * speed:
             break
         # Secant; the first step takes lambda as constant, and one as long as a third of the speed leads to another root.
         slope = -order if last is None or last[0] == speed else (gap - last[1]) / (speed - last[0])

@@ -274,7 +274,7 @@ def choose(
     most: int,
     begin: np.ndarray | None = None,
     fixed: int | None = None,
-    heard: Callable[[int, float], None] = lambda n, e: None,
+    report: Callable[[int, float], None] = lambda n, e: None,
 ) -> Choice:
     """Choose modes until the receptances agree to a tolerance, or the basis has `most` shapes, or no mode is left.
 
@@ -286,8 +286,8 @@ def choose(
         tolerance: largest relative difference, contacts closed or apart.
         most: shapes at most.
         begin: modes to begin with.
-        fixed: so many modes, whatever the difference.
-        heard: is told the size and the error so far.
+        fixed: number of modes to choose, whatever the difference.
+        report: called with the size of the basis and its error so far.
     """
     chosen = np.zeros(0, dtype=int) if begin is None else begin
     every = among.rigid + np.arange(among.modes)
@@ -300,7 +300,7 @@ def choose(
         Q = basis_of(among, chosen)
         H, y, dual = reduced_receptances(among, Q, probes)
         choice = Choice(chosen, Q, *differences(full, H, probes.s, scale))
-        heard(Q.shape[1], choice.error)
+        report(Q.shape[1], choice.error)
         left = np.setdiff1d(every, chosen)
         limit = len(left) if fixed is None else fixed - len(chosen)
         room = min(most - Q.shape[1], len(left), limit)

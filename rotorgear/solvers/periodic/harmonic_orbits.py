@@ -243,7 +243,7 @@ class HarmonicOrbits:
 
 def static_displacements(plant: Plant) -> np.ndarray:
     """Local displacements (m,) in the equilibrium of the mean laws."""
-    from rotorgear.solvers.sparse.newton import settle
+    from rotorgear.solvers.sparse.newton import local_equilibrium
     from rotorgear.solvers.time.local_forces import gather
 
     mean = replace(
@@ -263,7 +263,7 @@ def static_displacements(plant: Plant) -> np.ndarray:
         K[a, b] = now.Kd[0, flat]
         return now.F[0], K
 
-    found = settle(still.d, still.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
+    found = local_equilibrium(still.d, still.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
     return np.asarray(found.d if found.converged else still.d)
 
 

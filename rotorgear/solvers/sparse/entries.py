@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 Compressed = TypeVar("Compressed", sp.csc_array, sp.csr_array)
-_ROWS = 4096  # some thirty columns of so many rows fill the cache of a core
+_ROWS = 4096  # about thirty columns of this many rows fill the cache of a core
 
 
 def norm_1(A: sp.csc_array | sp.csr_array) -> float:

@@ -6,13 +6,13 @@ About any stiffness k of the laws, q = q0 + X (k d - F(d)) with q0 = (K + B k B^
 
 Whatever k is, the solution is the same; where the forces are k d, the start d0 is the solution.
 
-Where Newton's method stops short, as with contacts that stand apart (nothing pushes them, so no tangent says where to go), the
-laws get dampers in proportion to k and d creeps to rest: with s = (time step)^-1 each step solves r(d) + s A k (d - d_last) = 0
-and s falls until nothing of it is left. A gap is crossed however soft or stiff its walls are, because a tenfold step
-is taken with each solution. A stable equilibrium is reached, an unstable one is left.
+Where Newton's method stops short, as with open contacts (no force acts in them, so no tangent says where to go), the laws get
+dampers in proportion to k, and d moves to an equilibrium: with s = (time step)^-1 each step solves
+r(d) + s A k (d - d_last) = 0, and s falls until nothing of it is left. A gap is crossed however soft or stiff its walls are,
+because a tenfold step is taken with each solution. A stable equilibrium is reached, an unstable one is left.
 
 Forces may be small differences of large parts, as pressures around a centred journal are: without a load F is rounding of these
-parts, and no iteration brings it to a share of itself. Who knows the parts says so.
+parts, and no iteration brings it to a share of itself. A caller that knows the parts gives their `extents`.
 Kelley and Keyes, Convergence analysis of pseudo-transient continuation, SIAM J. Numer. Anal. 35 (1998) 508.
 """
 
@@ -46,8 +46,8 @@ EVALUATIONS = 3000
 
 
 @dataclass(frozen=True)
-class Settled:
-    """Local displacements and forces (m,), tangents (m, m) there, whether they are in equilibrium, and the steps it took.
+class LocalEquilibrium:
+    """Local displacements and forces (m,), tangents (m, m) there, and whether they are in equilibrium.
 
     `steps` counts Newton's iterations, `crept` the steps of the continuation.
     """
@@ -60,7 +60,7 @@ class Settled:
     crept: int = 0
 
 
-def settle(
+def local_equilibrium(
     d0: np.ndarray,
     A: np.ndarray,
     k: np.ndarray,
@@ -69,7 +69,7 @@ def settle(
     *,
     extents: np.ndarray | None = None,
     evaluations: int = EVALUATIONS,
-) -> Settled:
+) -> LocalEquilibrium:
     """Return the local displacements in equilibrium.
 
     Args:
@@ -79,7 +79,7 @@ def settle(
         laws: forces and tangents.
         near: (m,) where the solution is looked for first; None: d0.
         extents: displacements (m,) that change the forces by the size of what cancels in them; None: nothing does.
-        evaluations: of the laws, after which the search ends.
+        evaluations: number of evaluations of the laws after which the search ends.
     """
     size = float(np.abs(d0).max(initial=0.0))
     left = iter(range(evaluations))
@@ -105,52 +105,38 @@ def settle(
         return bool(worst <= ROUNDING * (terms + parts).max(initial=0.0))
 
     try:
-        return _search(d0, A, k, counted, near, residual, small)
+        steps = 0
+        for start in (d0,) if near is None else (near, d0):
+            found = _newton(start, A, k, counted, residual, small)
+            steps += found.steps
+            if found.converged:
+                return replace(found, steps=steps)
+
+        d = d0
+        s = 1.0
+        for crept in range(1, _STEPS + 1):
+
+            def damped(d: np.ndarray, F: np.ndarray, last: np.ndarray = d, s: float = s) -> np.ndarray:
+                return np.asarray(residual(d, F) + s * (A @ (k @ (d - last))))
+
+            step = _newton(d, A, (1.0 - s) * k, counted, damped, small)
+            steps += step.steps
+            if not step.converged:
+                s *= _SHORTER
+                continue
+            d = step.d
+            if small(d, step.force, step.tangent, residual(d, step.force)):
+                return LocalEquilibrium(d, step.force, step.tangent, True, steps, crept)
+            s /= _LONGER
+        F, tangent = counted(d0)
+        return LocalEquilibrium(d0, F, tangent, False, steps, _STEPS)
     except _SpentError:
         F, tangent = laws(d0)
-        return Settled(d0, F, tangent, False)
+        return LocalEquilibrium(d0, F, tangent, False)
 
 
 class _SpentError(Exception):
     """The laws were evaluated as often as they may be."""
-
-
-def _search(
-    d0: np.ndarray,
-    A: np.ndarray,
-    k: np.ndarray,
-    laws: Laws,
-    near: np.ndarray | None,
-    residual: Residual,
-    small: Small,
-) -> Settled:
-    """Newton's method from near and from d0, then the continuation."""
-    steps = 0
-    for start in (d0,) if near is None else (near, d0):
-        found = _newton(start, A, k, laws, residual, small)
-        steps += found.steps
-        if found.converged:
-            return replace(found, steps=steps)
-
-    d = d0
-    s = 1.0
-    for crept in range(1, _STEPS + 1):
-        last = d
-
-        def damped(d: np.ndarray, F: np.ndarray, last: np.ndarray = last, s: float = s) -> np.ndarray:
-            return np.asarray(residual(d, F) + s * (A @ (k @ (d - last))))
-
-        step = _newton(d, A, (1.0 - s) * k, laws, damped, small)
-        steps += step.steps
-        if not step.converged:
-            s *= _SHORTER
-            continue
-        d = step.d
-        if small(d, step.force, step.tangent, residual(d, step.force)):
-            return Settled(d, step.force, step.tangent, True, steps, crept)
-        s /= _LONGER
-    F, tangent = laws(d0)
-    return Settled(d0, F, tangent, False, steps, _STEPS)
 
 
 def _newton(
@@ -160,7 +146,7 @@ def _newton(
     laws: Laws,
     residual: Residual,
     small: Small,
-) -> Settled:
+) -> LocalEquilibrium:
     """Newton's method for a residual of derivative 1 + A (dF/dd - k); a step is halved until it brings the residual down."""
     d = start.copy()
     F, tangent = laws(d)
@@ -170,8 +156,8 @@ def _newton(
         if not np.all(np.isfinite(r)):
             break
         if small(d, F, tangent, r):
-            return Settled(d, F, tangent, True, steps)
-        # Least squares: contacts that stand apart leave directions in which nothing changes.
+            return LocalEquilibrium(d, F, tangent, True, steps)
+        # Least squares: open contacts leave directions in which nothing changes.
         step = np.linalg.lstsq(np.eye(d.size) + A @ (tangent - k), -r, rcond=1e-14)[0]
         share = 1.0
         before = np.linalg.norm(r)
@@ -187,4 +173,4 @@ def _newton(
         stuck = stuck + 1 if not np.linalg.norm(r) <= (1.0 - 1e-6) * before else 0
         if stuck == _STUCK:
             break
-    return Settled(d, F, tangent, small(d, F, tangent, r) if np.all(np.isfinite(r)) else False, _ITERATIONS)
+    return LocalEquilibrium(d, F, tangent, small(d, F, tangent, r) if np.all(np.isfinite(r)) else False, _ITERATIONS)

@@ -99,28 +99,24 @@ def compiled(
     if inner or not entry:
         options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     folder = cache_folder()
-    made = None if folder is None else _kept(function, folder, options)
+    made = None
+    if folder is not None:
+        # numba takes the folder from its settings when a function is decorated; other users of numba keep theirs.
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(folder)
+        try:
+            made = numba.njit(cache=True, **options)(function)
+            place = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
+            made._cache = CompiledOnce(made._cache, folder / (re.sub(r"[^\w.-]", "_", place) + ".lock"))
+        except (RuntimeError, OSError):  # a function without a file, such as one typed at a prompt
+            made = None
+        finally:
+            numba.config.CACHE_DIR = before
     if made is None:
         made = numba.njit(**options)(function)
     if signature is not None:
         made.compile(signature)
         made.disable_compile()
-    return made
-
-
-def _kept(function: Callable[..., Any], folder: Path, options: dict[str, Any]) -> Any:
-    """The function as numba compiles it and keeps it in a folder; None for one without a file, such as one typed at a prompt."""
-    # numba takes the folder from its settings when a function is decorated; other users of numba keep theirs.
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
-    try:
-        made = numba.njit(cache=True, **options)(function)
-    except (RuntimeError, OSError):
-        return None
-    finally:
-        numba.config.CACHE_DIR = before
-    place = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
-    made._cache = CompiledOnce(made._cache, folder / (re.sub(r"[^\w.-]", "_", place) + ".lock"))
     return made
 
 

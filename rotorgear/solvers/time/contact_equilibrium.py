@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.eigen import lowest_modes
-from rotorgear.solvers.sparse.newton import settle
+from rotorgear.solvers.sparse.newton import local_equilibrium
 from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space, support_dofs
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, local_tangent
@@ -59,30 +59,32 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
     B = system.B.toarray()
     solver = SupportedSolver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
 
-    def settled(f: np.ndarray) -> np.ndarray:
+    def static(f: np.ndarray) -> np.ndarray:
         q = solver.solve(f - M @ (R @ (R.T @ f)))
         return np.asarray(q - R @ (R.T @ (M @ q)))
 
-    q0 = settled(system.load)
-    X = settled(B) if system.m else np.zeros((system.n, 0))
+    q0 = static(system.load)
+    X = static(B) if system.m else np.zeros((system.n, 0))
     forces = system.forces
     k = forces.reference_stiffness
-    found = settle(np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), extents=forces.extents)
+    found = local_equilibrium(
+        np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), extents=forces.extents
+    )
     if not found.converged:
         return Equilibrium(q0, False, R, found.force)
     q = q0 + X @ (k @ found.d - found.force)
     return Equilibrium(q, True, R, found.force)
 
 
-def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
+def forces_at_rest(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
     """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none.
 
     `free`: the free motions of the system, where they are known. Both are expanded about the same stiffness, on which nothing
     depends.
     """
     forces = replace(gather(laws), reference_stiffness=system.forces.reference_stiffness)
-    rest = equilibrium(replace(system, forces=forces), free)
-    return rest.force if rest.converged else np.full(system.m, np.nan)
+    found = equilibrium(replace(system, forces=forces), free)
+    return found.force if found.converged else np.full(system.m, np.nan)
 
 
 def unbalanced(system: LocalSystem, R: np.ndarray, force: np.ndarray | None = None) -> bool:

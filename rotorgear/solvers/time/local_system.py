@@ -149,7 +149,7 @@ class LocalSystem:
 
 @dataclass
 class State:
-    """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
+    """State of a run after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
     `before` are the forces a step earlier; `d` (m,) the local displacements; `sums` (l, 2): energy put in and dissipated by
     each law, with half a step before the first for those that follow the trapezoidal rule; `events` (l, 4): steps on the front
@@ -283,12 +283,12 @@ def evaluated(
     v = np.ascontiguousarray(v, dtype=float)
     # Law by law: to hand all compiled functions over as one tuple costs a hundred times the evaluation.
     for i, kind in enumerate(laws.kind):
-        own = slice(laws.first[i], laws.first[i + 1])
+        rows = slice(laws.first[i], laws.first[i + 1])
         block = slice(laws.block_first[i], laws.block_first[i + 1])
         parameters = laws.parameters[laws.parameters_first[i] : laws.parameters_first[i + 1]]
         state = states[laws.state_first[i] : laws.state_first[i + 1]]
         laws.schedules[kind](angle, speed, t, parameters, state)
-        laws.forces[kind](parameters, state, d[own], v[own], F[own], Kd[block], Kv[block], energy[4 * i : 4 * i + 4])
+        laws.forces[kind](parameters, state, d[rows], v[rows], F[rows], Kd[block], Kv[block], energy[4 * i : 4 * i + 4])
     return F, Kd, Kv, energy
 
 

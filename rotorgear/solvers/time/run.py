@@ -60,7 +60,11 @@ def run(
     while state.step < schedule.steps:
         steps = min(CHUNK * schedule.every, schedule.steps - state.step)
         if not fixed_speed:
-            steps = min(steps, _even(system, state.step, schedule))
+            # Steps over which the speed changes so little that W G may be held.
+            rotation = system.rotation
+            rate = np.abs(np.diff(rotation.speeds) / np.diff(rotation.times)).max()
+            even = int(_SPEED_CHANGE * np.abs(rotation.speeds).max() / (rate * schedule.h)) if rate else schedule.steps
+            steps = min(steps, max(schedule.every, even // schedule.every * schedule.every))
         if stepper is None or not fixed_speed:
             middle = (state.step + 0.5 * steps) * schedule.h
             speed = float(system.rotation.speed(np.array(middle)))
@@ -78,15 +82,6 @@ def run(
         share = (state.step - first) / max(schedule.steps - first, 1)
         progress(share, f"step {state.step} of {schedule.steps}")
     return cost
-
-
-def _even(system: LocalSystem, step: int, schedule: Schedule) -> int:
-    """Steps over which the speed changes so little that W G may be held."""
-    rotation = system.rotation
-    largest = np.abs(rotation.speeds).max()
-    rate = np.abs(np.diff(rotation.speeds) / np.diff(rotation.times)).max()
-    steps = int(_SPEED_CHANGE * largest / (rate * schedule.h)) if rate else schedule.steps
-    return max(schedule.every, steps // schedule.every * schedule.every)
 
 
 def _stopped(status: int, t: float, h: float) -> str:

@@ -20,7 +20,7 @@ import numpy as np
 
 from rotorgear.solvers.time.arguments import Gathered
 
-# What is told of a contact, in the order of `MotionStatistics.values`.
+# Statistics of a contact, in the order of `MotionStatistics.values`.
 STATISTICS = (
     "mean force",
     "rms force",
@@ -91,8 +91,8 @@ class Statistics:
 class MotionStatistics:
     """Of c contacts: their forces, shares of the time in front, apart and behind (c, 3), transmission error and approach (c, 2).
 
-    The last two are least and largest values, in m, of which the peak to peak is told. `losses`: contact losses for each step
-    (c,), where shares are counted by steps; none where switches are found between them.
+    The last two are least and largest values in m, whose difference is the peak to peak. `losses`: contact losses for each
+    step (c,), where shares are counted by steps; none where switches are found between them.
     """
 
     force: Statistics

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from rotorgear.elements.by_content import kept_by_content
+from rotorgear.elements.matrices import kept_by_content
 
 
 @dataclass(frozen=True)

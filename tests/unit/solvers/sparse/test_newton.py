@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.solvers.sparse.newton import Laws, settle
+from rotorgear.solvers.sparse.newton import Laws, local_equilibrium
 
 
 def contacts(k: np.ndarray, gap: np.ndarray) -> Laws:
@@ -27,7 +27,7 @@ def condensed(S: np.ndarray, k: np.ndarray, load: np.ndarray) -> tuple[np.ndarra
 def test_linear_forces_are_settled_without_a_step() -> None:
     k = np.diag([3.0, 5.0])
     d0, A = condensed(np.array([[2.0, -1.0], [-1.0, 2.0]]), k, np.array([1.0, -2.0]))
-    found = settle(d0, A, k, lambda d: (k @ d, k))
+    found = local_equilibrium(d0, A, k, lambda d: (k @ d, k))
     assert found.converged
     assert found.steps == found.crept == 0
     assert np.array_equal(found.d, d0)
@@ -42,7 +42,7 @@ def test_any_stiffness_to_expand_about_leads_to_the_same_equilibrium() -> None:
 
     for size in (1e-3, 1.0, 1e3):
         k = size * np.eye(2)
-        found = settle(*condensed(S, k, load), k, laws)
+        found = local_equilibrium(*condensed(S, k, load), k, laws)
         assert found.converged
         assert S @ found.d + laws(found.d)[0] == pytest.approx(load, rel=1e-8)
 
@@ -53,7 +53,7 @@ def test_gaps_in_a_free_structure_are_crossed_however_stiff_their_walls_are() ->
         for load in (1.0, -1.0):
             k = np.array([[stiffness]])
             d0, A = condensed(np.zeros((1, 1)), k, np.array([load]))
-            found = settle(d0, A, k, contacts(np.array([stiffness]), np.array([3e-2])))
+            found = local_equilibrium(d0, A, k, contacts(np.array([stiffness]), np.array([3e-2])))
             assert found.converged, stiffness
             assert found.force == pytest.approx([load], rel=1e-5)
 
@@ -68,14 +68,14 @@ def test_many_contacts_find_the_one_minimum_of_their_energy() -> None:
         k = 10.0 ** generator.uniform(-2, 4, m)
         laws = contacts(k, generator.uniform(0.0, 1.0, m))
         load = generator.standard_normal(m)
-        found = settle(*condensed(S, np.diag(k), load), np.diag(k), laws)
+        found = local_equilibrium(*condensed(S, np.diag(k), load), np.diag(k), laws)
         assert found.converged
         assert S @ found.d + laws(found.d)[0] == pytest.approx(load, abs=1e-6)
 
 
 def test_an_equilibrium_that_does_not_exist_is_said_not_to_be_found() -> None:
     k = np.eye(1)
-    found = settle(
+    found = local_equilibrium(
         np.array([2.0]), np.eye(1), k, lambda d: (np.tanh(d), np.diag(1.0 / np.cosh(np.clip(d, -50, 50)) ** 2))
     )
     assert not found.converged
@@ -92,8 +92,8 @@ def test_forces_that_are_rounding_of_their_parts_are_settled() -> None:
         return left - right, k
 
     d0, A = condensed(np.array([[1e7]]), k, np.zeros(1))
-    assert not settle(d0, A, k, laws, evaluations=200).converged
-    found = settle(d0, A, k, laws, extents=np.array([2.0 * pull / 1e7]))
+    assert not local_equilibrium(d0, A, k, laws, evaluations=200).converged
+    found = local_equilibrium(d0, A, k, laws, extents=np.array([2.0 * pull / 1e7]))
     assert found.converged
     assert abs(found.d[0]) <= 1e-15 * pull / 1e7
 
@@ -108,5 +108,5 @@ def test_the_search_ends_after_its_evaluations() -> None:
         )  # 1 N too much on one side, too little on the other
 
     d0, A = condensed(np.array([[1.0]]), np.eye(1), np.array([2.0]))
-    assert not settle(d0, A, np.eye(1), laws, evaluations=50).converged
+    assert not local_equilibrium(d0, A, np.eye(1), laws, evaluations=50).converged
     assert len(asked) == 51  # and where it began, whose forces are told
