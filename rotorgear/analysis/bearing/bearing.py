@@ -25,7 +25,7 @@ from rotorgear.analysis.bearing.state import (
     on_grid,
     relative,
 )
-from rotorgear.analysis.campbell.discretise import system_for_speeds
+from rotorgear.analysis.campbell.speeds import system_for_speeds
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
 from rotorgear.analysis.modal.modal import modal

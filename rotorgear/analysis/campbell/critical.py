@@ -1,4 +1,12 @@
-"""Critical speeds, directly: speeds at which an order of a shaft or a mesh meets a natural frequency."""
+"""Critical speeds, directly: speeds at which an order of a shaft or a mesh meets a natural frequency; and their errors.
+
+At a critical speed Im s(W) = p W. A mesh that puts s off by e |s| at a held speed moves the crossing by
+
+    dW / W = e / (1 - s' / p),     s' = Im ds/dW = - Im [ y^H (s D_1 + K_1) x / y^H (2 s M + D) x ] ,
+
+with the left shape y, and D = D_0 + W D_1 and K = K_0 + W K_1 near that speed. A line that runs along its mode (s' = p) has a
+critical speed that nothing holds, and an error without bound.
+"""
 
 from __future__ import annotations
 
@@ -9,18 +17,17 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.campbell.critical_error import speed_error
 from rotorgear.analysis.campbell.crossings import EXCITED, participation, whirl_for
-from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
-from rotorgear.analysis.campbell.speeds import highest_speed
-from rotorgear.analysis.common.casings import serving
+from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
+from rotorgear.analysis.common.casings import reduction_errors, serving
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import FINEST, missed
-from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
+from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -34,6 +41,7 @@ from rotorgear.results.laws import about as about_state
 from rotorgear.results.laws import law_rows
 from rotorgear.solvers.eigen.synchronous import LEAST_SHARE, Affine, Synchronous, synchronous_speeds
 from rotorgear.solvers.sparse.pencil import count_below
+from rotorgear.system.bubble_errors import left_shapes
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
@@ -119,7 +127,8 @@ def critical(
                     (line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)
                 ]
         clock.lap("critical speeds")
-        errors = _errors(system, family, found, top, damped)
+        ranges = list(affine_pieces(system, family, top, damped))
+        errors = [_speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]
         clock.lap("error estimate")
         worst = max(errors, default=0.0)
         if accuracy is None or aim is None or worst <= accuracy or isinstance(model, System):
@@ -143,12 +152,34 @@ def critical(
     )
 
 
-def _errors(
-    system: System, family: SpeedFamily, found: list[tuple[ExcitationOrder, Synchronous]], top: float, damped: bool
-) -> list[float]:
-    """Estimated relative discretisation error of each critical speed."""
-    ranges = list(affine_pieces(system, family, top, damped))
-    return [speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]
+def _speed_error(system: System, ranges: Sequence[Affine], root: Synchronous, order: float, sense: float) -> float:
+    """Estimated relative error of one critical speed; 0 where no shaft is cut into elements, infinite where they are too coarse.
+
+    It is that of shaft elements and of the reduction of casings.
+
+    Args:
+        system: the discretised model.
+        ranges: its matrices as functions of the size of the speed.
+        root: the critical speed, its mode in the free dofs.
+        order: of the line that meets it.
+        sense: sign of the rotation.
+    """
+    speed = sense * root.speed
+    s = np.array([root.eigenvalue])
+    x = root.vector[:, None]
+    error = float(total_error(errors_of(system, speed, s, x, np.array([False])), 1)[0])
+    error += float(reduction_errors(system, s, x)[0])
+    if not 0.0 < error < np.inf:
+        return error
+    here = min(ranges, key=lambda piece: max(piece.low - root.speed, root.speed - piece.high))
+    D, _ = here.at(root.speed)
+    y = left_shapes(system, speed, s, x)[:, 0].conj()
+    K_slope = here.K1 if here.K2 is None else here.K1 + 2.0 * root.speed * here.K2
+    turned = y @ (root.eigenvalue * (here.D1 @ root.vector) + K_slope @ root.vector)
+    held = y @ (2.0 * root.eigenvalue * (here.M @ root.vector) + D @ root.vector)
+    slope = -float(np.imag(turned / held))
+    along = abs(1.0 - slope / order)
+    return error / along if along else np.inf
 
 
 def _too_slow(system: System, top: float, lines: tuple[ExcitationOrder, ...]) -> tuple[str, ...]:
@@ -208,8 +239,16 @@ def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool)
     edges = [min((abs(float(w)) for w in family.knots), default=0.0), *inner, end]
     edges = sorted(set(edges))
     square = system.stiffness_per_square
+
+    def matrices(speed: float) -> tuple[sp.csc_array, sp.csc_array]:
+        gyroscopic = speed * system.gyroscopic
+        if not damped:
+            return sp.csc_array(gyroscopic), system.stiffness(speed)
+        stiffness = system.stiffness(speed) + system.circulatory(speed)
+        return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(stiffness)
+
     for low, high in itertools.pairwise(edges):
-        (D_a, K_a), (D_b, K_b) = (_matrices(system, sign * speed, damped) for speed in (low, high))
+        (D_a, K_a), (D_b, K_b) = (matrices(sign * speed) for speed in (low, high))
         if square is not None:
             K_a = sp.csc_array(K_a - low**2 * square)
             K_b = sp.csc_array(K_b - high**2 * square)
@@ -231,12 +270,16 @@ def _clean(A: sp.csc_array, scale: sp.csc_array) -> sp.csc_array:
     return A
 
 
-def _matrices(system: System, speed: float, damped: bool) -> tuple[sp.csc_array, sp.csc_array]:
-    gyroscopic = speed * system.gyroscopic
-    if not damped:
-        return sp.csc_array(gyroscopic), system.stiffness(speed)
-    stiffness = system.stiffness(speed) + system.circulatory(speed)
-    return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(stiffness)
+def looks_of(
+    system: System, roots: Sequence[Synchronous], top: float
+) -> tuple[BasisShapes, np.ndarray, np.ndarray, Portraits]:
+    """Shapes, coordinates in their basis (r, c), speeds (c,) in rad/s in the sense of `top`, and portraits of critical speeds."""
+    count = len(roots)
+    X = np.column_stack([root.vector for root in roots]) if roots else np.zeros((system.n, 0), complex)
+    shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
+    coordinates = shapes.coordinates(0, np.vstack([np.eye(count), 1j * np.eye(count)]))
+    speeds = np.copysign(np.array([root.speed for root in roots]), top)
+    return shapes, coordinates, speeds, shapes.portraits(coordinates, speeds, top)
 
 
 def _result(
@@ -248,12 +291,7 @@ def _result(
     clock: Clock,
 ) -> CriticalResult:
     low, top = ends
-    count = len(found)
-    X = np.column_stack([root.vector for (_, root), _ in found]) if found else np.zeros((system.n, 0), complex)
-    shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
-    coordinates = shapes.coordinates(0, np.vstack([np.eye(count), 1j * np.eye(count)]))
-    speeds = np.copysign(np.array([root.speed for (_, root), _ in found]), top)
-    seen = shapes.portraits(coordinates, speeds, top)
+    shapes, coordinates, speeds, seen = looks_of(system, [root for (_, root), _ in found], top)
     words = shapes.descriptions(coordinates, speeds)
     zeta = system.model.damping.modal_ratio if damped else 0.0
     damps = damped and not SpeedFamily(system, *sorted((low, top))).is_conservative

@@ -10,14 +10,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotorgear.analysis.campbell.critical import roots_of
+from rotorgear.analysis.campbell.critical import looks_of, roots_of
 from rotorgear.analysis.campbell.crossings import whirl_for
-from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
-from rotorgear.analysis.campbell.speeds import highest_speed
+from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import Clock, recorded
-from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
+from rotorgear.analysis.modal.branch_shapes import whirl_numbers
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.spring import constant_spring
@@ -125,11 +124,7 @@ def _with_whirl(system: System, line: ExcitationOrder, top: float) -> tuple[np.n
     if not found:
         return np.zeros(0), np.zeros(0, np.int8)
     found.sort(key=lambda root: root.speed)
-    X = np.column_stack([root.vector for root in found])
-    shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
-    one = np.eye(len(found))
-    speeds = np.copysign(np.array([root.speed for root in found]), top)
-    seen = shapes.portraits(shapes.coordinates(0, np.vstack([one, 1j * one])), speeds)
+    _, _, speeds, seen = looks_of(system, found, top)
     bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
     words = [whirl_for(line, seen, k) if bending[k] >= _BENDS else "" for k in range(len(found))]
     return speeds, whirl_numbers(tuple(words))

@@ -1,13 +1,15 @@
-"""Where branches meet excitation lines, where they turn unstable, and how far the operating speed is from that.
+"""Follows branches of modes over speed: where they meet excitation lines, where they turn unstable, and margins from that.
 
-A root of a function of an eigenvalue over speed is bracketed by two speeds of the track and found by a safeguarded secant; at
-every trial the eigenpair is refined in the reduced problem from the cubic through both ends.
+The modes of each independent group of dofs are those of `SpeedModes.at`; a step is judged by `solvers.tracking` and halved where
+it leaves a doubt. A root of a function of an eigenvalue over speed is bracketed by two speeds of the track and found by a
+safeguarded secant; at every trial the eigenpair is refined in the reduced problem from the cubic through both ends.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg.lapack import zgetrf, zgetrs
@@ -16,7 +18,8 @@ from rotorgear.analysis.campbell.snapshot_basis import SpeedModes
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
 from rotorgear.analysis.modal.whirl import whirl_word_among
 from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin
-from rotorgear.solvers.eigen.reduced_pencil import Pencil
+from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil
+from rotorgear.solvers.eigen.tracking import step
 
 # Below this participation a line can't excite a mode.
 EXCITED = 1e-4
@@ -25,6 +28,67 @@ _CLOSE = 1e-13
 _SAME = 1e-10
 _FACTORISATIONS = 8
 _STEPS = 6
+# A veering narrower than this share of the speed range is drawn as a crossing.
+_NARROWEST = 2.0**-16
+# A mode that ends (it stops to oscillate) is looked for down to this share.
+_END = 2.0**-10
+
+
+@dataclass
+class Track:
+    """Chains of modes: `number` (speeds, chains) place of each chain's mode at a speed, -1 where it doesn't oscillate.
+
+    `halvings` counts the speeds that were put between; `unsure` lists speeds in rad/s at which two modes stayed hard to tell.
+    """
+
+    number: np.ndarray
+    halvings: int = 0
+    unsure: list[float] = field(default_factory=list)
+
+
+def track(modes: Callable[[float], Eigen], speeds: np.ndarray, watched: int) -> Track:
+    """Chain the modes at ascending speeds (k,) in rad/s.
+
+    Args:
+        modes: speed -> eigenpairs of the group.
+        speeds: ascending; tables of bearings may have kinks at these speeds only.
+        watched: the lowest so many modes at a speed must be followed without doubt.
+    """
+    found = Track(np.zeros((0, 0), int))
+    span = abs(speeds[-1] - speeds[0])
+
+    def link(a: float, b: float) -> np.ndarray:
+        """Partner at b of each mode at a (m_a,), over as many steps as it takes."""
+        left = modes(a)
+        right = modes(b)
+        width = abs(b - a)
+        judged = step(left, right, b - a, _NARROWEST * span)
+        partner = judged.partner
+        inner = np.arange(len(left.s)) < watched
+        inner |= (partner >= 0) & (partner < watched)
+        taken = np.isin(np.arange(len(right.s)), partner)
+        ended = np.any(inner & (partner < 0)) or not taken[:watched].all()
+        if not (np.any(judged.doubt & inner & (partner >= 0)) or (ended and width > _END * span)):
+            return partner
+        middle = 0.5 * (a + b)
+        if width <= _NARROWEST * span:
+            found.unsure.append(middle)
+            return partner
+        found.halvings += 1
+        first = link(a, middle)
+        second = link(middle, b)
+        return np.where(first >= 0, second[np.maximum(first, 0)], -1) if len(second) else np.full(len(first), -1)
+
+    chains = [np.arange(len(modes(speeds[0]).s))]
+    for a, b in itertools.pairwise(speeds):
+        partner = link(float(a), float(b))
+        ends = chains[-1]
+        here = np.where(ends >= 0, partner[np.maximum(ends, 0)], -1) if len(partner) else np.full(len(ends), -1)
+        new = np.setdiff1d(np.arange(len(modes(b).s)), here)
+        chains = [np.append(row, np.full(len(new), -1)) for row in chains]
+        chains.append(np.append(here, new))
+    found.number = np.array(chains)
+    return found
 
 
 @dataclass(frozen=True)
@@ -57,41 +121,31 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
     for k in range(len(speeds) - 1):
         low = values[k]
         high = values[k + 1]
-        if low * high < 0.0 or (high == 0.0 and low != 0.0):
-            found.append(_root(modes, chain, branch, speeds[k : k + 2], (low, high), measure, k))
+        if not (low * high < 0.0 or (high == 0.0 and low != 0.0)):
+            continue
+        a, b = (float(speed) for speed in speeds[k : k + 2])
+        fa, fb = low, high
+        s = chain.s[k]
+        q = chain.q[k]
+        for _ in range(60):
+            w = b - fb * (b - a) / (fb - fa) if fb != fa else 0.5 * (a + b)
+            share = (w - speeds[k]) / (speeds[k + 1] - speeds[k])
+            guess = (1.0 - share) * chain.s[k] + share * chain.s[k + 1]
+            s, q = _nearest(modes, chain, w, guess, k, share)
+            f = measure(s, w)
+            if f == 0.0 or abs(b - a) <= _CLOSE * max(abs(a), abs(b)) or abs(f) <= _CLOSE * abs(s):
+                break
+            if f * fb < 0.0:
+                a = b
+                fa = fb
+                b = w
+                fb = f
+            else:  # Illinois: the end that stays counts half
+                b = w
+                fb = f
+                fa = 0.5 * fa
+        found.append(Root(branch, float(w), s, q))
     return found
-
-
-def _root(
-    modes: SpeedModes,
-    chain: Chain,
-    branch: int,
-    ends: np.ndarray,
-    values: tuple[float, float],
-    measure: Measure,
-    k: int,
-) -> Root:
-    (a, b), (fa, fb) = (float(ends[0]), float(ends[1])), values
-    s = chain.s[k]
-    q = chain.q[k]
-    for _ in range(60):
-        w = b - fb * (b - a) / (fb - fa) if fb != fa else 0.5 * (a + b)
-        share = (w - ends[0]) / (ends[1] - ends[0])
-        guess = (1.0 - share) * chain.s[k] + share * chain.s[k + 1]
-        s, q = _nearest(modes, chain, w, guess, k, share)
-        f = measure(s, w)
-        if f == 0.0 or abs(b - a) <= _CLOSE * max(abs(a), abs(b)) or abs(f) <= _CLOSE * abs(s):
-            break
-        if f * fb < 0.0:
-            a = b
-            fa = fb
-            b = w
-            fb = f
-        else:  # Illinois: the end that stays counts half
-            b = w
-            fb = f
-            fa = 0.5 * fa
-    return Root(branch, float(w), s, q)
 
 
 def _nearest(

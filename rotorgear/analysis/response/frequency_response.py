@@ -17,8 +17,7 @@ from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
-from rotorgear.analysis.response.error import highest_peaks
-from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, highest_peaks, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system

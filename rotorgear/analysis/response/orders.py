@@ -18,6 +18,7 @@ import cmath
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 
 import numpy as np
 
@@ -42,6 +43,8 @@ from rotorgear.system.system import System
 
 # What has one frequency: "shaft" or "mesh", the multiple of its frequency, and the ratio to the reference speed.
 _Key = tuple[str, int | float | Fraction, float]
+# With that, the name of what excites, and its part of the order, a `blank` one with what it adds.
+_Part = tuple[_Key, str, "Order"]
 
 _FIRST_ORDER = "the product of its varying stiffness and the vibration; it acts to first order, as a force"
 
@@ -70,6 +73,20 @@ class Order:
     push: np.ndarray | float = 0.0
     fixed: float = 0.0
 
+    def plus(self, other: Order) -> Order:
+        """Both together; they have one frequency, or this one excites nothing."""
+        return replace(
+            self,
+            ratio=self.ratio or other.ratio,
+            fixed=other.fixed,
+            unbalance=self.unbalance + other.unbalance,
+            error=self.error + other.error,
+            force=self.force + other.force,
+            couple=self.couple + other.couple,
+            push=self.push + other.push,
+            minor=self.minor and other.minor,
+        )
+
     def frequency_at(self, speed: float) -> float:
         """Frequency in rad/s at a reference speed in rad/s."""
         return self.ratio * abs(speed) + self.fixed
@@ -90,21 +107,19 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
 
     What has one frequency is one order, with its phases, which follow from the teeth.
     """
-    found: dict[_Key, tuple[list[str], Order]] = {}
     left: list[str] = []
-    system = setup.system
-    count = len(setup.lines.states)
-    for shaft, ratio, load in _unbalances(system):
-        _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((3, count), complex))
-    for mesh, harmonic, ratio, terms in _meshes(setup, left):
-        _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
-    for kind, name, multiple, ratio, terms, minor in _loaded_teeth(setup, left):
-        _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms, minor=minor)
-    for key, name, ratio, fixed, push in _external_loads(system, left):
-        blank = np.zeros(system.n, complex)
-        _add(found, key, name, ratio, blank, np.zeros((3, count), complex))
-        names, order = found[key]
-        found[key] = names, replace(order, push=order.push + push, fixed=fixed)
+    nothing = np.zeros(setup.system.n, complex)
+    rest = np.zeros(len(setup.lines.states), complex)
+    blank = Order("", 0.0, nothing, rest, rest, rest, minor=True)
+    found: dict[_Key, tuple[list[str], Order]] = {}
+    for key, name, part in chain(
+        _unbalances(setup.system, blank),
+        _meshes(setup, blank, left),
+        _loaded_teeth(setup, blank, left),
+        _external_loads(setup.system, blank, left),
+    ):
+        names, order = found.get(key, ([], blank))
+        found[key] = names if name in names else [*names, name], order.plus(part)
     orders = [
         replace(o, name=f"{kind} {', '.join(names)} {harmonic:g}" + (" Hz" if o.fixed else "x"))
         if isinstance(harmonic, float)
@@ -114,31 +129,16 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
     return sorted(orders, key=lambda order: (order.ratio, order.fixed)), tuple(dict.fromkeys(left))
 
 
-def _add(
-    found: dict[_Key, tuple[list[str], Order]],
-    key: _Key,
-    name: str,
-    ratio: float,
-    load: np.ndarray,
-    terms: np.ndarray,
-    *,
-    minor: bool = False,
-) -> None:
-    error, force, couple = np.zeros_like(terms)
-    blank = Order("", ratio, np.zeros_like(load), error, force, couple, minor=True)
-    names, old = found.get(key, ([], blank))
-    if name not in names:
-        names.append(name)
-    error, force, couple = np.array([old.error, old.force, old.couple]) + terms
-    found[key] = (
-        names,
-        Order("", old.ratio, old.unbalance + load, error, force, couple, old.minor and minor, old.push, old.fixed),
-    )
-
-
-def _external_loads(system: System, left: list[str]) -> Iterable[tuple[_Key, str, float, float, np.ndarray]]:
-    """(key, name, ratio, fixed frequency in rad/s, force on the free dofs) of each harmonic of loads and torque ripples."""
+def _external_loads(system: System, blank: Order, left: list[str]) -> Iterable[_Part]:
+    """Each harmonic of loads and torque ripples."""
     T = system.dofs.transform
+
+    def turning(order: float, shaft: str, ratio: float, push: np.ndarray) -> _Part:
+        """An order of a shaft; one of a whole number is that of its unbalances."""
+        multiple = int(order) if order == int(order) else order
+        part = replace(blank, ratio=order * ratio, push=push, minor=False)
+        return ("shaft", multiple, round(order * ratio, 9)), shaft, part
+
     for item in system.state.applied:
         torque = varying_load(system, item.name)
         ratio = abs(system.train.ratio(item.shaft))
@@ -146,28 +146,23 @@ def _external_loads(system: System, left: list[str]) -> Iterable[tuple[_Key, str
             continue
         f = np.zeros(T.shape[0], complex)
         f[6 * system.nodes.at(item.shaft, item.z) + 5] = item.torque * torque.ripple
-        yield _turning(torque.ripple_order, item.shaft, ratio, T.T @ f)
+        yield turning(torque.ripple_order, item.shaft, ratio, T.T @ f)
     for load in system.layout.external_loads:
         sense = system.direction * np.sign(load.ratio)
         if load.frequency:
             push = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * load.phase))
             name = load.address.removeprefix("loads.")
-            yield ("load", load.frequency, 0.0), name, 0.0, 2.0 * np.pi * load.frequency, push
+            part = replace(blank, fixed=2.0 * np.pi * load.frequency, push=push, minor=False)
+            yield ("load", load.frequency, 0.0), name, part
         elif load.order:
             push = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * sense * load.phase))
-            yield _turning(abs(load.order / load.ratio), load.counted, abs(load.ratio), push)
+            yield turning(abs(load.order / load.ratio), load.counted, abs(load.ratio), push)
         elif load.history is not None and load.history.over == "angle":
             coefficients, rest = _of_history(load.history)
             for n, wrench in coefficients:
                 push = T.T @ wrench_load(system, load, wrench if sense > 0 else wrench.conj())
-                yield _turning(float(n), load.counted, abs(load.ratio), push)
+                yield turning(float(n), load.counted, abs(load.ratio), push)
             left += [f"{load.address}: {sentence}" for sentence in _weak("table over the angle", rest)]
-
-
-def _turning(order: float, shaft: str, ratio: float, push: np.ndarray) -> tuple[_Key, str, float, float, np.ndarray]:
-    """The key, name and ratio of an order of a shaft; one of a whole number is that of its unbalances."""
-    multiple = int(order) if order == int(order) else order
-    return ("shaft", multiple, round(order * ratio, 9)), shaft, order * ratio, 0.0, push
 
 
 def _of_history(history: LoadHistory) -> tuple[list[tuple[int, np.ndarray]], float]:
@@ -182,8 +177,8 @@ def _of_history(history: LoadHistory) -> tuple[list[tuple[int, np.ndarray]], flo
     return [(n, found[n - 1]) for n, _ in kept], rest
 
 
-def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
-    """(shaft, size of its speed ratio, force per square of the reference speed) of every unbalance that turns."""
+def _unbalances(system: System, blank: Order) -> Iterable[_Part]:
+    """Every unbalance that turns."""
     model = system.model
     nodes = system.nodes
     for name, item in model.unbalances.items():
@@ -196,11 +191,12 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
         size = item.magnitude * ratio**2 * cmath.exp(1j * sense * item.phase)
         f[6 * node] = size
         f[6 * node + 1] = -1j * sense * size
-        yield item.shaft, abs(ratio), system.dofs.transform.T @ f
+        part = replace(blank, ratio=abs(ratio), unbalance=system.dofs.transform.T @ f, minor=False)
+        yield ("shaft", 1, round(abs(ratio), 9)), item.shaft, part
 
 
-def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np.ndarray]]:
-    """(mesh, harmonic, ratio, [errors; forces; couples] of all contacts) of every harmonic that a mesh is given."""
+def _meshes(setup: Setup, blank: Order, left: list[str]) -> Iterable[_Part]:
+    """Every harmonic that a mesh is given."""
     system = setup.system
     load = system.state.about_nominal_flanks
     for k, state in enumerate(setup.lines.states):
@@ -211,9 +207,11 @@ def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np
         if phase is None or ratio == 0.0:
             continue
         for row, harmonic, amplitude in _harmonics(setup, k, mesh.part, left):
-            terms = np.zeros((3, len(setup.lines.states)), complex)
-            terms[row, k] = amplitude * cmath.exp(1j * harmonic * phase)
-            yield mesh.name, harmonic, harmonic * ratio, terms
+            term = np.zeros(len(setup.lines.states), complex)
+            term[k] = amplitude * cmath.exp(1j * harmonic * phase)
+            part = replace(blank, ratio=harmonic * ratio, minor=False)
+            part = replace(part, force=term) if row else replace(part, error=term)
+            yield ("mesh", harmonic, round(harmonic * ratio, 9)), mesh.name, part
 
 
 def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Iterable[tuple[int, int, complex]]:
@@ -247,8 +245,8 @@ def _weak(what: str, rest: float) -> list[str]:
     return [f"harmonics of its {what} of up to {100.0 * rest:.2g} % of the strongest"] if rest > 0.0 else []
 
 
-def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int | Fraction, float, np.ndarray, bool]]:
-    """(kind, name, harmonic, ratio, [errors; forces; couples] of all contacts, minor) of the joint state of loaded teeth.
+def _loaded_teeth(setup: Setup, blank: Order, left: list[str]) -> Iterable[_Part]:
+    """The harmonics of the joint state of loaded teeth.
 
     The damping of a contact is that of its deflection: what the approach is at first touch acts as a transmission error e, and
     the force f + k e makes up for it in k (v.q - e).
@@ -270,12 +268,16 @@ def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int
                 f"strongest; they would change its peak to peak at a crawl by {100.0 * needed.change:.2g} %"
             )
         error = joint.no_load(cycle)
-        varied = (error, f + joint.stiffness * error, joint.couple(cycle))
-        terms = np.stack([harmonics_of_cycle(values) for values in varied], axis=1)
+        errors, forces, couples = (
+            harmonics_of_cycle(values) for values in (error, f + joint.stiffness * error, joint.couple(cycle))
+        )
         for n in needed.numbers:
+            ratio = n / cycle.periods * cycle.ratio
+            minor = n not in needed.major
+            part = Order("", ratio, blank.unbalance, errors[n - 1], forces[n - 1], couples[n - 1], minor)
             for kind, name, harmonic in _named(setup.system, cycle, Fraction(n, cycle.periods)):
-                yield kind, name, harmonic, n / cycle.periods * cycle.ratio, terms[n - 1], n not in needed.major
-                terms[n - 1] = 0.0  # further names of one order add nothing to it
+                yield (kind, harmonic, round(ratio, 9)), name, part
+                part = replace(blank, ratio=ratio, minor=minor)  # further names of one order add nothing to it
 
 
 def _named(system: System, cycle: Cycle, multiple: Fraction) -> Iterable[tuple[str, str, int | Fraction]]:

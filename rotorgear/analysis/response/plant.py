@@ -1,4 +1,12 @@
-"""A gearbox as a linear plant: its dynamic stiffness at every speed, and what is read off a displacement."""
+"""A gearbox as a linear plant: its dynamic stiffness at every speed, and what is read off a displacement.
+
+A part in a seat has no mass, so that its force on the seat is -(K q + C q') in its rows of the seat. The ground holds a body by
+
+    f = Ψᵀ (M a + C v + K u)
+
+with static shapes Ψ for unit motions of the ground at one place (`rotorgear.casings`). Damping of modes of the whole
+gearbox, D = M V diag(2 ζ ω) Vᵀ M, brakes every point of the casing as accelerations V diag(2 ζ ω) Vᵀ M q' would.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +18,6 @@ import scipy.sparse as sp
 
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.common.stations import part_nodes
-from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping, SeatLoads
 from rotorgear.analysis.response.orders import Order
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
 from rotorgear.system.bubble_errors import ForcedChanges
@@ -28,7 +35,7 @@ class Readings:
         bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
         normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
-        seat_force: on seats of casings, (o, s, 6); ground_force: of the ground on casings, (o, g, 6).
+        casing_seat_force: on seats of casings, (o, s, 6); casing_ground_force: of the ground on casings, (o, g, 6).
         bubble_change: (o,) size of what polynomials that the shaft elements lack would change, as a change of f^H q.
     """
 
@@ -40,8 +47,8 @@ class Readings:
     acceleration: np.ndarray
     displacement: np.ndarray
     normal_velocity: np.ndarray
-    seat_force: np.ndarray
-    ground_force: np.ndarray
+    casing_seat_force: np.ndarray
+    casing_ground_force: np.ndarray
     bubble_change: np.ndarray
 
     @property
@@ -61,10 +68,127 @@ class Readings:
         return Readings(**{item.name: getattr(self, item.name)[which] for item in fields(Readings)})
 
 
+# What of the readings is in the result of a response.
+READ = tuple(item.name for item in fields(Readings) if item.name not in ("pressed", "bubble_change"))
+
+
 def joined(parts: Sequence[Readings]) -> Readings:
     """Readings of several lists of orders at one speed as those of all of them."""
     names = [item.name for item in fields(Readings)]
     return Readings(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def force_rows(
+    system: System, speed: float, parts: Sequence[Sequence[str]], taken: slice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rows on all dofs that give the force of parts by stiffness and by damping, each (k r, a), at a reference speed.
+
+    Args:
+        system: the model. speed: of the reference shaft in rad/s.
+        parts: addresses of those whose forces are added, for each of k places.
+        taken: the r dofs of a part's element that are those of its place.
+    """
+    count = len(range(*taken.indices(12)))
+    K, C = (np.zeros((count * len(parts), system.dofs.transform.shape[0])) for _ in "KC")
+    beta = system.model.damping.rayleigh_beta
+    groups = system.groups_at(speed)
+    for number, names in enumerate(parts):
+        rows = slice(count * number, count * number + count)
+        for group in groups:
+            if group.part not in names:
+                continue
+            columns = group.dofs[0]
+            m = group.matrices
+            for term in (m.stiffness, m.circulatory):
+                if term is not None:
+                    K[rows, columns] += term[0][taken]
+            if m.damping is not None:
+                C[rows, columns] += m.damping[0][taken]
+            if beta and m.stiffness is not None:
+                C[rows, columns] += beta * m.stiffness[0][taken]
+    return K, C
+
+
+@dataclass(frozen=True)
+class ModalDamping:
+    """Modes (n, m) of modal mass 1 and their 2 ζ ω (m,)."""
+
+    modes: np.ndarray
+    sizes: np.ndarray
+
+
+class SeatLoads:
+    """Force, and moment about its point, on each seat that something stands in: rows of the matrices of those parts."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._rows: tuple[sp.csr_array, sp.csr_array] | None = None
+        standing: dict[str, list[str]] = {}
+        for table in ("bearings", "nonlinear_elements"):
+            for part in getattr(system.model, table):
+                seat = system.layout.seat(f"{table}.{part}")
+                if seat is not None:
+                    name = f"{seat.casing}.{system.layout.casing(seat.casing).seats[seat.number]}"
+                    standing.setdefault(name, []).append(f"{table}.{part}")
+        self._standing = standing
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the seats, such as "box.left"."""
+        return tuple(self._standing)
+
+    @property
+    def shared(self) -> tuple[int, ...]:
+        """Numbers of the seats whose load is not that of one bearing."""
+        standing = self._standing.values()
+        return tuple(k for k, parts in enumerate(standing) if len(parts) > 1 or not parts[0].startswith("bearings."))
+
+    def read(self, speed: float, w: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Amplitudes (o, s, 6) for displacements q (n, o) at frequencies w (o,), at a reference speed; all in SI."""
+        if not self._standing:
+            return np.zeros((len(w), 0, 6))
+        if self._rows is None or self._system.has_tables:
+            T = sp.csr_array(self._system.dofs.transform)
+            K, C = force_rows(self._system, speed, tuple(self._standing.values()), slice(0, 6))
+            self._rows = sp.csr_array(sp.csr_array(K) @ T), sp.csr_array(sp.csr_array(C) @ T)
+        by_stiffness, by_damping = self._rows
+        return np.asarray(-(by_stiffness @ q + (by_damping @ q) * (1j * w)).T.reshape(len(w), -1, 6))
+
+
+class GroundLoads:
+    """Force, and moment about the origin of the model, of the ground on each held set and mount of casings from meshes."""
+
+    def __init__(self, system: System, damped: ModalDamping | None) -> None:
+        given = system.model.damping
+        self._parts = []
+        names: list[str] = []
+        for casing in system.model.casings:
+            body = system.layout.casing(casing)
+            K, C, M = body.ground_force, body.ground_damping, body.ground_mass
+            if K is None or C is None or M is None or not body.ground_sets:  # it floats, or was reduced elsewhere
+                continue
+            names += [f"{casing}.{place}" for place in body.ground_sets]
+            own = sp.csr_array(system.dofs.transform)[system.nodes.of_casing(casing), :]
+            # Rayleigh's damping is one of every part of the gearbox.
+            C = C + given.rayleigh_beta * K + given.rayleigh_alpha * M
+            self._parts.append((own, K, C, M))
+        self.names = tuple(names)
+        self._modes = damped if self._parts else None
+        self._momentum = None if self._modes is None else np.asarray(system.mass @ self._modes.modes)
+
+    def read(self, w: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Amplitudes (o, g, 6) for displacements q (n, o) at frequencies w (o,); all in SI."""
+        found = [np.zeros((len(w), 0))]
+        brake = None
+        if self._modes is not None and self._momentum is not None:
+            brake = self._modes.modes @ (self._modes.sizes[:, None] * (self._momentum.T @ q)) * (1j * w)
+        for own, K, C, M in self._parts:
+            u = own @ q
+            accelerations = -(w**2) * u
+            if brake is not None:
+                accelerations = accelerations + own @ brake
+            found.append((K @ u + (C @ u) * (1j * w) + M @ accelerations).T)
+        return np.hstack(found).reshape(len(w), -1, 6)
 
 
 class Plant:
@@ -157,8 +281,8 @@ class Plant:
             acceleration=-(w**2)[:, None] * moved,
             displacement=there,
             normal_velocity=normal,
-            seat_force=self.seats.read(speed, w, q),
-            ground_force=self.ground.read(w, q),
+            casing_seat_force=self.seats.read(speed, w, q),
+            casing_ground_force=self.ground.read(w, q),
             bubble_change=lacking,
         )
 
@@ -175,22 +299,9 @@ class Plant:
         """Rows that give the force on each bearing's node along x y z from displacements and velocities, (3 b, n) each."""
         if self._read is not None and not self.has_tables:
             return self._read
-        system = self.system
-        bearings = {g.part: g for g in system.groups_at(speed) if g.part.startswith("bearings.")}
-        K, C = (np.zeros((3 * len(system.model.bearings), system.dofs.transform.shape[0])) for _ in "KC")
-        beta = system.model.damping.rayleigh_beta
-        for k, name in enumerate(system.model.bearings):
-            group = bearings[f"bearings.{name}"]
-            m = group.matrices
-            columns = group.dofs[0]
-            for term in (m.stiffness, m.circulatory):
-                if term is not None:
-                    K[3 * k : 3 * k + 3, columns] += term[0][-6:-3]
-            if m.damping is not None:
-                C[3 * k : 3 * k + 3, columns] += m.damping[0][-6:-3]
-            if beta and m.stiffness is not None:
-                C[3 * k : 3 * k + 3, columns] += beta * m.stiffness[0][-6:-3]
-        T = system.dofs.transform
+        bearings = [(f"bearings.{name}",) for name in self.system.model.bearings]
+        K, C = force_rows(self.system, speed, bearings, slice(-6, -3))
+        T = self.system.dofs.transform
         self._read = np.asarray((T.T @ K.T).T), np.asarray((T.T @ C.T).T)
         return self._read
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -14,10 +15,18 @@ from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
-from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
-from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import (
+    MARGIN,
+    aims,
+    at_speed,
+    damped_modes,
+    mesh_error,
+    parting,
+    plan_up_to,
+    speed_warnings,
+)
 from rotorgear.analysis.response.orders import Order, orders_of
-from rotorgear.analysis.response.plant import Plant, Readings
+from rotorgear.analysis.response.plant import READ, Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.response.second_order import peaks_of
 from rotorgear.analysis.static.lowest_speed import lowest_speed
@@ -32,7 +41,6 @@ from rotorgear.results.laws import law_rows
 from rotorgear.results.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
-from rotorgear.system.system import System
 
 METHODS = ("auto", "modal", "direct")
 # A run-up without speeds goes from a tenth of the operating speed to a fifth above it.
@@ -85,10 +93,16 @@ def response(
         ConvergenceError: the modal solution does not reach its tolerance, or an undamped resonance is hit exactly.
     """
     chosen, begun = _speeds(model, speeds, start, stop, points)
-    _check(method, modal_damping, fmax, elements, accuracy)
+    if method not in METHODS:
+        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"the modal damping ratio must lie between 0 and 1, got {modal_damping:g}")
+    check_request(None, None, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
     speed = float(chosen[-1])
-    state, first = about_mean(model, _spread(chosen), speed)
+    # Tangents at all speeds, or at so many of them that straight lines between serve.
+    spread = np.unique(np.linspace(0, len(chosen) - 1, _TANGENTS).round().astype(int))
+    state, first = about_mean(model, [float(value) for value in chosen[spread]], speed)
     orders, weak = orders_of(first)
     orders, left = _within(orders, chosen, fmax)
     fastest = float(np.max(np.abs(chosen)))
@@ -100,10 +114,10 @@ def response(
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
         plan = plan_up_to(served, at_speed(state, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
-        setup, orders = _discretised(
-            first, linear_system(served, [speed], plan, state=first.with_tangents(state)), orders
-        )
-        system = setup.system
+        system = linear_system(served, [speed], plan, state=first.with_tangents(state))
+        setup = replace(first, system=system, lines=contact_lines(system))
+        names = {order.name for order in orders}
+        orders = [order for order in orders_of(setup)[0] if order.name in names]
         modes, w = damped_modes(system, damped_up_to(system, highest), speed)
         plant = Plant(system, setup.lines, (modes, w, zeta))
         how, why = choose_method(method, len(chosen), len(orders), system.n)
@@ -121,18 +135,9 @@ def response(
     shape_w, shape_loads = plant.loads(orders, at)
     deflections = solve_orders(plant, plant.dynamics(at), shape_w, shape_loads)
     nodes, shapes = shapes_at_stations(system, system.dofs.expand(deflections))
-    quantities = (
-        "mesh_force",
-        "transmission_error",
-        "approach",
-        "bearing_force",
-        "acceleration",
-        "displacement",
-        "normal_velocity",
-        "seat_force",
-        "ground_force",
-    )
-    stacked = {name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in quantities}
+    quantities: dict[str, Any] = {
+        name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in READ
+    }
     largest = peaks_of(setup, plant, orders, chosen, run.readings)
     progress(1.0, "done")
     return ResponseResult(
@@ -145,21 +150,13 @@ def response(
         contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
         mean_force=setup.mean_force,
         mesh_stiffness=setup.lines.stiffness,
-        mesh_force=stacked["mesh_force"],
-        transmission_error=stacked["transmission_error"],
-        approach=stacked["approach"],
+        **quantities,
         bearings=tuple(model.bearings),
-        bearing_force=stacked["bearing_force"],
         points=tuple(model.points),
-        acceleration=stacked["acceleration"],
         places=tuple(plant.places),
-        displacement=stacked["displacement"],
         casings=tuple(plant.surfaces),
         casing_seats=plant.seats.names,
-        casing_seat_force=stacked["seat_force"],
         casing_grounds=plant.ground.names,
-        casing_ground_force=stacked["ground_force"],
-        normal_velocity=stacked["normal_velocity"],
         surface_area=np.array([surface.normals_and_areas()[1].sum() for surface in plant.surfaces.values()]),
         shape_speed=at,
         shapes=shapes,
@@ -184,7 +181,7 @@ def response(
         warnings=(
             *few,
             *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
-            *parting(setup, stacked["mesh_force"], chosen),
+            *parting(setup, quantities["mesh_force"], chosen),
             *([short] if short else []),
         ),
         status=short or "success",
@@ -209,19 +206,6 @@ def _beyond_mesh(orders: list[Order], top: float, fastest: float) -> list[str]:
         f"a finer mesh for {len(beyond)} small orders of loaded teeth above {top / (2.0 * np.pi):.5g} Hz, up to "
         f"{beyond[-1].frequency_at(fastest) / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
     ]
-
-
-def _spread(speeds: np.ndarray) -> list[float]:
-    """Speeds at which tangents are taken: all, or so many of them that straight lines between serve."""
-    at = np.unique(np.linspace(0, len(speeds) - 1, _TANGENTS).round().astype(int))
-    return [float(speed) for speed in speeds[at]]
-
-
-def _discretised(first: Setup, system: System, orders: list[Order]) -> tuple[Setup, list[Order]]:
-    """The same mean state as the linear system has it, with the orders of the same names."""
-    setup = replace(first, system=system, lines=contact_lines(system))
-    names = {order.name for order in orders}
-    return setup, [order for order in orders_of(setup)[0] if order.name in names]
 
 
 def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tuple[list[Order], list[str]]:
@@ -276,14 +260,6 @@ def _speeds(
     if np.any(speeds == 0.0) or np.any(np.sign(speeds) != np.sign(speeds[0])):
         raise AnalysisError("speeds: all of one sense and none of them 0; at standstill nothing excites the model")
     return speeds[np.argsort(np.abs(speeds), kind="stable")], begun
-
-
-def _check(method: str, modal_damping: float, fmax: float | None, elements: int | None, accuracy: float | None) -> None:
-    if method not in METHODS:
-        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
-    if not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"the modal damping ratio must lie between 0 and 1, got {modal_damping:g}")
-    check_request(None, None, fmax, elements, accuracy)
 
 
 def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, readings: list[Readings]) -> float:

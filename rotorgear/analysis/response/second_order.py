@@ -104,9 +104,9 @@ def _quantities(run: _Run) -> Iterable[tuple[str, str, str, np.ndarray]]:
         unit = "rad/s^2" if point.direction in _MOTIONS_THAT_TURN else "m/s^2"
         yield "acceleration", name, unit, stacked("acceleration")[:, :, k]
     for k in run.plant.seats.shared:
-        yield "seat force", run.plant.seats.names[k], "N", stacked("seat_force")[:, :, k, :3]
+        yield "seat force", run.plant.seats.names[k], "N", stacked("casing_seat_force")[:, :, k, :3]
     for k, name in enumerate(run.plant.ground.names):
-        yield "ground force", name, "N", stacked("ground_force")[:, :, k, :3]
+        yield "ground force", name, "N", stacked("casing_ground_force")[:, :, k, :3]
     for k, name in enumerate(run.plant.surfaces):
         yield "normal velocity", name, "m/s", stacked("normal_velocity")[:, :, k]
     if not model.bearings and not names:

@@ -16,8 +16,8 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_or_operating
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.response.error import strongest_orders
 from rotorgear.analysis.response.frequency_response import frf, relative_change
+from rotorgear.analysis.response.mesh import strongest_orders
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.static.static import forces_of, solved, static
 from rotorgear.errors import AnalysisError

@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg as la
 
 import rotorgear as rg
-from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping
+from rotorgear.analysis.response.plant import GroundLoads, ModalDamping
 from rotorgear.casings.casing import forget
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.file_mesh import NamedSet
