@@ -26,7 +26,7 @@ from rotorgear.model.numbers import Numbers, numbers_of
 from rotorgear.model.parts.operation import Scatter
 
 DISTRIBUTIONS = ("normal", "lognormal", "uniform")
-# Samples reach so many standard deviations.
+# Samples reach this many standard deviations.
 _REACH = 4.5
 _INDEX_ERROR = ".index_error"
 

@@ -28,7 +28,7 @@ class Account:
         return f"assumed: {reason}"
 
     def missing(self, where: Component | str, expected: str, hint: str = "") -> None:
-        """Note what the file does not say and nothing can stand in for."""
+        """Note what the file does not say and nothing can replace."""
         source = where.attributes.get("data_source") if isinstance(where, Component) else None
         if source is not None and source.raw and not hint:
             # From 1.5 on a file may refer to a data base beside it.
@@ -63,7 +63,7 @@ class Account:
         return None if value is None else _as_number(value.raw)
 
     def numbers(self, component: Component, name: str, kind: str, count: int) -> list[float] | None:
-        """An array of so many numbers in SI; None where it is not there."""
+        """An array of `count` numbers in SI; None where it is not there."""
         value = component.attributes.get(name)
         if value is None or value.raw in (None, "", []):
             return None

@@ -97,7 +97,7 @@ def estimated(
     return radial, axial, words
 
 
-# A stiffness outside these stands for rigid (1e20, 1e23) or for none (0): in N/m, and in N m/rad.
+# A stiffness outside these means rigid (1e20, 1e23) or for none (0): in N/m, and in N m/rad.
 _STIFFNESS = (1e4, 1e11)
 _TILT = (1.0, 1e9)
 # So does a power of ten from here on, in the unit of the file: nobody computes or measures exactly that.
@@ -237,7 +237,7 @@ def _stiffness(
 
 
 def _given(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:
-    """A stiffness that the file gives; None where it gives none, or one that stands for rigid or for free."""
+    """A stiffness that the file gives; None where it gives none, or one that means rigid or free."""
     value = account.number(part, names, kind)
     bounds = _STIFFNESS if kind == "stiffness" else _TILT
     if value is None or not bounds[0] <= value <= bounds[1]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Value:
-    """A value as it stands in the file: text, number, truth or a list of them, and the text of its unit."""
+    """A value as the file has it: text, number, truth or a list of them, and the text of its unit."""
 
     raw: object
     unit: str = ""
@@ -93,7 +93,7 @@ FACTORS: dict[str, dict[str, float]] = {
     "inertia": {"kgm^2": 1.0, "kgmm^2": 1e-6},
     "ratio": {"": 1.0, "%": 1e-2},
 }
-# What no gearbox has, in SI: a number beyond it stands for "unlimited" or "not set" and is taken for missing. Stiffnesses, moduli
+# What no gearbox has, in SI: a number beyond it means "unlimited" or "not set" and is taken for missing. Stiffnesses, moduli
 # and densities have bounds of their own where they are read.
 LARGEST = {
     "length": 1e3,

@@ -65,7 +65,7 @@ def read_gear(
     account = structure.account
     owner = structure.shaft_of(gear)
     if owner is None or owner.id not in shafts:
-        account.missing(gear, "it must stand on a shaft, by an assembly relation")
+        account.missing(gear, "it must be on a shaft, by an assembly relation")
         return None
     shaft = shafts[owner.id]
     data = structure.data_of(gear)
@@ -183,13 +183,13 @@ def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> 
     stated = account.number(pair.stage, ("center_distance", "centre_distance"), "length")
     if stated is not None and abs(stated - distance) > 1e-5:
         account.warnings.append(
-            f"{pair.stage} states a centre distance of {1e3 * stated:.6g} mm; its shafts stand {1e3 * distance:.6g} mm apart, "
+            f"{pair.stage} states a centre distance of {1e3 * stated:.6g} mm; its shafts are {1e3 * distance:.6g} mm apart, "
             "which counts"
         )
     needed = shift_sum(first, second, distance) if distance > 0.0 else None
     if needed is None or abs(needed) > 3.0:
         account.missing(
-            pair.stage, f"its shafts stand {1e3 * distance:.6g} mm apart, where gears of this size can't mesh"
+            pair.stage, f"its shafts are {1e3 * distance:.6g} mm apart, where gears of this size can't mesh"
         )
         return None
     return _shifted(first, second, needed, pair, account)

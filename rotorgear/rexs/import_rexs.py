@@ -39,7 +39,7 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
 
     Raises:
         AnalysisError: no REXS file, a planetary, worm or bevel stage, or no such load case.
-        ModelError: values are missing that nothing can stand in for, or the model would not be sound; all of them.
+        ModelError: values are missing that nothing can replace, or the model would not be sound; all of them.
     """
     clock = time.perf_counter()
     document = read_document(path)

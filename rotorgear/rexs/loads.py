@@ -32,7 +32,7 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
     owner = structure.shaft_of(part)
     shaft = shafts.get(owner.id) if owner is not None else None
     if shaft is None:
-        account.left_out.append(f"{part}: it stands on no shaft")
+        account.left_out.append(f"{part}: it is on no shaft")
         return []
     mass = account.number(part, ("mass_of_component", "mass"), "mass")
     if not mass or mass < 0.0:
@@ -123,7 +123,7 @@ def load_tables(
     for load in structure.document.of_type("external_load"):
         owner = structure.shaft_of(load)
         if owner is None or owner.id not in shafts:
-            account.left_out.append(f"{load}: it stands on no shaft")
+            account.left_out.append(f"{load}: it is on no shaft")
             continue
         shaft = shafts[owner.id]
         u = account.number(load, ("u_coordinate_on_shaft",), "length")

@@ -141,7 +141,7 @@ def read_pieces(shaft: Component, structure: Structure, account: Account) -> tup
 def shaft_axes(structure: Structure, pairs: list[Pair]) -> dict[str, Axis]:
     """Axes of all shafts by number, in the frame of the model; it becomes that of the shafts where these run otherwise.
 
-    Shafts that the file does not place follow from the centre distance and the angle of the stages: the second gear stands
+    Shafts that the file does not place follow from the centre distance and the angle of the stages: the second gear is
     at v = a sin(phi), w = a cos(phi) from the first, phi = rotating_angle_around_neg_u_axis counted from w.
     """
     account = structure.account

@@ -202,7 +202,7 @@ class Structure:
         return np.asarray(self.model.axes @ (frame.origin - self.model.origin))
 
     def shaft_of(self, component: Component, *roles: str) -> Component | None:
-        """The shaft that a component stands on (in some of the roles of that shaft, where they are given)."""
+        """The shaft that a component is on (in some of the roles of that shaft, where they are given)."""
         wanted = roles or ("assembly", "inner_part", "shaft", "side_1")
         for relation in self.document.relations:
             if relation.type in _ON_SHAFT and component.id in (number for _, number in relation.refs):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 # Digits of a written number: those of a double that rounding in the unit does not touch.
 _DIGITS = 12
-# A longer comment stands above its line.
+# A longer comment is above its line.
 _BESIDE = 70
 _UNITS = {
     "length": ("mm", 1e-3),
@@ -78,7 +78,7 @@ class Table:
 
 
 def comment_line(words: str) -> str:
-    """Words that may stand in a comment: control characters may not."""
+    """Words as a comment takes them: control characters may not."""
     return "".join(letter if letter.isprintable() else " " for letter in words)
 
 

@@ -1,4 +1,4 @@
-"""A universal file as its datasets: each stands between two lines that hold nothing but -1 in the first six columns.
+"""A universal file as its datasets: each is between two lines that hold nothing but -1 in the first six columns.
 
 A set of binary functions (58b) has eleven lines of text, then bytes without any line ends, in which such a line may occur by
 chance: its length is taken from its identifier, or from its header where the two disagree, and the one that the closing line
@@ -188,7 +188,7 @@ def numbers_of(rows: Iterable[tuple[int, str]], block: Block) -> NDArray[np.floa
 
 
 def whole_in(text: str, block: Block, row: int, least: int) -> list[int]:
-    """The whole numbers in a row, at least so many.
+    """The whole numbers in a row, `least` of them or more.
 
     Raises:
         ModelError: fewer of them, or others.

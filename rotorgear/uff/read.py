@@ -163,7 +163,7 @@ def _to_si(numerator: tuple[int, str], denominator: tuple[int, str], units: Unit
 def _parted(
     numbers: NDArray[np.float64], count: int, kind: int, even: bool, block: Block
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | NDArray[np.complex128]]:
-    """Abscissa (None where even) and ordinates of `count` values that stand one after the other."""
+    """Abscissa (None where even) and ordinates of `count` values that follow one another."""
     parts = 2 if kind in _COMPLEX else 1
     each = parts + (0 if even else 1)
     rest = numbers[count * each :]

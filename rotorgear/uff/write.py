@@ -108,7 +108,7 @@ def function_set(function: Function, *, binary: bool = False) -> bytes:
             rows = ["".join(f"{v:20.12E}" for v in flat[k : k + 4]) for k in range(0, len(flat), 4)]
         else:
             pairs = [f"{row[0]:13.5E}" + "".join(f"{v:20.12E}" for v in row[1:]) for row in table]
-            # Real values stand two a row with their abscissa, complex ones alone.
+            # Real values are two a row with their abscissa, complex ones alone.
             rows = pairs if is_complex else ["".join(pairs[k : k + 2]) for k in range(0, len(pairs), 2)]
         return _dataset(58, [*header, *rows])
     data = table.tobytes()

@@ -147,7 +147,7 @@ def bearing(
     asked = (
         [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
     )
-    # Each equilibrium is begun where the one before stands; a speed without one is a warning.
+    # Each equilibrium is looked for from the one before; a speed without one is a warning.
     found: dict[float, Equilibrated] = {}
     notes = []
     near: Sequence[LawState] = ()
@@ -220,7 +220,7 @@ def bearing(
 
 
 def rigid_threshold(K: np.ndarray, C: np.ndarray, speed: float) -> tuple[float | None, float | None]:
-    """Mass of a rigid rotor that stands at its threshold on a bearing, and the ratio of its whirl to the speed; None without.
+    """Mass of a rigid rotor that is at its threshold on a bearing, and the ratio of its whirl to the speed; None without.
 
     With m s^2 + C s + K singular at s = i w:  k = m w^2 = (Kxx Cyy + Kyy Cxx - Kxy Cyx - Kyx Cxy)/(Cxx + Cyy) and
     w^2 = ((Kxx - k)(Kyy - k) - Kxy Kyx)/(Cxx Cyy - Cxy Cyx)  (Lund, J. Tribology 109 (1987) 37).

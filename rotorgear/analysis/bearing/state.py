@@ -1,4 +1,4 @@
-"""One bearing of a gearbox in equilibrium: which law it has, and where it stands under a load, on any grid."""
+"""One bearing of a gearbox in equilibrium: which law it has, and its displacement under a load, on any grid."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def law_at(equilibrium: Equilibrated, address: str) -> LawState:
 
 
 def carried(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, points: int = CYCLE_POINTS) -> Carried:
-    """A law under a load (k,), from displacements near by; rolling elements are averaged over so many points of their pitch.
+    """A law under a load (k,), from displacements near by; rolling elements are averaged over `points` of their pitch.
 
     Raises:
         AnalysisError: Newton's method does not find it.
@@ -132,7 +132,7 @@ def relative(difference: np.ndarray, of: np.ndarray) -> float:
 
 
 def on_grid(law: ForceLaw, factor: float) -> ForceLaw:
-    """A film on a grid with so many times the cells each way, within the bounds of its law; other laws have none."""
+    """A film on a grid with `factor` times the cells each way, within the bounds of its law; other laws have none."""
     cells = {}
     for key in law.grid:
         about = law.declared()[key]

@@ -38,14 +38,14 @@ from rotorgear.system.system import System
 
 # A motion softer than this share of the first elastic frequency is rigid.
 _LEAST = 1e-3
-# Modes so many margins from a line, and with this share of the least participation, may come to count.
+# Modes within this many margins of a line, and with this share of the least participation, may come to count.
 _WIDER = 1.2
 _SOME = 0.5
 # Modes closer than this are looked at as one space.
 CLOSE = 2e-3
 # Half width of the differences, in standard deviations.
 _STEP = 1e-3
-# Modes scatter within so many margins of a line, and with this share of the least participation.
+# Scatter is found of modes within this many margins of a line, and with this share of the least participation.
 MARGINS = 3.0
 _PERHAPS = 0.7
 

@@ -40,10 +40,10 @@ _ITERATIONS = 60
 _BISECTIONS = 7
 # Weight of the penalty beside the mass over that of the file.
 _WEIGHT = 30.0
-# Standard deviations by which the margin is to be kept: one more step after each that was reached, at most so many.
+# Standard deviations by which the margin is to be kept: one more step after each that was reached, up to a limit.
 _DEVIATIONS = 0.5
 _MOST_DEVIATIONS = 6.0
-# A number this near to a bound, as a share of their distance, stands at it.
+# A number this near to a bound, as a share of their distance, is at it.
 _AT_BOUND = 1e-4
 _ROUNDING = 1e-5
 # A margin that changes by more than this share of the one asked for on the finer mesh is said to be unresolved; those beyond so

@@ -84,7 +84,7 @@ def bounds_of(
             low[j] = min(max(low[j], first), numbers.start[j])
             high[j] = max(min(high[j], last), numbers.start[j])
             if low[j] == high[j]:
-                raise AnalysisError(f"{address}: there is no room beside it; leave it out, or move what stands there")
+                raise AnalysisError(f"{address}: there is no room beside it; leave it out, or move what is there")
         for side, bound in ((-1, low), (1, high)):
             taken = _taken(numbers, j, float(bound[j]))
             if taken != bound[j]:
@@ -107,7 +107,7 @@ def _shaft(model: Model, address: str) -> str:
 
 
 def _room(model: Model, address: str, here: float) -> tuple[float, float]:
-    """Where a part may stand without a jump over its neighbours or off its shaft."""
+    """Where a part may be without a jump over its neighbours or off its shaft."""
     shaft = _shaft(model, address)
     part = model.shafts[shaft]
     first = float(part.start)
@@ -126,7 +126,7 @@ def _room(model: Model, address: str, here: float) -> tuple[float, float]:
             if getattr(other, "kind", "") == "herringbone":
                 half = 2.0 * half + 0.5 * (getattr(other, "gap", None) or 0.0)
             if z - half <= here <= z + half:
-                continue  # it stands there already, as a disk on a bearing's place
+                continue  # it is there already, as a disk on a bearing's place
             if z < here:
                 low = max(low, min(z + half + apart, here))
             else:
@@ -176,7 +176,7 @@ class Problem:
         speeds: of the reference shaft in rad/s.
         lines: excitations.
         plan: the mesh.
-        below_hz: modes up to so many Hz.
+        below_hz: highest frequency of the modes in Hz.
         margin: that the penalty asks for, a little more than
         asked: the margin itself.
         least: least participation that counts.

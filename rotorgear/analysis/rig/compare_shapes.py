@@ -41,7 +41,7 @@ from rotorgear.results.correlation import ALIKE, ShapeChance, ShapeComparison, S
 from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 
-# A mode is followed where this share of it is in one mode of the next place, or after so many halves of a step.
+# A mode is followed where this share of it is in one mode of the next place, or after this many halvings of a step.
 _CLEAR = 0.6
 _HALVES = 5
 
@@ -54,7 +54,7 @@ def identified_pairs(
     Args:
         model: the model, at standstill.
         plan: its mesh.
-        fmax: modes below so many Hz are looked at.
+        fmax: highest frequency in Hz of the modes that lines may belong to.
         given: measured shapes.
         tolerance: largest |f_mode / f_rig - 1| of a line without shape.
     """

@@ -31,7 +31,7 @@ from rotorgear.progress import Progress
 SHAPE_NOISE = 0.02
 # Shapes of modes closer than this in ln f turn into each other at the slightest change: their plane is compared, not each.
 CLOSE = 0.03
-# So much further apart are modes still close, and so much more noise is in ln f, where looseness is 1.
+# Where looseness is 1, modes are close up to this much further apart, and ln f has this much more noise.
 _LOOSE_CLOSE = 0.15
 _LOOSE_FREQUENCY = 0.1
 # How much the noise is enlarged on the way, as a share of a shape's root mean square.
@@ -40,7 +40,7 @@ _MOST_SOLUTIONS = 40
 _LOOKS = 2
 # A step that changes the objective by less than this share moves no number by more than a twentieth of what it is known to.
 _AT_REST = 1e-5
-# A misfit of so many times the number of values, and steps that lessen it by less than this share.
+# Steps crawl where the misfit is this many times the number of values and they lessen it by less than this share.
 _MISFIT = 2.0
 _CRAWL = 0.01
 
@@ -227,7 +227,7 @@ def first_fit(misfit: Misfit) -> Fit:
 def approach(misfit: Misfit, start: Fit, progress: Progress) -> Fit:
     """One step each against noise that is less and less enlarged; modes are paired anew after each.
 
-    Far from the truth close modes stand in for each other, and full trust in a wrong pair would lead astray.
+    Far from the truth close modes are taken for each other, and full trust in a wrong pair would lead astray.
     """
     state = start
     posterior = None

@@ -101,8 +101,8 @@ class ReceptanceModel:
         found = []
         for j, address in enumerate(numbers.addresses):
             K, D, M = self._change(x, j, address, here, springs)
-            pushed = K @ here.q_in + 1j * w * (D @ here.q_in) - w**2 * (M @ here.q_in)
-            found.append(-left @ pushed)
+            forces = K @ here.q_in + 1j * w * (D @ here.q_in) - w**2 * (M @ here.q_in)
+            found.append(-left @ forces)
         return np.array(found)
 
     def error(self, x: NDArray[np.float64], here: Receptances, count: int = 3) -> float:

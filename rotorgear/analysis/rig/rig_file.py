@@ -21,7 +21,7 @@ from rotorgear.results.comparison import RigLine
 def csv_rows(file: Path, expected: str) -> tuple[str, list[tuple[int, list[str]]]]:
     """Return the delimiter, and (line number, stripped cells) of every row that says something, the header first.
 
-    Comma, semicolon or tab stand between the cells; blank rows and rows that start with # are skipped.
+    Cells are separated by comma, semicolon or tab; blank rows and rows that start with # are skipped.
 
     Args:
         file: to be read.
@@ -37,7 +37,7 @@ def csv_rows(file: Path, expected: str) -> tuple[str, list[tuple[int, list[str]]
         raise ModelError([Problem(file.name, "", expected, reason)], str(file)) from error
     # A comment becomes an empty line, so that the numbers of lines stay those of the file.
     lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
-    # The header tells the delimiter: below it, commas may also stand in numbers and labels.
+    # The header tells the delimiter: below it, commas may also be in numbers and labels.
     delimiter = max(",;\t", key=next((line for line in lines if line.strip()), "").count)
     rows = []
     for number, line in enumerate(lines, start=1):

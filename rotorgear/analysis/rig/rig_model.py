@@ -73,7 +73,7 @@ class RigModel:
     Attributes:
         numbers: the free numbers.
         plan: the mesh.
-        fmax: all modes below so many Hz.
+        fmax: highest frequency of the modes in Hz.
         points: names of the points whose displacements are wanted.
         speed: of the reference shaft in rad/s, 0 at standstill; nothing damps.
     """

@@ -2,7 +2,7 @@
 
 All matched shapes y_k are compared with the planes of their modes. Taking one sensor otherwise changes the sum of squares
 R = sum |y_k - P_k y_k|^2. Of independent errors of unknown size the log likelihood grows by N/2 ln(R / R'), N values: a change is
-named where that beats by far what the best of so many useless ones would bring, and nothing is applied.
+named where that beats by far what the best of as many useless changes would bring, and nothing is applied.
 """
 
 from __future__ import annotations

@@ -81,7 +81,7 @@ def sensors(
         check_whole("the number of modes", modes, 2)
     most = None if fmax is not None else modes or count
     if fmax is None:
-        # A first look at the modes says how far up so many of them reach.
+        # A first look at the modes says up to which frequency they reach.
         first = solve(linear_system(model, [None], Plan(elements or 2)), Wanted(None, (modes or count) + 12, None))
         elastic = np.sort(np.abs(first.eigenvalues[~first.rigid]))
         if not elastic.size:

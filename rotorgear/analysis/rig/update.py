@@ -91,7 +91,7 @@ def update(
     Raises:
         AnalysisError: no lines, no line near a mode, points that the model has not, noise that makes no sense.
         ModelError: addresses that lead nowhere, a rig file that can't be read.
-        ConvergenceError: the steps don't come to rest.
+        ConvergenceError: the steps do not converge.
     """
     if not 0.0 < shape_noise < 1.0:
         raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")

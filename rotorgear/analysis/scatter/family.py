@@ -208,7 +208,7 @@ def _error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> float:
 
 # A change of one standard deviation is looked at on both sides.
 _SIDE = 1.0
-# Directions that carry less than this share of the largest are left out, and never more than so many are taken.
+# Directions that carry less than this share of the largest are left out, and never more than this number is taken.
 _LEAST = 1e-5
 _MOST = 80
 _STEPS = 6
@@ -242,7 +242,7 @@ def basis_of(
     X: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """The basis (n, r) with nominal modes w^2 (m,), X (n, m) first, orthonormal in M."""
-    pushed = []
+    forces = []
     for j in range(len(spreads)):
         z = np.zeros(len(spreads))
         z[j] = _SIDE
@@ -252,16 +252,16 @@ def basis_of(
             if other.n == system.n:
                 K = other.stiffness(speed or 0.0) - system.stiffness(speed or 0.0)
                 M = other.mass - system.mass
-                pushed.append(sign * (K @ X - (M @ X) * values))
+                forces.append(sign * (K @ X - (M @ X) * values))
     if speed:
-        pushed.append(speed * (system.gyroscopic @ X) * np.sqrt(np.maximum(values, 0.0)))
-    if not pushed:
+        forces.append(speed * (system.gyroscopic @ X) * np.sqrt(np.maximum(values, 0.0)))
+    if not forces:
         return X
     shift = float(np.median(values[values > 0.0])) if np.any(values > 0.0) else 1.0
     shifted = sp.csc_array(system.stiffness(speed or 0.0) + shift * system.mass)
     from scipy.sparse.linalg import splu
 
-    answers = splu(shifted).solve(np.hstack(pushed) / np.tile(values + shift, len(pushed)))
+    answers = splu(shifted).solve(np.hstack(forces) / np.tile(values + shift, len(forces)))
     whole = np.linalg.norm(answers, axis=0)
     answers -= X @ (X.T @ (system.mass @ answers))
     # In a model of few dofs its modes hold everything: what is left is rounding.

@@ -1,7 +1,7 @@
 """Scatter of a model: what its uncertain numbers make of frequencies, margins to excitations and load sharing.
 
 To first order a frequency moves by its energies, d w = phi^H (K' + i w W G' - w^2 M') phi / 2 w, so that
-sigma_w^2 = sum_j (s_j dw/dz_j)^2, and each number's term is its share. Beside that stand samples: every one solved in a basis
+sigma_w^2 = sum_j (s_j dw/dz_j)^2, and each number's term is its share. Beside that are samples: every one solved in a basis
 that holds nominal modes and what the numbers add to them, at a small share of the cost of the whole system.
 """
 

@@ -1,4 +1,4 @@
-"""Derivatives of natural frequencies and mode shapes with respect to numbers of a model, standing still or rotating.
+"""Derivatives of natural frequencies and mode shapes with respect to numbers of a model, at standstill or rotating.
 
 With Q(w) = K + i w W G - w^2 M, Q phi = 0 and no damping (Fox and Kapoor 1968, Rates of change of eigenvalues and eigenvectors,
 AIAA Journal 6; Lancaster 1964, On eigenvalues of matrices dependent on a parameter, Numerische Mathematik 6):
@@ -196,7 +196,7 @@ def bordered(
         Q = Q + 1j * w * speed * system.gyroscopic
         B = 2.0 * w * C - 1j * speed * (system.gyroscopic @ modes)
     A = sp.csc_array(sp.block_array([[Q, sp.csc_array(B)], [sp.csc_array(C).conj().T, None]]))
-    # Stiffnesses in N/m stand beside ones in N m/rad, and the border beside both: to unit size first.
+    # Stiffnesses in N/m are beside ones in N m/rad, and the border beside both: all are scaled to unit size first.
     scale = 1.0 / np.sqrt(np.maximum(abs(A).max(axis=1).toarray().ravel(), 1e-300))
     S = sp.diags_array(scale)
     right: NDArray[Any] = scale[:, None] * np.vstack([-forces, along])

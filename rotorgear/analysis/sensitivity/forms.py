@@ -145,7 +145,7 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
         forms: (a, r, r), the first three K, M and W G.
         count: how many.
         least: frequency in rad/s below which a motion is rigid.
-        wide: among so many modes of K and M they are looked for; these carry those of a rotating system.
+        wide: number of modes of K and M, which carry those of a rotating system.
     """
     K = forms[STIFFNESS]
     M = forms[MASS]

@@ -125,7 +125,7 @@ def judged(found: CriticalResult, model: Model, grade: float, progress: Progress
     highest = max((line.frequency_hz(operating) for line in lines), default=0.0)
     # Films carry nothing at standstill: their gearbox is asked while it runs.
     at = speed if needs_rotation(model) else None
-    still = modal(model, speed=at, fmax=(1.0 + 2.0 * rules.LEAST_TORSIONAL_MARGIN) * highest)
+    torsional = modal(model, speed=at, fmax=(1.0 + 2.0 * rules.LEAST_TORSIONAL_MARGIN) * highest)
     progress(1.0, "done")
     return StandardsResult(
         model=model,
@@ -137,7 +137,7 @@ def judged(found: CriticalResult, model: Model, grade: float, progress: Progress
         checks=(
             *lateral.checks,
             *_stability(model, running),
-            *_interference(lines, operating, still),
+            *_interference(lines, operating, torsional),
             *_balance(model, grade, operating),
         ),
         curve_speeds=lateral.curve_speeds,
@@ -333,9 +333,9 @@ def _decrement(part: str, running: ModalResult, mode: int, value: float) -> Rule
     )
 
 
-def _interference(lines: tuple[ExcitationOrder, ...], operating: float, still: ModalResult) -> Iterator[RuleCheck]:
+def _interference(lines: tuple[ExcitationOrder, ...], operating: float, torsional: ModalResult) -> Iterator[RuleCheck]:
     """The torsional mode next to each line at the operating speed; undamped modes at standstill, as the rule asks."""
-    torsion = np.flatnonzero((still.kinetic_by_motion["torsion"] >= _MOSTLY) & ~still.rigid)
+    torsion = np.flatnonzero((torsional.kinetic_by_motion["torsion"] >= _MOSTLY) & ~torsional.rigid)
     limit = 100.0 * rules.LEAST_TORSIONAL_MARGIN
     for line in lines:
         hz = line.frequency_hz(operating)
@@ -343,9 +343,10 @@ def _interference(lines: tuple[ExcitationOrder, ...], operating: float, still: M
             note = f"no torsional mode up to {1.2 * hz:.5g} Hz"
             yield RuleCheck(rules.INTERFERENCE.name, line.name, "-", "%", None, limit, NOT_APPLICABLE, note)
             continue
-        away = np.abs(still.frequency_hz[torsion] / hz - 1.0)
+        away = np.abs(torsional.frequency_hz[torsion] / hz - 1.0)
         nearest = int(torsion[int(np.argmin(away))])
-        note = f"line at {hz:.5g} Hz, mode {nearest + 1} at {still.frequency_hz[nearest]:.5g} Hz: {still.description[nearest]}"
+        at = f"mode {nearest + 1} at {torsional.frequency_hz[nearest]:.5g} Hz"
+        note = f"line at {hz:.5g} Hz, {at}: {torsional.description[nearest]}"
         margin = 100.0 * float(away.min())
         yield RuleCheck(
             rules.INTERFERENCE.name, line.name, "separation", "%", margin, limit, _verdict(margin >= limit), note
