@@ -189,6 +189,28 @@ class Layout:
         return {gear.name: gear.torsion for mesh in self.meshes for gear in mesh.elastic_gears}
 
     @cached_property
+    def teeth_on_bodies(self) -> dict[tuple[str, Place], float]:
+        """Stiffness (N m/rad) of teeth against the node of their gear, by gear and place: of its web, or its body from a mesh."""
+        found = {
+            (name, place): 1.0 / torsion.flexibility
+            for name, torsion in self.elastic_gears.items()
+            for place in self.gear(name).places
+        }
+        for name, wheel in self.elastic_bodies.items():
+            found[name, self.place(f"gears.{name}")] = 1.0 / float(wheel.rim_flexibility[5, 5])
+        return found
+
+    @cached_property
+    def turning_couplings(self) -> tuple[tuple[Place, Place, float], ...]:
+        """Ends and torsional stiffness (N m/rad) of the couplings that make both shafts turn at one speed."""
+        found = []
+        for name, coupling in self.model.couplings.items():
+            if coupling.turns_both:
+                first, second = self.places(f"couplings.{name}")
+                found.append((first, second, coupling.stiffness.as_rows()[5][5]))
+        return tuple(found)
+
+    @cached_property
     def external_loads(self) -> tuple[ExternalLoad, ...]:
         """Forces and moments from outside."""
         return external_loads(self.model, self.train, self.places)

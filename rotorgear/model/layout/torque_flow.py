@@ -21,6 +21,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError, Problem
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact
 from rotorgear.model.layout.state import AppliedTorque, MeshForce, State, askew
+from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
@@ -133,31 +134,28 @@ def applied_torques(layout: Layout, direction: int | None = None) -> tuple[list[
     """
     loads, problems = _loads(layout)
     operation = layout.model.operation
-    found = _moments(layout, direction)
-    open_ends: list[tuple[str, Load]] = []
-    for name, load in loads.items():
-        torque = load.torque
-        if load.power is not None and operation is not None and operation.speed:
-            torque = load.power / abs(operation.speed * layout.train.ratio(load.on_shaft))
-        if torque is None:  # an open end, which takes the rest
-            open_ends.append((name, load))
-        else:
-            sign = layout.train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
-            found.append(AppliedTorque(name, *layout.load_place(load), sign * torque))
-    if problems or not (loads or found):
-        return found, problems
-    return _balanced(layout, found, open_ends)
-
-
-def _moments(layout: Layout, direction: int | None) -> list[AppliedTorque]:
-    """Constant moments about z of loads from outside on shafts that turn: they take part in the balance."""
     sense = direction or layout.direction
-    return [
+    # Constant moments about z of loads from outside on shafts that turn take part in the balance.
+    found = [
         AppliedTorque(load.address, *place, sense * float(load.constant[5]) / len(load.places))
         for load in layout.external_loads
         for place in load.places
         if load.constant[5] and load.in_train
     ]
+    open_ends: list[tuple[str, Load, Place]] = []
+    for name, load in loads.items():
+        place = layout.load_place(load)
+        torque = load.torque
+        if load.power is not None and operation is not None and operation.speed:
+            torque = load.power / abs(operation.speed * layout.train.ratio(load.on_shaft))
+        if torque is None:  # an open end, which takes the rest
+            open_ends.append((name, load, place))
+        else:
+            drives = layout.train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
+            found.append(AppliedTorque(name, *place, drives * torque))
+    if problems or not (loads or found):
+        return found, problems
+    return _balanced(layout.train, found, open_ends)
 
 
 def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
@@ -185,32 +183,30 @@ def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
 
 
 def _balanced(
-    layout: Layout, found: list[AppliedTorque], open_ends: list[tuple[str, Load]]
+    train: Train, found: list[AppliedTorque], open_ends: list[tuple[str, Load, Place]]
 ) -> tuple[list[AppliedTorque], list[Problem]]:
     """Close the balance of power of each connected part of the train with its one open end, or refuse."""
-    train = layout.train
     problems: list[Problem] = []
-    for group in sorted(
-        {train.group[item.shaft] for item in found} | {train.group[load.on_shaft] for _, load in open_ends}
-    ):
+    shafts = [*(item.shaft for item in found), *(place.shaft for _, _, place in open_ends)]
+    for group in sorted({train.group[shaft] for shaft in shafts}):
         given = [item for item in found if train.group[item.shaft] == group]
-        ends = [(name, load) for name, load in open_ends if train.group[load.on_shaft] == group]
+        ends = [end for end in open_ends if train.group[end[2].shaft] == group]
         excess = sum(item.torque * train.ratio(item.shaft) for item in given)
         scale = max((abs(item.torque * train.ratio(item.shaft)) for item in given), default=0.0)
         if len(ends) > 1:
-            names = ", ".join(name for name, _ in ends)
+            names = ", ".join(name for name, _, _ in ends)
             problems.append(
                 Problem("loads", f"{names} without torque or power", "at most one of them: it takes the rest")
             )
         elif ends:
-            name, load = ends[0]
+            name, load, place = ends[0]
             torque = -excess / train.ratio(load.on_shaft)
             wanted = train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
             if torque * wanted < 0.0:
                 text = f"to balance the other loads this {load.kind} would need {abs(torque):.6g} N m against its sense"
                 other = "output" if load.kind == "input" else "input"
                 problems.append(Problem(name, "", text, f"change the other torques, or make it an {other}"))
-            found.append(AppliedTorque(name, *layout.load_place(load), torque))
+            found.append(AppliedTorque(name, *place, torque))
         elif abs(excess) > 1e-6 * scale:
             problems.append(
                 Problem(
@@ -276,30 +272,18 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
     """
     import numpy as np
 
-    couplings = [
-        (layout.places(f"couplings.{name}"), coupling.stiffness.as_rows()[5][5])
-        for name, coupling in layout.model.couplings.items()
-        if coupling.turns_both
-    ]
     ends = [(Place(line.pinion_shaft, line.pinion_z), Place(line.gear_shaft, line.gear_z)) for line in lines]
-    places = [place for pair in (*ends, *(pair for pair, _ in couplings)) for place in pair]
+    places = [place for pair in ends for place in pair]
+    places += [place for first, second, _ in layout.turning_couplings for place in (first, second)]
     network = _Network(layout.model, [*places, *(Place(item.shaft, item.z) for item in applied)])
-    network.springs += [(network.node(*first), network.node(*second), k) for (first, second), k in couplings]
-    elastic = {
-        (name, place): network.branch(network.node(*place), 1.0 / torsion.flexibility)
-        for name, torsion in layout.elastic_gears.items()
-        for place in layout.gear(name).places
-    }
-    for name, wheel in layout.elastic_bodies.items():
-        place = layout.place(f"gears.{name}")
-        elastic[name, place] = network.branch(network.node(*place), 1.0 / float(wheel.rim_flexibility[5, 5]))
-
-    def teeth_of(gear: str, place: Place) -> int:
-        return elastic[gear, place] if (gear, place) in elastic else network.node(*place)
-
+    network.springs += [(network.node(*one), network.node(*two), k) for one, two, k in layout.turning_couplings]
+    elastic = {key: network.branch(network.node(*key[1]), k) for key, k in layout.teeth_on_bodies.items()}
     teeth = [
-        (teeth_of(line.pinion, pinion), teeth_of(line.gear, gear))
-        for line, (pinion, gear) in zip(lines, ends, strict=True)
+        [
+            elastic.get((name, place), network.node(*place))
+            for name, place in zip((line.pinion, line.gear), pair, strict=True)
+        ]
+        for line, pair in zip(lines, ends, strict=True)
     ]
 
     # Each contact is squeezed along its flank normal by r_b cos(beta_b) times the twist of its two nodes: delta = S q.
