@@ -45,11 +45,23 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     speed = model.operation.speed if model.operation else None
     masses = _masses(system)
     dampings = _mesh_dampings(system)
+    casings = {name: float(system.layout.casing(name).body_mass) for name in model.casings}
+    rpm = None if speed is None else speed * RPM_PER_RAD_S
+    ratios = {name: system.train.ratio(name) for name in model.shafts}
     return ModelDescription(
         title=model.title,
         reference_shaft=model.reference_shaft,
-        speed_rpm=None if speed is None else speed * RPM_PER_RAD_S,
-        shafts=tuple(_shaft(system, name, masses[name], speed) for name in model.shafts),
+        speed_rpm=rpm,
+        shafts=tuple(
+            ShaftRow(
+                name,
+                ratio,
+                None if speed is None else ratio * speed * RPM_PER_RAD_S,
+                model.shafts[name].length,
+                *masses[name],
+            )
+            for name, ratio in ratios.items()
+        ),
         gears=tuple(_gear(system, gear) for gear in system.layout.gears),
         places=tuple(_places(system)),
         meshes=tuple(_mesh(system, name, dampings.get(name, 0.0), speed) for name in model.meshes),
@@ -63,7 +75,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
             for item in system.state.applied
         ),
         total_mass_kg=sum(bare + bodies for bare, bodies, _ in masses.values()),
-        casing_mass_kg=_casing_masses(system),
+        casing_mass_kg={name: mass for name, mass in casings.items() if math.isfinite(mass)},
         counts={table: len(getattr(model, table)) for table in _COUNTED if getattr(model, table)},
         nodes=len(system.nodes),
         dofs=system.n,
@@ -71,11 +83,6 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         left_out=left_out(system, "modes", speed),
         warnings=(*system.nodes.merged, *model_warnings(system)),
     )
-
-
-def _casing_masses(system: System) -> dict[str, float]:
-    masses = {name: float(system.layout.casing(name).body_mass) for name in system.model.casings}
-    return {name: mass for name, mass in masses.items() if math.isfinite(mass)}
 
 
 def _masses(system: System) -> dict[str, tuple[float, float, float]]:
@@ -91,12 +98,6 @@ def _masses(system: System) -> dict[str, tuple[float, float, float]]:
         own[0 if group.part == f"shafts.{group.shaft}" else 1] += float(M[:, x][:, :, x].sum())
         own[2] += float(M[:, tz][:, :, tz].sum())
     return {name: (bare, bodies, polar) for name, (bare, bodies, polar) in found.items()}
-
-
-def _shaft(system: System, name: str, masses: tuple[float, float, float], speed: float | None) -> ShaftRow:
-    ratio = system.train.ratio(name)
-    rpm = None if speed is None else ratio * speed * RPM_PER_RAD_S
-    return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, *masses)
 
 
 def _gear(system: System, gear: GearLayout) -> GearRow:

@@ -85,6 +85,16 @@ def check_request(
         raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
 
 
+def check_modal_damping(ratio: float) -> None:
+    """Refuse a damping ratio of modes that is none.
+
+    Raises:
+        AnalysisError: it is negative, or 1 and more.
+    """
+    if not 0.0 <= ratio < 1.0:
+        raise AnalysisError(f"the modal damping ratio must lie between 0 and 1, got {ratio:g}")
+
+
 def check_speed_is_fixed(addresses: Iterable[str], instead: str) -> None:
     """Refuse the operating speed among numbers that vary: modes and excitations are those at the speed that is asked for.
 

@@ -15,7 +15,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
+from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, highest_peaks, plan_up_to
 from rotorgear.analysis.response.plant import Plant
@@ -86,7 +86,11 @@ def frf(
         frequencies = _evenly_spaced(fmin, fmax, points)
     hz = np.sort(np.asarray(frequencies, float).ravel())
     check_request(turns, None, None, elements, accuracy)
-    _check(hz, inputs, outputs, modal_damping)
+    if not hz.size or not np.all(np.isfinite(hz)) or hz[0] <= 0.0:
+        raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
+    if not inputs or not outputs:
+        raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
+    check_modal_damping(modal_damping)
     given = model
     model, few = serving(model, float(hz[-1]))
     input_units = tuple("N m" if rotates(model, text) else "N" for text in inputs)
@@ -159,15 +163,6 @@ def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.nd
     if not 0.0 < low < fmax < float("inf"):
         raise AnalysisError(f"fmin and fmax: got {low:g} and {fmax:g} Hz, expected 0 < fmin < fmax")
     return np.linspace(low, fmax, points)
-
-
-def _check(hz: np.ndarray, inputs: Sequence[str], outputs: Sequence[str], modal_damping: float) -> None:
-    if not hz.size or not np.all(np.isfinite(hz)) or hz[0] <= 0.0:
-        raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
-    if not inputs or not outputs:
-        raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
-    if not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
 
 
 @dataclass(frozen=True)

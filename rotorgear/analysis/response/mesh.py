@@ -84,14 +84,11 @@ def at_speed(state: State, speed: float) -> State:
     for address, spring in state.springs.items():
         stiffness, _ = state.spring_at(address, speed)
         if spring.varies or not np.array_equal(stiffness, stiffness.T):
-            changed[address] = constant_spring(_conservative(stiffness), np.zeros((6, 6)))
+            # The symmetric part, without directions in which it would push away: a light film has such.
+            values, directions = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+            kept = np.asarray((directions * np.maximum(values, 0.0)) @ directions.T)
+            changed[address] = constant_spring(kept, np.zeros((6, 6)))
     return replace(state, tangents={**state.tangents, **changed}) if changed else state
-
-
-def _conservative(K: np.ndarray) -> np.ndarray:
-    """The symmetric part of a stiffness, without directions in which it would push away: a light film has such."""
-    values, directions = np.linalg.eigh(0.5 * (K + K.T))
-    return np.asarray((directions * np.maximum(values, 0.0)) @ directions.T)
 
 
 def damped_modes(

@@ -13,7 +13,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, missed, speed_in_si
+from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.mesh import (
     MARGIN,
@@ -95,8 +95,7 @@ def response(
     chosen, begun = _speeds(model, speeds, start, stop, points)
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
-    if not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"the modal damping ratio must lie between 0 and 1, got {modal_damping:g}")
+    check_modal_damping(modal_damping)
     check_request(None, None, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
     speed = float(chosen[-1])

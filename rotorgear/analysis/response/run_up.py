@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from rotorgear.analysis.response.orders import Order
 from rotorgear.analysis.response.plant import Plant, Readings, joined
 from rotorgear.errors import ConvergenceError
-from rotorgear.progress import Progress
+from rotorgear.progress import Progress, part_of
 from rotorgear.solvers.frequency.harmonic import Dynamics, Projected, orthonormal, projected
 from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
 
@@ -175,13 +174,18 @@ def modal_sweep(
     error = 0.0
     checked = 0
     sizes = []
-    bunches = _bunches(orders)
+    # Minor orders share a basis with those of like frequency, every other order has its own.
+    minor = [o for o, order in enumerate(orders) if order.minor]
+    bunches = [
+        *([o] for o, order in enumerate(orders) if not order.minor),
+        *(minor[at : at + _IN_A_BUNCH] for at in range(0, len(minor), _IN_A_BUNCH)),
+    ]
     with single_thread(plant.system.n):
         for number, bunch in enumerate(bunches):
             own = [orders[o] for o in bunch]
             top = _MODES_UP_TO * max(order.frequency_at(float(np.max(np.abs(speeds)))) for order in own)
             sweep = ModalSweep(plant, own, speeds, shapes[:, w <= top])
-            share = _Share(progress, number, len(bunches), own[-1].name)
+            share = part_of(progress, number / len(bunches), (number + 1) / len(bunches))
             readings.append(_swept(sweep, own[-1].name, share))
             error = max(error, sweep.error)
             checked = checked + sweep.checked
@@ -193,40 +197,18 @@ def modal_sweep(
     return Sweep(whole, error, checked, method)
 
 
-def _bunches(orders: list[Order]) -> list[list[int]]:
-    """Numbers of the orders that share a basis: minor ones with those of like frequency, every other order has its own."""
-    minor = [o for o, order in enumerate(orders) if order.minor]
-    return [
-        *([o] for o, order in enumerate(orders) if not order.minor),
-        *(minor[at : at + _IN_A_BUNCH] for at in range(0, len(minor), _IN_A_BUNCH)),
-    ]
-
-
-@dataclass(frozen=True)
-class _Share:
-    """Progress of one of several parts."""
-
-    whole: Progress
-    number: int
-    count: int
-    name: str
-
-    def __call__(self, done: float) -> None:
-        self.whole((self.number + done) / self.count, self.name)
-
-
-def _swept(sweep: ModalSweep, name: str, progress: Callable[[float], None]) -> list[Readings]:
+def _swept(sweep: ModalSweep, name: str, progress: Progress) -> list[Readings]:
     """Readings of one order at every speed, when the basis has been proved where its residual is largest."""
     plant = sweep.plant
     orders = sweep.orders
     speeds = sweep.speeds
-    sweep.grow(lambda fraction, _: progress(fraction))
+    sweep.grow(lambda fraction, _: progress(fraction, name))
     for _ in range(_ROUNDS):
         readings = []
         residuals = []
         for k, speed in enumerate(speeds):
             if k % 10 == 0:
-                progress(0.35 + 0.6 * k / len(speeds))
+                progress(0.35 + 0.6 * k / len(speeds), name)
             w, q, rest = sweep.solve(float(speed))
             readings.append(plant.read(orders, float(speed), w, q))
             residuals.append(rest)

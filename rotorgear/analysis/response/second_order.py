@@ -64,7 +64,8 @@ def peaks_of(
         reading, parts = known[s, o]
         left = None
         if reading is not None and not parts:
-            there = next(v for q, p, _, v in _quantities(_at(run, reading)) if (q, p) == (quantity, part))
+            alone = _Run(setup, plant, orders[:1], speeds[:1], [reading])
+            there = next(v for q, p, _, v in _quantities(alone) if (q, p) == (quantity, part))
             left = float(np.abs(there[(0, 0, *rest)]))
         found.append(
             Peak(
@@ -80,10 +81,6 @@ def peaks_of(
             )
         )
     return tuple(found)
-
-
-def _at(run: _Run, reading: Readings) -> _Run:
-    return _Run(run.setup, run.plant, run.orders[:1], run.speeds[:1], [reading])
 
 
 def _quantities(run: _Run) -> Iterable[tuple[str, str, str, np.ndarray]]:

@@ -20,7 +20,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, missed, speed_in_si
+from rotorgear.analysis.common.request import check_modal_damping, check_request, missed, speed_in_si
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
@@ -100,8 +100,7 @@ def state_space(
         raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
     if not inputs or not outputs:
         raise AnalysisError("a state space needs at least one input and one output")
-    if not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
+    check_modal_damping(modal_damping)
     input_units = tuple("N m" if rotates(model, text) else "N" for text in inputs)
     output_units = tuple("rad" if rotates(model, text) else "m" for text in outputs)
     zeta = modal_damping + model.damping.modal_ratio
@@ -120,7 +119,7 @@ def state_space(
     unmoved = tuple(
         f"no input moves {text}: its responses are 0"
         for text, row in zip(outputs, C, strict=True)
-        if not _meet(groups, row, B)
+        if not np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size
     )
     reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, C.T]))
     modes = (*damped_modes(system, damped_up_to(system, limit), turns, reached), zeta) if zeta else None
@@ -138,7 +137,11 @@ def state_space(
         with single_thread(system.n):
             kept_modes, w = damped_modes(system, _KEPT * limit, turns, reached)
             kept = len(w)
-            basis = _basis(dynamics, kept_modes[reached], np.hstack([B, C.T]), _SHIFT * limit)
+            # Static shapes under forces at inputs and outputs, beside the modes.
+            symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
+            factor = factor_general(sp.csc_array(symmetric + (_SHIFT * limit) ** 2 * dynamics.M, dtype=complex))
+            shapes = np.real(factor.solve(np.hstack([B, C.T]).astype(complex)))
+            basis = _joined(kept_modes[reached], shapes, dynamics.M)
             progress(0.6, "error of the reduction")
             made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy or ACCURACY)
     progress(1.0, "done")
@@ -194,11 +197,6 @@ def _groups(system: System, turns: float) -> np.ndarray:
     for k, group in enumerate(independent_groups(matrices)):
         number[group] = k
     return number
-
-
-def _meet(groups: np.ndarray, row: np.ndarray, B: np.ndarray) -> bool:
-    """Whether an output (n,) has a group with an input of B (n, i) in common."""
-    return bool(np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size)
 
 
 def _reached(system: System, groups: np.ndarray, places: np.ndarray) -> np.ndarray:
@@ -266,13 +264,6 @@ class _Matrices:
                 f"the reduced system is singular at {w / 2.0 / np.pi:.6g} Hz, as at a mode without damping: look at the modes "
                 "there, or take the full system"
             ) from None
-
-
-def _basis(dynamics: Dynamics, modes: np.ndarray, forces: np.ndarray, shift: float) -> np.ndarray:
-    """Modes (n, m) and the static shapes under forces (n, p) beside them, orthonormal in M, (n, m + r)."""
-    symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
-    factor = factor_general(sp.csc_array(symmetric + shift**2 * dynamics.M, dtype=complex))
-    return _joined(modes, np.real(factor.solve(forces.astype(complex))), dynamics.M)
 
 
 def _joined(basis: np.ndarray, shapes: np.ndarray, M: sp.csc_array) -> np.ndarray:
