@@ -247,7 +247,7 @@ def _costs(found: Contents, studies: list[Any]) -> Section:
         "The largest estimated relative error of each section's numbers beside the CPU seconds that they took on one thread. "
         "Where nothing is discretised, or no estimate is known, there is a dash."
     )
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for name, result in found.results.items():
         error = Cell(written(error_of(result), error_words), ("largest_error_estimate", name), number=True)
         dofs = getattr(result, "dofs", None) or None

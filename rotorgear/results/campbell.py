@@ -87,20 +87,8 @@ class Onset(Record):
     frequency_hz: float = of("frequency", "Hz", note=" there", form=".3f", column="Hz")
 
 
-def by_branch(key: str) -> Written:
-    """A key that is written by branch, then by speed."""
-    return Written(key, lambda result, values: _turned(values), axes=("branch", "speed"))
-
-
-def shares_by_branch(key: str, name: str) -> Written:
-    """The same of a dictionary."""
-    return Written(
-        key, lambda result, shares: {part: _turned(v) for part, v in shares.items()}, axes=(name, "branch", "speed")
-    )
-
-
-def _turned(values: np.ndarray) -> np.ndarray:
-    return values.T
+# Arrays are by speed, then branch; the JSON output has a list for each branch.
+_BY_BRANCH = ("branch", "speed")
 
 
 class CampbellResult(AboutEquilibrium, kind="campbell"):
@@ -118,18 +106,37 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         """Speeds of the input shaft in rpm, (k,)."""
         return np.asarray(self.speeds * RPM_PER_RAD_S)
 
-    @derived("frequency", "Hz", "speed", "branch", json=by_branch("frequency_hz"), note=" of a branch, the damped one")
+    @derived(
+        "frequency",
+        "Hz",
+        "speed",
+        "branch",
+        json=Written("frequency_hz", axes=_BY_BRANCH),
+        note=" of a branch, the damped one",
+    )
     def frequency_hz(self) -> np.ndarray:
         """Damped frequency Im s / 2 pi, (k, b)."""
         return np.asarray(self.eigenvalues.imag / (2.0 * np.pi))
 
-    @derived("natural frequency", "Hz", "speed", "branch", json=by_branch("natural_frequency_hz"), note=", |s| / 2π")
+    @derived(
+        "natural frequency",
+        "Hz",
+        "speed",
+        "branch",
+        json=Written("natural_frequency_hz", axes=_BY_BRANCH),
+        note=", |s| / 2π",
+    )
     def natural_frequency_hz(self) -> np.ndarray:
         """|s| / 2 pi, (k, b)."""
         return np.asarray(np.abs(self.eigenvalues) / (2.0 * np.pi))
 
     @derived(
-        "damping ratio", "", "speed", "branch", json=by_branch("damping_ratio"), note=", below 0 where the motion grows"
+        "damping ratio",
+        "",
+        "speed",
+        "branch",
+        json=Written("damping_ratio", axes=_BY_BRANCH),
+        note=", below 0 where the motion grows",
     )
     def damping_ratio(self) -> np.ndarray:
         """-Re s / |s|, (k, b)."""
@@ -140,7 +147,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "",
         "speed",
         "branch",
-        json=by_branch("log_decrement"),
+        json=Written("log_decrement", axes=_BY_BRANCH),
         note=", below 0 where the motion grows",
     )
     def log_decrement(self) -> np.ndarray:
@@ -165,7 +172,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "SHAFT",
         "speed",
         "branch",
-        json=shares_by_branch("whirl_by_shaft", "SHAFT"),
+        json=Written("whirl_by_shaft", axes=("SHAFT", *_BY_BRANCH)),
         note=", -1 (backward circle) to +1 (forward circle)",
     )
     kinetic_by_motion: dict[str, np.ndarray] = of(
@@ -174,7 +181,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "MOTION",
         "speed",
         "branch",
-        json=shares_by_branch("kinetic_by_motion", "MOTION"),
+        json=Written("kinetic_by_motion", axes=("MOTION", *_BY_BRANCH)),
     )
     strain_by_motion: dict[str, np.ndarray] = of(
         "share of a motion in the strain energy",
@@ -182,7 +189,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "MOTION",
         "speed",
         "branch",
-        json=shares_by_branch("strain_by_motion", "MOTION"),
+        json=Written("strain_by_motion", axes=("MOTION", *_BY_BRANCH)),
     )
     mesh_strain: dict[str, np.ndarray] = of(
         "share of each mesh in the strain energy",
@@ -190,7 +197,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "MESH",
         "speed",
         "branch",
-        json=shares_by_branch("mesh_strain", "MESH"),
+        json=Written("mesh_strain", axes=("MESH", *_BY_BRANCH)),
     )
     description: tuple[str, ...] = of("what moves", "", "branch", note=", at the first speed")
     error_estimate: np.ndarray = of(

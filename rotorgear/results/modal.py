@@ -182,7 +182,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         "mode",
         json=Written(
             "point_amplitude",
-            lambda r, amplitudes: {name: np.abs(value) for name, value in amplitudes.items()},
+            axes=("POINT", "mode"),
             note=", along its direction, of the shape with modal mass 1 kg",
         ),
         default_factory=dict,

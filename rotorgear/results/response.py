@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import groupby
-from typing import Any
 
 import numpy as np
 
@@ -24,50 +23,22 @@ from rotorgear.results.table import (
 )
 
 
-def _by_contact(key: str) -> Written:
-    """Values of the contacts by mesh."""
-
-    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
-        return {mesh: values[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)}
-
-    return Written(key, value, axes=("MESH", "helix"))
+def _by_mesh(key: str, *axes: str) -> Written:
+    """Values of the contacts by mesh and helix."""
+    return Written(key, axes=("MESH", "helix", *axes))
 
 
-def _amplitudes_by_mesh(key: str) -> Written:
-    """Amplitudes by mesh, contact, order and speed."""
-
-    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
-        meshes = dict.fromkeys(result.contact_mesh)
-        return {mesh: [np.abs(values[:, :, k]) for k in result.contacts_of(mesh)] for mesh in meshes}
-
-    return Written(key, value, axes=("MESH", "helix", "order", "speed"))
+def _by(name: str, key: str, *axes: str) -> Written:
+    """Amplitudes by a name, by order and speed."""
+    return Written(key, axes=(name, *axes, "order", "speed"))
 
 
-def _amplitudes_by_axis(key: str, names: str, name: str) -> Written:
-    """Amplitudes along x, y and z of each entry of the field `names`, by order and speed."""
-
-    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
-        return {
-            part: {axis: np.abs(values[:, :, k, j]) for j, axis in enumerate("xyz")}
-            for k, part in enumerate(getattr(result, names))
-        }
-
-    return Written(key, value, axes=(name, "AXIS", "order", "speed"))
-
-
-def _wrenches(kind: str, names: str, name: str, on: str) -> tuple[Written, Written]:
-    """Amplitudes of force and moment along x, y and z of each entry of the field `names`, under keys of their own."""
-
-    def part(first: int) -> Callable[[Any, Any], Any]:
-        return lambda result, values: {
-            place: {axis: np.abs(values[:, :, k, first + j]) for j, axis in enumerate("xyz")}
-            for k, place in enumerate(getattr(result, names))
-        }
-
+def _wrenches(kind: str, name: str, on: str) -> tuple[Written, Written]:
+    """Amplitudes of force and moment along x, y and z, under keys of their own."""
     axes = (name, "AXIS", "order", "speed")
     return (
-        Written(f"{kind}_force_n", part(0), unit="N", axes=axes, label=f"force on {on}"),
-        Written(f"{kind}_moment_n_m", part(3), unit="N m", axes=axes, label=f"moment on {on}"),
+        Written(f"{kind}_force_n", unit="N", axes=axes, label=f"force on {on}", part=(0, 3)),
+        Written(f"{kind}_moment_n_m", unit="N m", axes=axes, label=f"moment on {on}", part=(3, 6)),
     )
 
 
@@ -101,14 +72,6 @@ class Peak(Record):
 AIR_IMPEDANCE = 1.204 * 343.2
 
 
-def _by_casing(key: str) -> Written:
-    return Written(
-        key,
-        lambda result, values: {name: values[:, :, k] for k, name in enumerate(result.casings)},
-        axes=("CASING", "order", "speed"),
-    )
-
-
 class ResponseResult(AboutEquilibrium, kind="response"):
     """Linear response of a model at s speeds to o orders, complex amplitudes of Re(x e^{+iwt}) about the static forces."""
 
@@ -140,14 +103,14 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "N",
         "contact",
         note=": the static force of each contact, about which the response is linear",
-        json=_by_contact("mean_mesh_force_n"),
+        json=_by_mesh("mean_mesh_force_n"),
     )
     mesh_stiffness: np.ndarray = of(
         "stiffness along the flank normal",
         "N/m",
         "contact",
         note=" about which the response is linear; of loaded teeth the mean tangent over the mesh cycle",
-        json=_by_contact("mesh_stiffness_n_per_m"),
+        json=_by_mesh("mesh_stiffness_n_per_m"),
     )
     mesh_force: np.ndarray = of(
         "force along the flank normal",
@@ -155,7 +118,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "contact",
-        json=_amplitudes_by_mesh("mesh_force_n"),
+        json=_by_mesh("mesh_force_n", "order", "speed"),
         note=": the dynamic force, without the mean",
     )
     transmission_error: np.ndarray = of(
@@ -164,7 +127,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "contact",
-        json=_amplitudes_by_mesh("transmission_error_m"),
+        json=_by_mesh("transmission_error_m", "order", "speed"),
         note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, of each helix",
     )
     approach: np.ndarray = of(
@@ -173,18 +136,12 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "contact",
-        json=_amplitudes_by_mesh("approach_m"),
+        json=_by_mesh("approach_m", "order", "speed"),
         note=" of the flanks in the transverse plane, bending and axial motion included",
     )
     bearings: tuple[str, ...] = of("names of the bearings", "", "bearing", json=None)
     bearing_force: np.ndarray = of(
-        "force on the shaft",
-        "N",
-        "order",
-        "speed",
-        "bearing",
-        "xyz",
-        json=_amplitudes_by_axis("bearing_force_n", "bearings", "BEARING"),
+        "force on the shaft", "N", "order", "speed", "bearing", "xyz", json=_by("BEARING", "bearing_force_n", "AXIS")
     )
     points: tuple[str, ...] = of("names of the points", "", "point", json=None)
     acceleration: np.ndarray = of(
@@ -193,11 +150,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "point",
-        json=Written(
-            "acceleration",
-            lambda result, values: {name: np.abs(values[:, :, k]) for k, name in enumerate(result.points)},
-            axes=("POINT", "order", "speed"),
-        ),
+        json=_by("POINT", "acceleration"),
         note=" along its direction",
     )
     places: tuple[str, ...] = of("gears, disks and bearings by address", "", "place", json=None)
@@ -208,7 +161,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "speed",
         "place",
         "component",
-        json=_amplitudes_by_axis("displacement_m", "places", "PLACE"),
+        json=_by("PLACE", "displacement_m", "AXIS"),
         note=" of each gear, disk and bearing; x, y and z are written",
     )
     casings: tuple[str, ...] = of(
@@ -224,7 +177,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "speed",
         "seat",
         "component",
-        json=_wrenches("casing_seat", "casing_seats", "CASING.SEAT", "the casing"),
+        json=_wrenches("casing_seat", "CASING.SEAT", "the casing"),
         note="; the moment about the point of the seat",
         default_factory=lambda: np.zeros((0, 0, 0, 6)),
         kw_only=True,
@@ -239,7 +192,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "speed",
         "ground",
         "component",
-        json=_wrenches("casing_ground", "casing_grounds", "CASING.SET", "the casing"),
+        json=_wrenches("casing_ground", "CASING.SET", "the casing"),
         note="; the moment about the origin of the model",
         default_factory=lambda: np.zeros((0, 0, 0, 6)),
         kw_only=True,
@@ -250,7 +203,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "casing",
-        json=_by_casing("normal_velocity_m_per_s"),
+        json=_by("CASING", "normal_velocity_m_per_s"),
         note=": root of the mean over its surface of the square of the amplitude",
         default_factory=lambda: np.zeros((0, 0, 0)),
         kw_only=True,
@@ -260,11 +213,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "m^2",
         "casing",
         note=", inside and out",
-        json=Written(
-            "casing_surface_m2",
-            lambda result, values: dict(zip(result.casings, values.tolist(), strict=True)),
-            axes=("CASING",),
-        ),
+        json=Written("casing_surface_m2", axes=("CASING",)),
         default_factory=lambda: np.zeros(0),
         kw_only=True,
     )
@@ -275,7 +224,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "casing",
-        json=_by_casing("radiated_power_w"),
+        json=_by("CASING", "radiated_power_w"),
         note=" of a casing, 1/2 ρ c ∑ v_n² A with ρ c = 413 kg/m²s of air, as if all of its surface radiated like a large plate",
     )
     def radiated_power(self) -> np.ndarray:

@@ -57,14 +57,28 @@ _WRITTEN_UNITS = {
 
 @dataclass(frozen=True)
 class Written:
-    """A key of the JSON output that is not simply the field: `value(record, stored)` makes what is written."""
+    """A key of the JSON output that is not simply the field.
+
+    `value(record, stored)` makes what is written; without it, `part` of each vector is arranged along `axes`.
+    """
 
     key: str
-    value: Callable[[Any, Any], Any]
+    value: Callable[[Any, Any], Any] | None = None
     unit: str | None = None
     axes: tuple[str, ...] | None = None
     label: str | None = None
     note: str | None = None
+    part: tuple[int | None, int | None] = (None, None)
+
+    def of(self, record: Record, stored: Any, own: tuple[str, ...]) -> Any:
+        """What is written of a field that is counted by the axes `own`."""
+        if self.value is not None:
+            return self.value(record, stored)
+        cut = stored
+        if self.part != (None, None):
+            kept = (..., slice(*self.part))
+            cut = {name: one[kept] for name, one in stored.items()} if isinstance(stored, dict) else stored[kept]
+        return _arranged(record, cut, own, own if self.axes is None else self.axes)
 
 
 @dataclass(frozen=True)
@@ -106,6 +120,48 @@ def key_of(name: str, unit: str) -> str:
     """The key of a field in JSON: its name, and its unit where it has one that the name does not say."""
     ending = _ENDINGS.get(unit, "")
     return name if name.endswith((ending, "seconds")) else f"{name}{ending}"
+
+
+# What an axis in capitals is counted by, where that is not its own name in small letters.
+_COUNTED = {"MESH": "contact", "SET": "ground", "AXIS": "xyz"}
+
+
+def _arranged(record: Record, values: Any, own: tuple[str, ...], axes: tuple[str, ...]) -> Any:
+    """A field counted by the axes `own` as it is written along `axes`: complex numbers by their size.
+
+    One in small letters is a list, one in capitals a dictionary by the names that the record has along it; contacts stand by
+    mesh, then by helix.
+    """
+    import numpy as np
+
+    if isinstance(values, dict):
+        return {name: _arranged(record, entry, own[1:], axes[1:]) for name, entry in values.items()}
+    if not axes:
+        return np.abs(values) if np.iscomplexobj(values) else values
+    named = axes[0].isupper()
+    last = axes[0].rpartition(".")[2]
+    axis = _COUNTED.get(last, last.lower())
+    axis = "component" if axis == "xyz" and "xyz" not in own else axis
+    k = own.index(axis) if axis in own else 0
+    rest = own[:k] + own[k + 1 :]
+    slices = np.moveaxis(values, k, 0)
+    if not named:
+        return [_arranged(record, one, rest, axes[1:]) for one in slices]
+    names = "xyz" if axis in ("xyz", "component") else _names_along(record, axis)
+    if axes[1:2] == ("helix",):
+        helices: dict[str, list[Any]] = {}
+        for name, one in zip(names, slices, strict=True):
+            helices.setdefault(name, []).append(_arranged(record, one, rest, axes[2:]))
+        return helices
+    # Of the six components of a motion, x, y and z are written.
+    return {name: _arranged(record, one, rest, axes[1:]) for name, one in zip(names, slices, strict=False)}
+
+
+def _names_along(record: Record, axis: str) -> tuple[str, ...]:
+    """The names that a record has along an axis: its first field of texts over that axis alone."""
+    named = (one for one in record.declarations.values() if one.axes == (axis,) and one.words)
+    names: tuple[str, ...] = getattr(record, next(named).name)
+    return names
 
 
 def _scaled(factor: float | None) -> Callable[[Any, Any], Any]:
@@ -270,7 +326,7 @@ class Record:
             if declared.json:
                 stored = getattr(self, declared.name)
                 for entry in declared.written():
-                    out[entry.key] = plain(entry.value(self, stored))
+                    out[entry.key] = plain(entry.of(self, stored, declared.axes))
         return out
 
 

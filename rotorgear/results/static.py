@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 
@@ -125,30 +124,15 @@ class MeshFace(Record):
 
 def by_mesh(key: str, *axes: str) -> Written:
     """A key under which the values of contacts stand by mesh; `axes` are those behind the contact's."""
-
-    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
-        return {mesh: values[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)}
-
-    return Written(key, value, axes=("MESH", "helix", *axes))
+    return Written(key, axes=("MESH", "helix", *axes))
 
 
 def _forces(name: str, kind: str, on: str = "the shaft") -> tuple[Written, Written]:
     """Force and moment of a support stand under keys of their own."""
+    axes = (name, "xyz")
     return (
-        Written(
-            f"{kind}_force_n",
-            lambda result, loads: {part: load[:3] for part, load in loads.items()},
-            unit="N",
-            axes=(name, "xyz"),
-            label=f"force on {on}",
-        ),
-        Written(
-            f"{kind}_moment_n_m",
-            lambda result, loads: {part: load[3:] for part, load in loads.items()},
-            unit="N m",
-            axes=(name, "xyz"),
-            label=f"moment on {on}",
-        ),
+        Written(f"{kind}_force_n", unit="N", axes=axes, label=f"force on {on}", part=(0, 3)),
+        Written(f"{kind}_moment_n_m", unit="N m", axes=axes, label=f"moment on {on}", part=(3, 6)),
     )
 
 
