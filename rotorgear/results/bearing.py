@@ -264,7 +264,8 @@ class BearingSheet(ModelResult, kind="bearing"):
         yield ("side flow", f"{6e4 * film.side_flow:.4g} l/min")
         yield ("power loss", f"{film.power_loss:.5g} W")
         if film.film_temperature is not None and film.outlet_temperature is not None:
-            mean, outlet = film.film_temperature - ZERO_CELSIUS, film.outlet_temperature - ZERO_CELSIUS
+            mean = film.film_temperature - ZERO_CELSIUS
+            outlet = film.outlet_temperature - ZERO_CELSIUS
             yield ("oil", f"in at {2.0 * mean - outlet:.4g} degC, out at {outlet:.4g} degC")
             yield ("film", f"{mean:.4g} degC, {1e3 * film.film_viscosity:.4g} mPa s")
 

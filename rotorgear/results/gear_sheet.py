@@ -327,5 +327,6 @@ def _is_cut(mesh: MeshSheetRow) -> bool:
 
 
 def _allowances(gear: GearRow) -> str:
-    upper, lower = 1e6 * gear.upper_thickness_allowance_m, 1e6 * gear.lower_thickness_allowance_m
+    upper = 1e6 * gear.upper_thickness_allowance_m
+    lower = 1e6 * gear.lower_thickness_allowance_m
     return f"{upper:g} {lower:g}" if lower else "-"

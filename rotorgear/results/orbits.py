@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.results.result import ModelResult
+from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Table, grid, heading, written
 
@@ -149,13 +149,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
         default_factory=lambda: np.zeros((0, 0, 0), complex),
     )
 
-    statistic: tuple[str, ...] = of(
-        "name of the statistic",
-        "",
-        "statistic",
-        note=" of a contact whose error is estimated; transmission error and approach peak to peak",
-        default=(),
-    )
+    statistic: tuple[str, ...] = statistic_names()
     statistics_error: np.ndarray = of(
         "estimated errors of the statistics",
         "",

@@ -232,3 +232,14 @@ class ModelResult(Result):
     def title(self) -> str:
         """The title in the model file."""
         return self.model.title
+
+
+def statistic_names() -> Any:
+    """The field of a result whose statistics of contacts have estimated errors, which are counted by these names."""
+    return of(
+        "name of the statistic",
+        "",
+        "statistic",
+        note=" of a contact whose error is estimated; transmission error and approach peak to peak",
+        default=(),
+    )

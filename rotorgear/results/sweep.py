@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.old_names import warn_old
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
-from rotorgear.results.result import ModelResult
+from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, written
 
@@ -200,13 +200,7 @@ class SweepResult(ModelResult, kind="sweep"):
         "reduction of large systems", record=Reduction, default=None, note="; `null` where there was none"
     )
     portraits: Portraits | None = of("trajectories of some points", record=Portraits, json=None, default=None)
-    statistic: tuple[str, ...] = of(
-        "name of the statistic",
-        "",
-        "statistic",
-        note=" of a contact whose error is estimated; transmission error and approach peak to peak",
-        default=(),
-    )
+    statistic: tuple[str, ...] = statistic_names()
     statistics_error: np.ndarray = of(
         "estimated errors of the statistics",
         "",
@@ -345,7 +339,8 @@ class SweepResult(ModelResult, kind="sweep"):
         if self.lyapunov.shape[2]:
             columns = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {columns}"
         steps = self.steps[self.steps > 0]  # a point that failed has none
-        fewest, most = int(steps.min()), int(steps.max())
+        fewest = int(steps.min())
+        most = int(steps.max())
         yield from ("", columns, f"p-p: penetration of the flanks; TE: {TRANSMISSION_WORDS}; all three peak to peak")
         yield (
             f"T is {self.period_words}; {self.settle} periods discarded, {self.count} sampled; repeats within "
