@@ -137,7 +137,32 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
     @derived("what the agreement is worth", "", "sentence", note=", in sentences")
     def verdicts(self) -> tuple[str, ...]:
         """Agreement against chance, modes that the sensors can't tell apart, sensors in doubt."""
-        return tuple(_findings(self))
+        chance = self.chance
+        count = len(self.rig_hz)
+        rare = chance.probability_as_many <= _RARE or chance.probability_as_close <= _RARE
+        worth = "evidence for the model if it was not fitted to them" if rare else "no evidence for the model"
+        many = f"{100 * chance.probability_as_many:.2g} %"
+        said = [
+            f"{self.good} of {count} measured modes agree in frequency within {100 * self.tolerance:.3g} % and in shape (MAC at "
+            f"least {ALIKE}). Of {chance.samples} random lists the mean has {chance.expected:.2f}; {many} have as many, "
+            f"{100 * chance.probability_as_close:.2g} % come as close in both: {worth}."
+        ]
+        close = {group.mode_numbers for group in self.subspaces}
+        said += pairs_alike(self.model_auto_mac, [f"{number}" for number in self.mode_number], "modes", close)
+        said += pairs_alike(self.auto_mac, [f"{hz:.1f} Hz" for hz in self.rig_hz], "measured shapes", set())
+        for doubt in self.doubts:
+            said.append(
+                f"Sensor {doubt.point}: {doubt.what}? The mean MAC would be {doubt.mac_after:.3f} in place of "
+                f"{doubt.mac_before:.3f}. Look at the rig; nothing was changed."
+            )
+        poor = [name for name, value in zip(self.points, self.comac, strict=True) if value < 0.5]
+        if poor and not self.doubts:
+            said.append(f"Sensors that agree least over all shapes (COMAC below 0.5): {', '.join(poor)}.")
+        driven = [m for m in self.matches if m.excitations]
+        if driven:
+            lines = ", ".join(f"{m.rig.frequency_hz:.1f} Hz ({m.excitations[0].name})" for m in driven)
+            said.append(f"Lines at a frequency of excitation, which may be no natural frequency at all: {lines}.")
+        return tuple(said)
 
     def tables(self) -> Iterator[Block]:
         """Measured modes beside those of the model, and what the agreement is worth."""
@@ -156,35 +181,6 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
         if self.stiffnesses:
             yield learnt_words(self.stiffnesses, len(self.matches), "matched lines")
         yield from self.remarks()
-
-
-def _findings(result: ShapeComparison) -> list[str]:
-    chance = result.chance
-    count = len(result.rig_hz)
-    rare = chance.probability_as_many <= _RARE or chance.probability_as_close <= _RARE
-    worth = "evidence for the model if it was not fitted to them" if rare else "no evidence for the model"
-    many = f"{100 * chance.probability_as_many:.2g} %"
-    said = [
-        f"{result.good} of {count} measured modes agree in frequency within {100 * result.tolerance:.3g} % and in shape (MAC at "
-        f"least {ALIKE}). Of {chance.samples} random lists the mean has {chance.expected:.2f}; {many} have as many, "
-        f"{100 * chance.probability_as_close:.2g} % come as close in both: {worth}."
-    ]
-    close = {group.mode_numbers for group in result.subspaces}
-    said += pairs_alike(result.model_auto_mac, [f"{number}" for number in result.mode_number], "modes", close)
-    said += pairs_alike(result.auto_mac, [f"{hz:.1f} Hz" for hz in result.rig_hz], "measured shapes", set())
-    for doubt in result.doubts:
-        said.append(
-            f"Sensor {doubt.point}: {doubt.what}? The mean MAC would be {doubt.mac_after:.3f} in place of "
-            f"{doubt.mac_before:.3f}. Look at the rig; nothing was changed."
-        )
-    poor = [name for name, value in zip(result.points, result.comac, strict=True) if value < 0.5]
-    if poor and not result.doubts:
-        said.append(f"Sensors that agree least over all shapes (COMAC below 0.5): {', '.join(poor)}.")
-    driven = [m for m in result.matches if m.excitations]
-    if driven:
-        lines = ", ".join(f"{m.rig.frequency_hz:.1f} Hz ({m.excitations[0].name})" for m in driven)
-        said.append(f"Lines at a frequency of excitation, which may be no natural frequency at all: {lines}.")
-    return said
 
 
 def pairs_alike(table: np.ndarray, names: list[str], what: str, close: set[tuple[int, ...]]) -> list[str]:

@@ -104,7 +104,58 @@ class UpdateResult(ModelResult, kind="update"):
     @derived("what the update is worth", "", "sentence", note=", in sentences")
     def findings(self) -> tuple[str, ...]:
         """What was proven on held-out lines, whether the model can fit at all, and what stays unknown."""
-        return tuple(_findings(self))
+        said = []
+        before = 100.0 * self.error_before
+        held_out = 100.0 * self.error_held_out
+        if len(self.lines) > 1:
+            better = (
+                "predicts lines it has not seen better" if held_out < before else "does NOT predict unseen lines better"
+            )
+            said.append(
+                f"Each line held out and predicted from the others: {held_out:.2g} % rms, against {before:.2g} % before: the "
+                f"updated model {better}."
+            )
+        if len(self.responses) > 1:
+            mean_before = float(np.mean([row.frac_before for row in self.responses]))
+            mean_held_out = float(np.mean([row.frac_held_out for row in self.responses]))
+            verdict = "better" if mean_held_out > mean_before else "no better"
+            said.append(
+                f"Each frequency response held out and predicted from the others: FRAC {mean_held_out:.3f} in the mean, against "
+                f"{mean_before:.3f} before: the updated model predicts responses it has not seen {verdict}."
+            )
+        per = self.chi_squared / max(self.measured_values, 1)
+        if self.misfit_probability < MISFIT:
+            said.append(
+                f"Misfit {per:.1f} times what noise and priors allow (chance {self.misfit_probability:.1g}): the model is wrong "
+                "in more than these numbers, or the noise is understated, or a line has the wrong mode"
+                + (
+                    ", or a sensor looks otherwise than its table says (`compare --shapes` names such)"
+                    if self.points
+                    else ""
+                )
+                + ". Don't use the estimates."
+            )
+        elif self.unmatched:
+            count = len(self.unmatched)
+            said.append(
+                f"Misfit {per:.2f} of what noise and priors allow, without the {count} of {count + len(self.lines)} lines "
+                "that have no mode: these are no natural frequencies, or speak against the model."
+            )
+        else:
+            said.append(
+                f"Misfit {per:.2f} of what noise and priors allow: nothing speaks against the form of the model."
+            )
+        names = [row.address for row in self.parameters]
+        tied = [
+            (float(self.correlation[i, j]), names[i], names[j])
+            for i in range(len(names))
+            for j in range(i)
+            if abs(self.correlation[i, j]) > TIED
+        ]
+        for value, first, second in sorted(tied, key=lambda row: -abs(row[0]))[:3]:
+            known = "their product, not their ratio" if value < 0 else "their ratio, not their product"
+            said.append(f"Of {second} and {first} the lines know {known} (correlation {value:+.2f}).")
+        return tuple(said)
 
     def updated_model(self) -> Model:
         """The model with the most probable numbers."""
@@ -154,56 +205,3 @@ class UpdateResult(ModelResult, kind="update"):
         if self.unmatched:
             yield f"Without a mode: {', '.join(f'{line.frequency_hz:.1f}' for line in self.unmatched)} Hz."
         yield from (*self.remarks(), f"{self.modal_solutions} modal solutions of {self.dofs} dofs.")
-
-
-def _findings(result: UpdateResult) -> list[str]:
-    said = []
-    before = 100.0 * result.error_before
-    held_out = 100.0 * result.error_held_out
-    if len(result.lines) > 1:
-        better = (
-            "predicts lines it has not seen better" if held_out < before else "does NOT predict unseen lines better"
-        )
-        said.append(
-            f"Each line held out and predicted from the others: {held_out:.2g} % rms, against {before:.2g} % before: the "
-            f"updated model {better}."
-        )
-    if len(result.responses) > 1:
-        mean_before = float(np.mean([row.frac_before for row in result.responses]))
-        mean_held_out = float(np.mean([row.frac_held_out for row in result.responses]))
-        verdict = "better" if mean_held_out > mean_before else "no better"
-        said.append(
-            f"Each frequency response held out and predicted from the others: FRAC {mean_held_out:.3f} in the mean, against "
-            f"{mean_before:.3f} before: the updated model predicts responses it has not seen {verdict}."
-        )
-    per = result.chi_squared / max(result.measured_values, 1)
-    if result.misfit_probability < MISFIT:
-        said.append(
-            f"Misfit {per:.1f} times what noise and priors allow (chance {result.misfit_probability:.1g}): the model is wrong "
-            "in more than these numbers, or the noise is understated, or a line has the wrong mode"
-            + (
-                ", or a sensor looks otherwise than its table says (`compare --shapes` names such)"
-                if result.points
-                else ""
-            )
-            + ". Don't use the estimates."
-        )
-    elif result.unmatched:
-        count = len(result.unmatched)
-        said.append(
-            f"Misfit {per:.2f} of what noise and priors allow, without the {count} of {count + len(result.lines)} lines "
-            "that have no mode: these are no natural frequencies, or speak against the model."
-        )
-    else:
-        said.append(f"Misfit {per:.2f} of what noise and priors allow: nothing speaks against the form of the model.")
-    names = [row.address for row in result.parameters]
-    tied = [
-        (float(result.correlation[i, j]), names[i], names[j])
-        for i in range(len(names))
-        for j in range(i)
-        if abs(result.correlation[i, j]) > TIED
-    ]
-    for value, first, second in sorted(tied, key=lambda row: -abs(row[0]))[:3]:
-        known = "their product, not their ratio" if value < 0 else "their ratio, not their product"
-        said.append(f"Of {second} and {first} the lines know {known} (correlation {value:+.2f}).")
-    return said
