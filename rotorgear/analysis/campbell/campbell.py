@@ -22,7 +22,7 @@ from rotorgear.analysis.campbell.speeds import (
     operating_speed,
     system_for_speeds,
 )
-from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, serving
+from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.left_out import left_out
@@ -105,7 +105,7 @@ def campbell(
     check_whole("the number of sidebands", sidebands, 0)
     clock = Clock()
     about = linear_system(model, [float(speed) for speed in asked])
-    model, few = (about, ()) if isinstance(model, System) else serving(model, fmax)
+    model, few = (about, ()) if isinstance(model, System) else with_casing_modes(model, fmax)
     ends = [float(asked[0]), float(asked[-1])]
     system = system_for_speeds(
         model,

@@ -20,7 +20,7 @@ import scipy.sparse as sp
 from rotorgear.analysis.campbell.crossings import EXCITED, participation, whirl_for
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
-from rotorgear.analysis.common.casings import reduction_errors, serving
+from rotorgear.analysis.common.casings import reduction_errors, with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.left_out import left_out
@@ -103,7 +103,7 @@ def critical(
     # Where a line meets a mode is not known before: tangents over the whole range.
     about = linear_system(model, list(np.linspace(low, top, _TANGENTS)))
     highest = min(max(line.frequency_hz(top) for line in lines), fmax or np.inf)
-    model, few = (about, ()) if isinstance(model, System) else serving(model, highest)
+    model, few = (about, ()) if isinstance(model, System) else with_casing_modes(model, highest)
     aim = accuracy
     for _ in range(_ROUNDS):
         system = system_for_speeds(

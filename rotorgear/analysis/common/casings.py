@@ -17,7 +17,7 @@ from rotorgear.system.system import System
 if TYPE_CHECKING:
     from rotorgear.solvers.time.local_forces import LocalLaw
 
-# So many modes of a casing are taken where the file does not ask for more.
+# Modes of a casing that are taken where the file does not ask for more.
 MOST_MODES = 120
 # A bearing nearer to the point of its seat than this stands there.
 _APART = 1e-4
@@ -25,7 +25,7 @@ _APART = 1e-4
 NOTICED = 1e-3
 
 
-def serving(model: Model, fmax: float | None) -> tuple[Model, tuple[str, ...]]:
+def with_casing_modes(model: Model, fmax: float | None) -> tuple[Model, tuple[str, ...]]:
     """The model with modes of its casings up to twice the highest frequency that an analysis asks for.
 
     Where the file gives `modes_to`, where the usual number of modes reaches as far, and without casings from meshes, it is the

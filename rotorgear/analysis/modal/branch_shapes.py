@@ -14,7 +14,7 @@ from rotorgear.analysis.modal.whirl import Whirl, whirl_of, whirl_words
 from rotorgear.results.modal import WHIRL_WORDS, NodeTable
 from rotorgear.system.system import System
 
-# So many numbers of shapes are held at once.
+# Numbers of shapes that are held at once, at most.
 _CHUNK = 4_000_000
 
 

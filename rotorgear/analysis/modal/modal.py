@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reduction_errors, serving
+from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reduction_errors, with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.notes import gathering, mode_warnings
@@ -114,14 +114,14 @@ def modes_about(
     if asked.modes is None and asked.fmax is None:
         asked = replace(asked, modes=DEFAULT_MODES)
     clock = Clock()
-    taken, short = (model, ()) if isinstance(model, System) else serving(model, asked.fmax)
+    taken, short = (model, ()) if isinstance(model, System) else with_casing_modes(model, asked.fmax)
     while True:
         system, found, estimate = _on_fine_mesh(taken, asked, state, clock, progress)
         reduction = reduction_errors(system, found.eigenvalues, found.vectors)
         if isinstance(taken, System) or asked.fmax is not None or not np.any(reduction > NOTICED):
             break
         # How far a number of modes reaches is known now.
-        further, _ = serving(taken, float(np.max(np.abs(found.eigenvalues))) / (2.0 * np.pi))
+        further, _ = with_casing_modes(taken, float(np.max(np.abs(found.eigenvalues))) / (2.0 * np.pi))
         if further is taken:
             break
         taken = further

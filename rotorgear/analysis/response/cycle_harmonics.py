@@ -21,7 +21,7 @@ SEEN = 100
 _MINOR = 0.004
 _PEAK_TO_PEAK = 0.005
 _SMALL_CURVE = 0.1
-# So many orders of the mesh, and of a cycle in which teeth differ, are what is looked at by themselves: none of them is left out
+# First orders of the mesh, and of a cycle in which teeth differ, that are looked at by themselves: none of them is left out
 # that reaches the first share of the largest among them, however small they all are beside the others.
 _FIRST = 5
 # Teeth that differ have orders without end; no more than so many are taken.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import serving
+from rotorgear.analysis.common.casings import with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.points import moving_rows, rotates
@@ -92,7 +92,7 @@ def frf(
         raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
     check_modal_damping(modal_damping)
     given = model
-    model, few = serving(model, float(hz[-1]))
+    model, few = with_casing_modes(model, float(hz[-1]))
     input_units = tuple("N m" if rotates(model, text) else "N" for text in inputs)
     output_units = tuple("rad" if rotates(model, text) else "m" for text in outputs)
     zeta = modal_damping + model.damping.modal_ratio

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import serving
+from rotorgear.analysis.common.casings import with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
@@ -109,7 +109,7 @@ def response(
     # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
     top = max((order.frequency_at(fastest) for order in orders if not order.minor), default=highest)
     left += _beyond_mesh(orders, top, fastest)
-    served, few = serving(model, top / (2.0 * np.pi))
+    served, few = with_casing_modes(model, top / (2.0 * np.pi))
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
         plan = plan_up_to(served, at_speed(state, speed), MARGIN * top / (2.0 * np.pi), elements, aim)

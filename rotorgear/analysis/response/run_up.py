@@ -15,16 +15,16 @@ from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
 
 # The basis grows until its error against direct solutions is below this, at the points where its residual is largest.
 TOLERANCE = 1e-6
-# Above so many unknowns in all, the basis is cheaper than direct solutions.
+# Above this number of unknowns in all, the basis is cheaper than direct solutions.
 _DIRECT_UP_TO = 100_000
-# A basis takes about so many direct solutions of every order until it is proved.
+# A basis takes about this many direct solutions of every order until it is proved.
 _FEW_SPEEDS = 20
 _ROUNDS = 40
 _PER_ROUND = 6
 _SPEEDS_WHILE_GROWING = 24
 # Modes up to this much above the highest frequency of an order are in its basis.
 _MODES_UP_TO = 1.5
-# So many minor orders share a basis.
+# Minor orders that share a basis, at most.
 _IN_A_BUNCH = 32
 
 

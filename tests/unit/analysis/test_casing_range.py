@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.common.casings import MOST_MODES, serving
+from rotorgear.analysis.common.casings import MOST_MODES, with_casing_modes
 from rotorgear.casings.casing import forget
 from tests.unit.casings.blocks import block, write_inp
 
@@ -61,21 +61,21 @@ def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_range_within_the_usual_modes_leaves_the_model_as_it_is(model: rg.Model) -> None:
     reach = model.layout.casing("box").left_frequency
-    assert serving(model, 0.49 * reach) == (model, ())
-    assert serving(model, None)[0] is model
+    assert with_casing_modes(model, 0.49 * reach) == (model, ())
+    assert with_casing_modes(model, None)[0] is model
     given = model.with_("casings.box.modes_to", reach)
-    assert serving(given, 10.0 * reach) == (given, ())
+    assert with_casing_modes(given, 10.0 * reach) == (given, ())
 
 
 def test_a_wider_range_takes_modes_to_twice_its_end(model: rg.Model) -> None:
     reach = model.layout.casing("box").left_frequency
-    served, short = serving(model, 0.7 * reach)
+    served, short = with_casing_modes(model, 0.7 * reach)
     asked = served.casings["box"].modes_to
     assert asked is not None
     assert 1.4 * reach <= asked <= 1.6 * reach
     assert served.layout.casing("box").left_frequency > asked
     assert short == ()
-    served, short = serving(model, 20.0 * reach)
+    served, short = with_casing_modes(model, 20.0 * reach)
     assert len(served.layout.casing("box").fixed_frequency) < 2 * MOST_MODES
     assert short[0].endswith("modes_to takes in more")
 
