@@ -19,7 +19,7 @@ from rotorgear.model.parts.fields import (
     PositiveRatio,
     Ratio,
     StiffnessPerArea,
-    refuse,
+    listed,
 )
 from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix
 
@@ -29,16 +29,8 @@ UNIT_LENGTHS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 
 ONLY_MESH = "mesh"
 
 
-def _parse_center(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise refuse("the two coordinates across the axis, in the order x y z, such as ['-55 mm', '130 mm']")
-    return value
-
-
-def _parse_point(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        raise refuse("the point x y z of the seat such as ['-55 mm', '130 mm', '20 mm']")
-    return value
+_CENTER = "the two coordinates across the axis, in the order x y z, such as ['-55 mm', '130 mm']"
+_POINT = "the point x y z of the seat such as ['-55 mm', '130 mm', '20 mm']"
 
 
 class _Seat(Part):
@@ -46,7 +38,7 @@ class _Seat(Part):
 
     set: str | None = Field(None, description="name of a face or node set; a text in place of the table says it alone")
     axis: Literal["x", "y", "z"] | None = Field(None, description="without a set: direction of the axis of the bore")
-    center: Annotated[tuple[Length, Length], BeforeValidator(_parse_center)] | None = Field(
+    center: Annotated[tuple[Length, Length], listed(2, _CENTER)] | None = Field(
         None, description="where the axis is: the coordinates across it, in the order x y z"
     )
     radius: PositiveLength | None = Field(None, description="radius of the bore")
@@ -120,7 +112,7 @@ class Casing(Part):
     matrices: str | None = Field(
         None, description="file of a body that was reduced elsewhere (.npz with stiffness and mass), in place of a mesh"
     )
-    interface: dict[Name, Annotated[tuple[Length, Length, Length], BeforeValidator(_parse_point)]] = Field(
+    interface: dict[Name, Annotated[tuple[Length, Length, Length], listed(3, _POINT)]] = Field(
         default_factory=dict,
         description="seats in `matrices` with their points x y z, in the order of their motions; default: as the file says",
     )

@@ -234,22 +234,22 @@ def _station_schema() -> dict[str, Any]:
 Station = Annotated[float | Literal["start", "end"], BeforeValidator(_parse_station), WithJsonSchema(_station_schema())]
 
 
-def _parse_position(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise refuse("x and y of the axis such as ['0 mm', '120 mm']")
-    return value
+def listed(count: int, expected: str) -> BeforeValidator:
+    """Refuses all but a list of so many entries; `expected` says what it should have been."""
+
+    def parse(value: Any) -> Any:
+        if not isinstance(value, list | tuple) or len(value) != count:
+            raise refuse(expected)
+        return value
+
+    return BeforeValidator(parse)
 
 
-Position = Annotated[tuple[Length, Length], BeforeValidator(_parse_position)]
-
-
-def _parse_gravity(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        raise refuse("its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']")
-    return value
-
-
-Gravity = Annotated[tuple[Acceleration, Acceleration, Acceleration], BeforeValidator(_parse_gravity)]
+Position = Annotated[tuple[Length, Length], listed(2, "x and y of the axis such as ['0 mm', '120 mm']")]
+Gravity = Annotated[
+    tuple[Acceleration, Acceleration, Acceleration],
+    listed(3, "its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']"),
+]
 
 
 def _parse_matrix(value: Any) -> tuple[tuple[float, ...], ...]:

@@ -26,6 +26,7 @@ from rotorgear.model.parts.fields import (
     Torque,
     UnbalanceSize,
     Unit,
+    listed,
     refuse,
 )
 from rotorgear.model.parts.topography import csv_rows, from_csv
@@ -45,19 +46,13 @@ COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z
 _TURN = 2.0 * np.pi
 
 
-def _three(value: Any, example: str) -> Any:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        raise refuse(f"its x, y and z such as {example}")
-    return value
-
-
 ForceVector = Annotated[
     tuple[Annotated[float, Unit("force")], Annotated[float, Unit("force")], Annotated[float, Unit("force")]],
-    BeforeValidator(lambda value: _three(value, "['0 N', '100 N', '0 N']")),
+    listed(3, "its x, y and z such as ['0 N', '100 N', '0 N']"),
 ]
 MomentVector = Annotated[
     tuple[Annotated[float, Unit("torque")], Annotated[float, Unit("torque")], Annotated[float, Unit("torque")]],
-    BeforeValidator(lambda value: _three(value, "['0 N m', '0 N m', '5 N m']")),
+    listed(3, "its x, y and z such as ['0 N m', '0 N m', '5 N m']"),
 ]
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from rotorgear.model.parts.fields import (
     Gravity,
@@ -18,6 +18,7 @@ from rotorgear.model.parts.fields import (
     Time,
     Torque,
     Whole,
+    listed,
     refuse,
 )
 
@@ -47,10 +48,7 @@ class ModelDamping(Part):
     modal_ratio: Ratio = Field(0.0, description="damping ratio added to that of every mode that is not rigid")
 
 
-def _parse_place(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        raise refuse("the coordinates x y z of a place, such as ['0 mm', '280 mm', '200 mm']")
-    return value
+_PLACE = "the coordinates x y z of a place, such as ['0 mm', '280 mm', '200 mm']"
 
 
 class Point(Part):
@@ -60,7 +58,7 @@ class Point(Part):
         None,
         description="address of a part, such as 'bearings.input_left' or 'gears.wheel', or of a casing: 'casings.box'",
     )
-    place: Annotated[tuple[Length, Length, Length], BeforeValidator(_parse_place)] | None = Field(
+    place: Annotated[tuple[Length, Length, Length], listed(3, _PLACE)] | None = Field(
         None, description="on a casing: x y z of a place; the point is that of its surface which is next to it"
     )
     shaft: str | None = Field(None, description="name of a shaft, in place of a part")
