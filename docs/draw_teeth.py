@@ -24,7 +24,7 @@ MOST = 120.0
 def solve(folder: Path) -> None:
     """Write the fields of both gears."""
     import rotorgear as rg
-    from rotorgear.analysis.teeth.tooth_field import tooth_fields
+    from rotorgear.analysis.teeth.inside_teeth import tooth_fields
     from rotorgear.export.vtk_parts import write_tooth_vtk
 
     write_tooth_vtk(tooth_fields(rg.load(ROOT / "validation" / "cases" / "tooth_fe_contact" / "helical.toml")), folder)

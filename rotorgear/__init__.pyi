@@ -57,7 +57,7 @@ from rotorgear.analysis.bearing.bearing import bearing as bearing
 from rotorgear.analysis.casing.casing import casing as casing
 from rotorgear.analysis.teeth.mesh import mesh as mesh
 from rotorgear.analysis.teeth.mesh_map import mesh_map as mesh_map
-from rotorgear.analysis.teeth.root_stress import root_stress as root_stress
+from rotorgear.analysis.teeth.inside_teeth import root_stress as root_stress
 from rotorgear.analysis.teeth.optimise import optimise_flanks as optimise_flanks
 from rotorgear.plots.view import view as view
 from rotorgear import plot as plot
@@ -69,7 +69,7 @@ from rotorgear.analysis.studies.motions import transient_convergence_study as tr
 from rotorgear.analysis.studies.motions import sweep_convergence_study as sweep_convergence_study
 from rotorgear.analysis.studies.motions import orbits_convergence_study as orbits_convergence_study
 from rotorgear.analysis.studies.parts import mesh_convergence_study as mesh_convergence_study
-from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
+from rotorgear.solvers.batch.flow_exponents import flow_exponents as flow_exponents
 
 # A force law of your own.
 from rotorgear.forces.law import ForceLaw as ForceLaw

@@ -42,7 +42,7 @@ STUDIES: dict[str, Callable[..., AnyStudy]] = {
     "orbits": orbits_convergence_study,
     "casing": casing_convergence_study,
 }
-# Verbs that have no discretisation of their own, and where the errors of their numbers stand.
+# Verbs that have no discretisation of their own, and where the errors of their numbers are stated.
 _ELSEWHERE = {
     "scatter": "its samples share the modes of --analysis modal, and it states the errors of their basis and of its indices",
     "update": "it fits the modes of --analysis modal, and its intervals are those of the measurement",

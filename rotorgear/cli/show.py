@@ -152,7 +152,7 @@ def _write_vtk(call: Call, result: Any, folder: Path) -> None:
 
 def _write_teeth(call: Call, result: Any, folder: Path, progress: Progress) -> list[Path]:
     """Write both tooth meshes at one position of a mesh cycle."""
-    from rotorgear.analysis.teeth.tooth_field import tooth_fields
+    from rotorgear.analysis.teeth.inside_teeth import tooth_fields
     from rotorgear.export.vtk_parts import write_tooth_vtk
 
     asked = {"torque": call["torque"], "preset": result.preset, "body": call["body"], "at": call["at"]}

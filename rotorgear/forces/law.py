@@ -56,7 +56,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import OWN_LAW, TABLE_ROWS, Column
 from rotorgear.solvers.time.local_forces import Repeats
 
 if TYPE_CHECKING:
@@ -338,7 +338,7 @@ class ForceLaw(ABC):
         return (Column(OWN_LAW),) * self.components
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
-        """What varies in the columns, (r, k, 4) in the rows of solvers/lanes/columns.py.
+        """What varies in the columns, (r, k, 4) in the rows of solvers/batch/columns.py.
 
         Args:
             angles: of the reference, (r,). states: of the schedule there at unit speed, (r, s).

@@ -45,9 +45,9 @@ from rotorgear.forces.loaded_map import (
     LoadedMap,
 )
 from rotorgear.forces.mesh_contact import DAMPINGS, pairs
+from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
 from rotorgear.solvers.contact.gap_contact import curve_contact
 from rotorgear.solvers.contact.kinds import PENETRATION
-from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
 # Harmonics of a base pitch that count: teeth part, and corners strike.

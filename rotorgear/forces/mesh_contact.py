@@ -20,10 +20,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.solvers.batch.columns import ERROR, SLOPE, STIFFNESS, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import PUSH as PUSH_ROW
 from rotorgear.solvers.contact.gap_contact import contact, momentum
 from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, DEAD_ZONE, NON_ADHESIVE, PENETRATION, UNILATERAL
-from rotorgear.solvers.lanes.columns import ERROR, SLOPE, STIFFNESS, TABLE_ROWS, Column
-from rotorgear.solvers.lanes.columns import PUSH as PUSH_ROW
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 # The words of model files, and the kinds of contact and damping that compiled code branches on.

@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
-from rotorgear.solvers.lanes.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 # Of the parameters; then the times from which an acceleration of the reference holds, and the accelerations.

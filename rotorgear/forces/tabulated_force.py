@@ -13,7 +13,7 @@ import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
 from rotorgear.forces.rotating_force import force
-from rotorgear.solvers.lanes.columns import PRESCRIBED, PUSH, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import PRESCRIBED, PUSH, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import schedule_function
 
 ORDER, OVER_ANGLE, COUNT, FIRST = range(4)  # of the parameters; then the places, then the values

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter
-from rotorgear.solvers.lanes.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 # Of the parameters, in the order of the fields; and of the state.

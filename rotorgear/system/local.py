@@ -60,6 +60,21 @@ class LocalModel:
     parts: tuple[LocalPart, ...]
     groups: tuple[ElementGroup, ...]
 
+    @property
+    def meshes(self) -> list[int]:
+        """Numbers of the parts that are contacts of meshes."""
+        return [i for i, part in enumerate(self.parts) if part.is_mesh]
+
+    @property
+    def mesh_columns(self) -> np.ndarray:
+        """(c,) local displacements of these contacts."""
+        return self.local.forces.first[self.meshes].astype(int)
+
+    @property
+    def transverse(self) -> np.ndarray:
+        """(c,) displacement of a contact over its approach in the transverse plane."""
+        return np.array([self.parts[i].transverse for i in self.meshes])
+
 
 def local_model(system: System, rotation: Rotation, speed: float, *, along_faces: bool = False) -> LocalModel:
     """Return the structure with its contacts as laws.

@@ -89,7 +89,7 @@ ROOMS = {
         "frequency": {"eigen", "sparse", "time"},
         "periodic": {"eigen", "sparse", "time"},
         "contact": {"time"},
-        "lanes": {"contact", "time"},
+        "batch": {"contact", "time"},
     },
 }
 # Modules that load others by a name which no walk can read in their source, and the package that the name may lead to.

@@ -15,7 +15,7 @@ from scipy.integrate import trapezoid
 from rotorgear.errors import AnalysisError
 from rotorgear.forces import registry
 from rotorgear.forces.law import ForceLaw
-from rotorgear.solvers.lanes.columns import OWN_LAW, PRESCRIBED, Columns
+from rotorgear.solvers.batch.columns import OWN_LAW, PRESCRIBED, Columns
 
 LAWS = [(f"{name} {i}", law) for name in registry.names() for i, law in enumerate(registry.law_of(name).examples())]
 TIME = 3.7e-4
@@ -209,7 +209,7 @@ def contacts_alone() -> Any:
     """`contacts`, which compiled functions alone may call, as a function for Python."""
     import numba
 
-    from rotorgear.solvers.lanes.kernel_parts import contacts
+    from rotorgear.solvers.batch.kernel_parts import contacts
 
     @numba.njit
     def called(columns, table, weight, d, F, found, used):  # type: ignore[no-untyped-def]
@@ -220,9 +220,9 @@ def contacts_alone() -> Any:
 
 @pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
 def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
-    from rotorgear.solvers.contact.vectors import LANES
-    from rotorgear.solvers.lanes.arguments import ColumnValues
-    from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, SIDE
+    from rotorgear.solvers.batch.arguments import ColumnValues
+    from rotorgear.solvers.batch.kernel_parts import FOUND, IN_D, IN_V, SIDE
+    from rotorgear.solvers.contact.vectors import BATCH
 
     columns = Columns.of(law.columns(SPEED)).scaled(SPEED)
     if np.all(columns.kind == OWN_LAW):
@@ -231,13 +231,13 @@ def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
     state = np.zeros(law.state_size())
     law.functions()[0](ANGLE, 1.0, 0.0, law.parameters(), state)
     table = law.table(np.array([ANGLE]), state[None], 1.0)[0]
-    moved = motions(law, LANES)
-    d, found, F, used = (np.zeros((rows, LANES)) for rows in (2 * k, FOUND * k, k, k))
+    moved = motions(law, BATCH)
+    d, found, F, used = (np.zeros((rows, BATCH)) for rows in (2 * k, FOUND * k, k, k))
     d[0::2] = np.array([one for one, _ in moved]).T
     d[1::2] = np.array([rate for _, rate in moved]).T / SPEED
-    values, tables = (np.repeat(each[:, :, None], LANES, axis=2) for each in (columns.values, table))
+    values, tables = (np.repeat(each[:, :, None], BATCH, axis=2) for each in (columns.values, table))
     acting = ColumnValues(columns.kind, columns.mode, columns.jumps, columns.counted, True, values)
-    contacts_alone()(acting, tables, 1.0, d, F, found.reshape(k, FOUND, LANES), used)
+    contacts_alone()(acting, tables, 1.0, d, F, found.reshape(k, FOUND, BATCH), used)
     for lane, (one, rate) in enumerate(moved):
         alone = law.evaluate(one, rate, angle=ANGLE, speed=SPEED)
         assert SPEED**2 * F[:, lane] == pytest.approx(alone.force, rel=1e-12)

@@ -38,37 +38,37 @@ print(repr(float(gear_compliance(key).flexibility.max())))
 """
 
 
-# What one contact does in lanes, as a trajectory, by Newmark's method, and at rest.
+# What one contact does in a batch, as a trajectory, by Newmark's method, and at rest.
 EVERYWHERE = """
 from fractions import Fraction
 import numpy as np
-from rotorgear.analysis.sweep.point import ready, still, table_of
+from rotorgear.analysis.sweep.point import ready, at_rest, table_of
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
-from rotorgear.solvers.lanes.trajectory import recorded
+from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.trajectory import trajectory
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from validation.oscillators import integrate, local_system
 law = MeshContact(3.0, 0.2, 0.5, ramp=0.05, order=1.0, error_cos=(0.1,))
 system = local_system(np.eye(1), np.zeros((1, 1)), np.eye(1), [0.4], [(law, [1.0])], speed=0.9)
-point = ready(still(system, [Fraction(1)], ("contact",)), 0.9)
+point = ready(at_rest(system, [Fraction(1)], ("contact",)), 0.9)
 table = table_of(point, 50)
 start = Start(np.array([0.2]), np.zeros(1))
 print(repr([
     float(run_block([point.system], [start], [table], Plan(50, 0, 1, 0))[0].section[-1, 0, 0]),
-    float(recorded(point.system, start, table, 50, 1)[-1, 0, 0]),
+    float(trajectory(point.system, start, table, 50, 1)[-1, 0, 0]),
     float(integrate(system, "average acceleration", 0.1, 20, [0.2], [0.0]).q[-1][0]),
     float(equilibrium(system).q[0]),
 ]))
 """
 
-# Run by Python instead of compiled: rows of lanes are numpy's, which the intrinsics of vectors.py stand for in compiled code.
+# Run by Python instead of compiled: rows of a batch are numpy's, which the intrinsics of vectors.py stand for in compiled code.
 INTERPRETED = """
 import numpy as np
 from rotorgear.solvers.contact import vectors
-vectors.fill = lambda number: np.full(vectors.LANES, number)
-vectors.get = lambda array, row: array.reshape(-1, vectors.LANES)[row].copy()
+vectors.fill = lambda number: np.full(vectors.BATCH, number)
+vectors.get = lambda array, row: array.reshape(-1, vectors.BATCH)[row].copy()
 def put(array, row, value):
-    array.reshape(-1, vectors.LANES)[row] = value
+    array.reshape(-1, vectors.BATCH)[row] = value
 vectors.put = put
 vectors.where_positive = lambda sign, then, otherwise: np.where(sign > 0.0, then, otherwise)[()]
 vectors.larger = lambda a, b: np.where(a > b, a, b)[()]

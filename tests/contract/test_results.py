@@ -18,7 +18,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.rig.compare_responses import OrderCut
 from rotorgear.analysis.rig.measured import MeasuredFrf
-from rotorgear.analysis.teeth.tooth_field import tooth_fields
+from rotorgear.analysis.teeth.inside_teeth import tooth_fields
 from rotorgear.export.hdf5 import read, save
 from rotorgear.model.model import model_hash
 from rotorgear.results.kinds import keys_of, kinds

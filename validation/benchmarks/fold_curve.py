@@ -15,7 +15,7 @@ from rotorgear.analysis.orbits.curves import special_curves
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
 from rotorgear.analysis.orbits.follow import main_branches
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, scale_of
-from rotorgear.analysis.orbits.start import first_node
+from rotorgear.analysis.orbits.verify import first_node
 from rotorgear.progress import silent
 from rotorgear.solvers.periodic.arclength import Walk, at_value
 from rotorgear.solvers.periodic.balance import Grid

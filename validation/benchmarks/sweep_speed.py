@@ -1,9 +1,9 @@
-"""Speed of the sweep's lanes against a scalar compiled kernel, and against scipy's solve_ivp.
+"""Speed of the sweep's SIMD batch against a scalar compiled kernel, and against scipy's solve_ivp.
 
     python -m validation.benchmarks.sweep_speed
 
 A chain of 7 bodies with 1 or 4 mesh contacts that part, and one of 24 with 8: k(t) +-25 %, e(t), 200 steps in a mesh period.
-Prints, in CPU seconds of one thread, point-steps in a second of each, their ratios, and how far lanes and scalar kernel are
+Prints, in CPU seconds of one thread, point-steps in a second of each, their ratios, and how far batch and scalar kernel are
 apart after 20 periods. solve_ivp (DOP853, rtol 1e-8) is timed over mesh periods of one point, with a slope in numpy and with a
 compiled one.
 """
@@ -16,15 +16,15 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.sweep.point import Point, ready, still, table_of
+from rotorgear.analysis.sweep.point import Point, at_rest, ready, table_of
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
+from rotorgear.solvers.batch.run_block import Plan, Start, run_block
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.local_system import LocalSystem
 from validation.oscillators import local_system
 
 STEPS = 200
-LANES = 32
+BATCH = 32
 CASES = ((7, 1), (7, 4), (24, 8))
 _SPEED = 1.35
 
@@ -199,14 +199,14 @@ def _structure(point: Point) -> tuple[np.ndarray, ...]:
     )
 
 
-def points(n: int, m: int, count: int = LANES) -> list[Point]:
+def points(n: int, m: int, count: int = BATCH) -> list[Point]:
     """Points over the speed."""
     speeds = _SPEED * np.linspace(0.8, 1.2, count)
-    return [ready(still(chain(n, m, w), [Fraction(1)], tuple(map(str, range(m)))), w) for w in speeds]
+    return [ready(at_rest(chain(n, m, w), [Fraction(1)], tuple(map(str, range(m)))), w) for w in speeds]
 
 
 def apart(n: int, m: int, periods: int = 20) -> float:
-    """Largest difference of lanes and scalar kernel after some periods, over the largest displacement."""
+    """Largest difference of batch and scalar kernel after some periods, over the largest displacement."""
     own = points(n, m)
     starts = [Start(p.system.rest, np.zeros(n)) for p in own]
     tables = [table_of(own[0], STEPS)]
@@ -217,23 +217,23 @@ def apart(n: int, m: int, periods: int = 20) -> float:
 
 
 def rates(n: int, m: int, tangents: int = 0) -> dict[str, float]:
-    """Point-steps in a CPU second of lanes, the scalar kernel and solve_ivp."""
+    """Point-steps in a CPU second of the batch, the scalar kernel and solve_ivp."""
     own = points(n, m)
     starts = [Start(p.system.rest, np.zeros(n)) for p in own]
     tables = [table_of(own[0], STEPS)]
     periods = 60 if n > 10 else 200
 
-    def lanes() -> float:
+    def batch() -> float:
         before = time.process_time()
         run_block([p.system for p in own], starts, tables, Plan(STEPS, periods, 1, tangents))
-        return LANES * STEPS * (periods + 1) / (time.process_time() - before)
+        return BATCH * STEPS * (periods + 1) / (time.process_time() - before)
 
     def single() -> float:
         before = time.process_time()
         scalar(own[0], starts[0], tables[0], 10 * periods)
         return 10 * periods * STEPS / (time.process_time() - before)
 
-    found = {"lanes": max(lanes() for _ in range(4)), "scalar": max(single() for _ in range(4))}
+    found = {"batch": max(batch() for _ in range(4)), "scalar": max(single() for _ in range(4))}
     if tangents:
         return found
     found["solve_ivp"] = _solve_ivp(own[0], starts[0], _numpy_slope, 5)
@@ -330,13 +330,13 @@ def main() -> None:
     from rotorgear.solvers.sparse.factor import single_thread
 
     with single_thread(0):
-        print("M point-steps in a CPU second; ratios to the lanes")
+        print("M point-steps in a CPU second; ratios to the batch")
         for n, m in CASES:
             apart(n, m, 1)
             own = rates(n, m)
             words = [f"{name} {rate / 1e6:.3g}" for name, rate in own.items()]
-            ratios = [f"{own['lanes'] / own[name]:.1f} x {name}" for name in own if name != "lanes"]
-            print(f"{n:2d} dofs, {m} contacts: {', '.join(words)}; lanes {', '.join(ratios)}; apart {apart(n, m):.1e}")
+            ratios = [f"{own['batch'] / own[name]:.1f} x {name}" for name in own if name != "batch"]
+            print(f"{n:2d} dofs, {m} contacts: {', '.join(words)}; batch {', '.join(ratios)}; apart {apart(n, m):.1e}")
 
 
 __all__ = ["apart", "chain", "main", "points", "rates", "scalar"]

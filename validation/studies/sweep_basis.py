@@ -14,8 +14,7 @@ from pathlib import Path
 import rotorgear as rg
 from rotorgear.analysis.sweep.axes import axis_of, points_of
 from rotorgear.analysis.sweep.request import Request
-from rotorgear.analysis.sweep.shrink import shrunk
-from rotorgear.analysis.sweep.sweep import _READY, _ready
+from rotorgear.analysis.sweep.sweep import _READY, _ready, reduce_large
 from rotorgear.progress import silent
 from rotorgear.solvers.sparse.factor import single_thread
 
@@ -32,7 +31,7 @@ def main() -> None:
         request = Request("each", 1, 10, 10, 0, None, 1e-4, 1e-3, 1, 1.0, modes, 0.02, None)
         with single_thread(0):
             _, large, failure, _ = _ready(model, axes, points_of(axes), None, request, silent)
-            reduction = shrunk(large, failure, request.reduction, silent, _READY)[2]
+            reduction = reduce_large(large, failure, request.reduction, silent, _READY)[2]
         assert reduction is not None, failure
         closed, apart = 100.0 * reduction.closed, 100.0 * reduction.apart
         print(f"{modes:5}  {reduction.coordinates:11}  {closed:4.0f} %  {apart:4.0f} %  up to {reduction.up_to:.0f} Hz")

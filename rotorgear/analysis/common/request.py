@@ -22,12 +22,15 @@ def speed_in_si(given: float | str) -> float: ...
 def speed_in_si(given: float | str | None) -> float | None: ...
 def speed_in_si(given: float | str | None) -> float | None:
     """Speed in rad/s from a number or a text with its unit."""
-    if given is None:
-        return None
+    return None if given is None else quantity(given, "speed", "speed")
+
+
+def quantity(value: object, dimension: str, name: str) -> float:
+    """A number in SI, or a text with its unit, in SI; AnalysisError with the name of the argument where it is neither."""
     try:
-        return parse_quantity(given, "speed")
+        return parse_quantity(value, dimension)
     except QuantityError as error:
-        raise AnalysisError(f"speed: got {given!r}, expected {error}") from None
+        raise AnalysisError(f"{name}: got {value!r}, expected {error}") from None
 
 
 def speed_or_operating(given: float | str | None, model: Model) -> float | None:

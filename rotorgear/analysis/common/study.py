@@ -1,5 +1,5 @@
 """Error against run time of any analysis. A study is a knob and its values (the settings), the quantity that is compared and what
-judges it, and a reference that stands for the truth.
+judges it, and a reference that is taken for the truth.
 
 Every setting is run and timed. Times are CPU seconds of this process on one BLAS thread, the median of several runs; the first
 run, which warms caches up and counts memory, is not among them. A time whose quartiles lie far apart is noise, and the row

@@ -90,7 +90,11 @@ def between(
         rows = [numbers_at(share) for share in coarse]
         if not _alike(systems[0.0], [systems[share] for share in coarse]):
             return None
-        varying = _varying(rows)
+        varying = {
+            name: np.array([row[name] for row in rows])
+            for name, values in rows[0].items()
+            if not all(np.array_equal(values, row[name]) for row in rows)
+        }
         sizes = {name: np.abs(values).max(axis=0) for name, values in varying.items()}
         worst = 0.0
         for share in fine[1::2]:
@@ -159,15 +163,6 @@ def _numbers(system: LocalSystem) -> dict[str, np.ndarray]:
         "reference_stiffness": forces.reference_stiffness,
         "reference_damping": forces.reference_damping,
         "speeds": system.rotation.speeds,
-    }
-
-
-def _varying(rows: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """What is not the same in all rows, (k, ...)."""
-    return {
-        name: np.array([row[name] for row in rows])
-        for name, values in rows[0].items()
-        if not all(np.array_equal(values, row[name]) for row in rows)
     }
 
 

@@ -12,7 +12,7 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.solvers.periodic.arclength import Node, Walk, at_value, walk
 from rotorgear.solvers.periodic.curves import SpecialCurve
-from rotorgear.solvers.periodic.cycle import Cycle
+from rotorgear.solvers.periodic.samples import Cycle
 from rotorgear.solvers.periodic.special import DOUBLING, FOLD
 
 _FIRST_STEP = 0.01
@@ -51,17 +51,13 @@ def special_curves(branches: list[Branch], family: SystemFamily, plan: Walk, pro
     ]
     for count, (number, branch, one) in enumerate(starts):
         node = one.at.node
-        if any(curve.kind == one.kind and _ends_at(curve, node.p) for curve in found):
+        # A curve that has come back to the begin of the second range ends at a point of a branch.
+        ends = [curve.points[-1] for curve in found if curve.kind == one.kind and curve.points]
+        if any(abs(last.q) < _SAME and abs(last.p - node.p) < _SAME for last in ends):
             continue
         progress(0.8 + 0.15 * count / len(starts), f"curve of the {one.kind}")
         found.append(_followed(number, branch, one.kind, node, family, plan))
     return found
-
-
-def _ends_at(curve: Curve, p: float) -> bool:
-    """Whether a curve has come back to the begin of the second range at a value of the first."""
-    last = curve.points[-1]
-    return abs(last.q) < _SAME and abs(last.p - p) < _SAME
 
 
 def _followed(number: int, branch: Branch, kind: str, node: Node, family: SystemFamily, plan: Walk) -> Curve:

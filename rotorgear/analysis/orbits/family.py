@@ -12,13 +12,13 @@ import scipy.sparse as sp
 
 from rotorgear.analysis.orbits.between import Between, between
 from rotorgear.analysis.sweep.axes import number_places
-from rotorgear.analysis.sweep.period import orders_of, shared_period
-from rotorgear.analysis.transient.task import prepare
+from rotorgear.analysis.sweep.point import orders_of, shared_period
+from rotorgear.analysis.transient.request import prepare
 from rotorgear.errors import AnalysisError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.old_names import current_address
-from rotorgear.solvers.lanes.columns import PRESCRIBED
+from rotorgear.solvers.batch.columns import PRESCRIBED
 from rotorgear.solvers.periodic.plant import Plant, Plants
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
@@ -28,7 +28,7 @@ from rotorgear.system.local import LocalModel
 MOST_TURNS = 8
 SPEED = "operation.speed"
 _KEPT = 400
-# Shares beyond the ends of a range at which a step is looked at before it is cut: numbers between serve there, too.
+# Shares beyond the ends of a range at which a step is looked at before it is cut: numbers between exact systems hold there, too.
 _BEYOND = 0.05
 
 
@@ -105,7 +105,11 @@ class SystemFamily:
         self.order, self.excited, self.notes = _excitation(self.local, excite)
         self._varied = [i for i, part in enumerate(self.local.parts) if _keeps(part.law, self.order)]
         # A force that neither varies nor depends on the motion is a load.
-        self._acting = [i for i, part in enumerate(self.local.parts) if not _given(part.law) or self._varies(i)]
+        self._acting = [
+            i
+            for i, part in enumerate(self.local.parts)
+            if self._varies(i) or any(column.kind != PRESCRIBED for column in part.law.columns())
+        ]
         self.parts = tuple(self.local.parts[i] for i in self._acting)
 
     @property
@@ -143,7 +147,9 @@ class SystemFamily:
         if speed is None:
             return own
         turned = replace(own, rotation=Rotation.constant(speed))
-        _keep_sums(own, turned)
+        # Sums of the same matrices: computed once for both.
+        for name in ("stiffness_about", "damping_about"):
+            turned.__dict__[name] = getattr(own, name)
         return turned
 
     def _exact(self, shares: Sequence[float]) -> LocalSystem:
@@ -203,12 +209,6 @@ class SystemFamily:
         return self._known[shares]
 
 
-def _keep_sums(own: LocalSystem, turned: LocalSystem) -> None:
-    """Sums of the same matrices: what one system has found serves the other."""
-    for name in ("stiffness_about", "damping_about"):
-        turned.__dict__[name] = getattr(own, name)
-
-
 def _only_turns(model: Model) -> bool:
     """Whether another speed changes nothing but the rotation: nothing else of the model goes with it."""
     assert model.operation is not None
@@ -226,17 +226,8 @@ def _only_turns(model: Model) -> bool:
 
 def _keeps(law: LocalLaw, order: float) -> bool:
     """Whether a law stays as it is: it repeats with the base period, or nothing of it varies."""
-    own = law.repeats()
-    return all(_whole(each.order / order) for each in own)
-
-
-def _given(law: LocalLaw) -> bool:
-    """Whether the force of a law does not depend on the motion."""
-    return all(column.kind == PRESCRIBED for column in law.columns())
-
-
-def _whole(ratio: float) -> bool:
-    return abs(ratio - round(ratio)) < 1e-6 and round(ratio) >= 1
+    ratios = [each.order / order for each in law.repeats()]
+    return all(abs(ratio - round(ratio)) < 1e-6 and round(ratio) >= 1 for ratio in ratios)
 
 
 def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str, ...], tuple[str, ...]]:

@@ -40,11 +40,6 @@ def certified(orbits: AnyOrbits, node: Node) -> Certified:
     return Certified(node, orbits.multipliers(node.y, node.p))
 
 
-def _turned(one: Certified) -> Certified:
-    node = one.node
-    return Certified(Node(node.z, -node.tangent, node.iterations), one.multipliers)
-
-
 def followed(
     orbits: AnyOrbits,
     start: Node,
@@ -69,7 +64,8 @@ def followed(
         # From the middle of the range first back to where the branch comes in.
         walk(orbits, Node(start.z, -start.tangent, start.iterations), step, plan, heard)
         # The start has the tangent of the way forward already.
-        nodes = [_turned(one) for one in nodes[:0:-1]] + nodes[:1]
+        backwards = [(Node(one.node.z, -one.node.tangent, one.node.iterations), one) for one in nodes[:0:-1]]
+        nodes = [Certified(node, one.multipliers) for node, one in backwards] + nodes[:1]
     _, ended = walk(orbits, start, step, plan, heard)
     special = []
     for i, (a, b) in enumerate(pairwise(nodes)):
@@ -96,28 +92,21 @@ def main_branches(
     """
     found = [followed(orbits, first, _FIRST_STEP, plan, "1T", 1, progress, 0.05, both=True)]
     for end, name in ((0.0, "1T from the begin"), (1.0, "1T from the end")):
-        other = _at_end(orbits, end, settled)
-        if other is not None and not any(_passes(branch, other) for branch in found):
+        other = None
+        for begin in (orbits.start, settled):
+            try:
+                if begin is not None:
+                    other = at_value(orbits, begin(end), end, 1.0 if end == 0.0 else -1.0)
+                    break
+            except ConvergenceError:
+                continue
+        if other is None:
+            continue
+        same = _SAME * (1.0 + float(np.linalg.norm(other.z)))
+        known = [one.node.z for branch in found for one in branch.nodes]
+        if all(float(np.linalg.norm(z - other.z)) >= same for z in known):
             found.append(followed(orbits, other, _FIRST_STEP, plan, name, 1, progress, 0.1))
     return found
-
-
-def _at_end(orbits: AnyOrbits, end: float, settled: Callable[[float], np.ndarray] | None) -> Node | None:
-    """A solution at an end of the range, from rest or else from a transient; none where neither leads to one."""
-    inwards = 1.0 if end == 0.0 else -1.0
-    for begin in (orbits.start, settled):
-        try:
-            if begin is not None:
-                return at_value(orbits, begin(end), end, inwards)
-        except ConvergenceError:
-            continue
-    return None
-
-
-def _passes(branch: Branch, node: Node) -> bool:
-    """Whether a branch has this solution among its own."""
-    size = _SAME * (1.0 + float(np.linalg.norm(node.z)))
-    return any(float(np.linalg.norm(one.node.z - node.z)) < size for one in branch.nodes)
 
 
 def doubled_branches(branch: Branch, plan: Walk, progress: Progress) -> list[Branch]:
@@ -130,7 +119,7 @@ def doubled_branches(branch: Branch, plan: Walk, progress: Progress) -> list[Bra
         twice = branch.orbits.doubled()
         node = one.at.node
         y = branch.orbits.twice(node.y, twice)  # type: ignore[arg-type]
-        twice.settle_on(node.p)
+        twice.prepare_at(node.p)
         J = twice.linear(y, node.p).in_y
         aside = np.append(np.linalg.svd(J)[2][-1], 0.0)
         for step in (_ASIDE, 0.25 * _ASIDE, 0.05 * _ASIDE):

@@ -1,4 +1,9 @@
-"""Periodic motions over a parameter: branches with stable and unstable parts, Floquet multipliers, special points."""
+"""Periodic motions over a parameter: branches with stable and unstable parts, Floquet multipliers, special points.
+
+The result of a continuation from its branches.
+
+Error of motions along a branch: from twice the harmonics and instants, or from shooting to a tighter tolerance.
+"""
 
 from __future__ import annotations
 
@@ -13,26 +18,80 @@ from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed
 from rotorgear.analysis.orbits.curves import Curve, special_curves
-from rotorgear.analysis.orbits.family import SystemFamily, range_of
+from rotorgear.analysis.orbits.family import Range, SystemFamily, range_of
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches
-from rotorgear.analysis.orbits.gather import gathered, gathered_curves
-from rotorgear.analysis.orbits.places import told_of
-from rotorgear.analysis.orbits.refined import largest_error
-from rotorgear.analysis.orbits.start import first_node, settled
-from rotorgear.analysis.orbits.verify import verified
+from rotorgear.analysis.orbits.places import Told, told_of
+from rotorgear.analysis.orbits.verify import first_node, settled, verified
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.notes import transient_left_out
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.orbits import OrbitsResult
-from rotorgear.solvers.periodic.arclength import Walk
+from rotorgear.results.orbits import OrbitBranch, OrbitsResult, SpecialCurve, SpecialPoint
+from rotorgear.solvers.periodic.arclength import Node, Walk
 from rotorgear.solvers.periodic.balance import Grid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits, static_displacements
 from rotorgear.solvers.periodic.plant import Plant
+from rotorgear.solvers.periodic.samples import Cycle, answered
 from rotorgear.solvers.periodic.shooting import MOST_COORDINATES, MOST_RATIO, ShootingOrbits
 from rotorgear.solvers.sparse.factor import single_thread
-from rotorgear.solvers.time.statistics import STATISTICS
+from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, PeriodicCurve, compared, over_period
+
+# Points of a branch whose coefficients are compared.
+_POINTS = 3
+# Beside a fold both solutions of one value lie next to each other: there the value tells no motion, and no error of one.
+_FOLD = 1e-3
+# Of the largest displacement: what moves less has no accuracy of its own.
+_STILL = 1e-6
+
+
+def refined(orbits: AnyOrbits, finer: AnyOrbits, node: Node) -> np.ndarray | None:
+    """Unknowns of the finer equations at a node's value, a step of Newton's method from its motion; none beside a fold.
+
+    The step is from a residual that is small by itself: what a second one would change is the square of the error.
+    """
+    if abs(node.tangent[-1]) <= _FOLD:
+        return None
+    try:
+        finer.prepare_at(node.p)
+        y = orbits.lifted(node.y, finer)  # type: ignore[arg-type]
+        residual, slope = finer.values(y, node.p)
+        better = y - np.linalg.solve(slope, residual)
+    except (ConvergenceError, np.linalg.LinAlgError):
+        return None
+    return np.asarray(better) if np.all(np.isfinite(better)) else None
+
+
+def largest_error(branch: Branch, columns: np.ndarray) -> float:
+    """Largest relative difference of the displacements' coefficients at some points from the finer solution of the same method.
+
+    Args:
+        branch: a branch. columns: local displacements that are compared.
+    """
+    orbits = branch.orbits
+    finer = orbits.finer()
+    numbers = np.unique(np.linspace(0, len(branch.nodes) - 1, _POINTS + 2).round().astype(int)[1:-1])
+    found = []
+    for node in (branch.nodes[i].node for i in numbers):
+        better = refined(orbits, finer, node)
+        if better is not None:
+            coarse = orbits.cycle(node.y, node.p).displacement
+            found.append(float(change(coarse, finer.cycle(better, node.p).displacement, columns).max()))
+    return float(max(found, default=float("nan")))
+
+
+def change(coarse: np.ndarray, better: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Largest difference of coefficients (h + 1, m) in each column, over the largest harmonic of the better ones.
+
+    One that hardly moves beside the others is measured by the largest of them.
+    """
+    both = np.zeros((2, max(len(coarse), len(better)), len(columns)), complex)
+    both[0, : len(coarse)] = coarse[:, columns]
+    both[1, : len(better)] = better[:, columns]
+    size = np.abs(both[1, 1:]).max(axis=0)
+    size = np.maximum(size, _STILL * size.max(initial=0.0))
+    return np.asarray(np.abs(both[0] - both[1]).max(axis=0) / size)
+
 
 HARMONICS = 30
 # Instants for each harmonic: aliasing, not the cut, sets the error.
@@ -96,7 +155,8 @@ def orbits(
         laps = {"model": clock.perf_counter() - begun}
         doublings = 0
         while True:
-            N = _even(instants * 2**doublings if instants else INSTANTS * H)
+            N = instants * 2**doublings if instants else INSTANTS * H
+            N += N % 2
             problem, why = equations_of(method, family, Grid(H, N, family.order), scale)
             from_rest = partial(settled, problem, family, progress=progress) if _small(family.plant(0.0)) else None
             used = clock.process_time()
@@ -129,9 +189,9 @@ def orbits(
         per_unit=np.array([one.per_unit for one in ranges]),
         excited=family.label,
         order=family.order,
-        contact=told.contacts.label,
-        place=told.places.label,
-        place_unit=told.places.unit,
+        contact=told.contact,
+        place=told.place,
+        place_unit=told.place_unit,
         statistic=STATISTICS,
         **fields,  # type: ignore[arg-type]
         curves=gathered_curves(curves, told, ranges),
@@ -187,10 +247,6 @@ def _check(
         raise AnalysisError(f"step: got {step:g}, expected a share of the range between 1e-4 and 0.5")
 
 
-def _even(count: int) -> int:
-    return count + count % 2
-
-
 def scale_of(plant: Plant) -> np.ndarray:
     """Sizes of the local displacements: their static ones, at least a micrometre's share where there are none."""
     d = np.abs(static_displacements(plant) if plant.m else np.zeros(0))
@@ -218,7 +274,7 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
             return own, f"shooting with steps to the switches of the laws, {own.size} states"
     if method == "shooting":
         raise AnalysisError(
-            f"method: shooting serves up to {MOST_COORDINATES} coordinates that are not stiff, this model has "
+            f"method: shooting takes up to {MOST_COORDINATES} coordinates that are not stiff, this model has "
             f"{_coordinates(plant)}; take harmonic balance"
         )
     return (
@@ -281,3 +337,124 @@ def _warnings(branches: list[Branch], curves: list[Curve]) -> list[str]:
     if not any(one.stable for branch in branches for one in branch.nodes):
         notes.append("no motion of the range is stable: a transient settles on none of them")
     return notes
+
+
+# Multipliers of a point that are kept.
+_MULTIPLIERS = 12
+# The finer solution is better by far, and its difference is the error; where that passes through zero, a share of the others'.
+_LUCK = 0.03
+
+
+def gathered(
+    branches: list[Branch], told: Told, family: SystemFamily, along: Range, harmonics: int
+) -> dict[str, object]:
+    """The fields of a result that belong to points and special points.
+
+    The error of a statistic is its difference from that of the finer solution at the same value of the parameter.
+    """
+    points: list[dict[str, object]] = []
+    special = []
+    listed = []
+    for number, branch in enumerate(branches):
+        listed.append(OrbitBranch(branch.name, branch.periods, branch.ended))
+        orbits = branch.orbits
+        finer = orbits.finer()
+        for one in branch.nodes:
+            node = one.node
+            plant = family.plant(node.p)
+            cycle = orbits.cycle(node.y, node.p)
+            found = statistics_of(cycle, plant, told)
+            better = refined(orbits, finer, node) if told.contact else None
+            error = np.full(found.values.shape, np.nan)
+            if better is not None:
+                exact = statistics_of(finer.cycle(better, node.p), plant, told)
+                error = compared(found.values, exact.values, found.scales, 1.0, _LUCK)
+            approach, moved = _extremes(cycle, told)
+            # Harmonics of the base period: of a motion of k periods every k-th.
+            force = cycle.force[:: branch.periods][: harmonics + 1]
+            displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
+            points.append(
+                {
+                    "branch": number,
+                    "value": along.at(node.p),
+                    "period": cycle.period,
+                    "stable": one.stable,
+                    "multipliers": padded(one.multipliers),
+                    "approach_extremes": approach,
+                    "peak_to_peak_transmission_error": np.ptp(found.transmission_error, axis=1),
+                    "mean_force": found.force.mean,
+                    "rms_force": found.force.rms,
+                    "largest_force": found.force.largest,
+                    "apart": found.shares[:, 1],
+                    "back": found.shares[:, 2],
+                    "statistics_error": error,
+                    "force_harmonics": force[:, told.contact_column],
+                    "displacement_harmonics": displacement[:, told.contact_column],
+                    "place_extremes": moved,
+                    "place_harmonics": displacement[:, told.place_column],
+                }
+            )
+        for point in branch.special:
+            cycle = branch.orbits.cycle(point.at.node.y, point.at.node.p)
+            mu = point.at.multipliers[:_MULTIPLIERS]
+            approach, moved = _extremes(cycle, told)
+            special.append(
+                SpecialPoint(
+                    point.kind,
+                    along.at(point.at.node.p),
+                    number,
+                    cycle.period,
+                    mu.real.copy(),
+                    mu.imag.copy(),
+                    approach,
+                    moved,
+                )
+            )
+    fields: dict[str, object] = {name: np.array([point[name] for point in points]) for name in points[0]}
+    return fields | {"branches": tuple(listed), "special_points": tuple(special)}
+
+
+def gathered_curves(curves: list[Curve], told: Told, ranges: Sequence[Range]) -> tuple[SpecialCurve, ...]:
+    """The curves of special points as a result has them."""
+    found = []
+    for curve in curves:
+        extremes = [_extremes(point.cycle, told) for point in curve.points]
+        found.append(
+            SpecialCurve(
+                curve.kind,
+                curve.branch,
+                np.array([ranges[0].at(point.p) for point in curve.points]),
+                np.array([ranges[1].at(point.q) for point in curve.points]),
+                np.array([point.cycle.period for point in curve.points]),
+                np.array([approach for approach, _ in extremes]),
+                curve.ended,
+                np.array([moved for _, moved in extremes]),
+            )
+        )
+    return tuple(found)
+
+
+def _extremes(cycle: Cycle, told: Told) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest approach of the contacts, (c, 2), and displacements of the places, (k, 2)."""
+    both = cycle.extremes()
+    return both[told.contact_column] / told.transverse[:, None], both[told.place_column]
+
+
+def statistics_of(cycle: Cycle, plant: Plant, told: Told) -> MotionStatistics:
+    """Statistics of the contacts over a period, what is between its instants included."""
+
+    def laws(t: np.ndarray, d: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        at = answered(t, d, v, plant.forces, plant.speed)
+        return at.F[:, told.contact_column], at.side[:, told.contact_law]
+
+    force, shares = over_period(PeriodicCurve(cycle.period, cycle.at.d, cycle.at.v), laws)
+    watched = PeriodicCurve(cycle.period, cycle.watched, cycle.watched_rate).extremes()
+    return MotionStatistics(force, shares, watched[: len(told.contact)], _extremes(cycle, told)[0])
+
+
+def padded(multipliers: np.ndarray) -> np.ndarray:
+    """The largest multipliers, NaN where there are fewer."""
+    out = np.full(_MULTIPLIERS, np.nan + 0j)
+    kept = multipliers[:_MULTIPLIERS]
+    out[: kept.size] = kept
+    return out

@@ -2,6 +2,8 @@
 
 A transient on an unstable orbit is soon too far from it to tell its multipliers. So each period starts on the orbit again, with
 the deviation that the last one ended with, made small: the power method on the transient's own map over a period.
+
+Where a branch begins: Newton's method from the static state, or from the end of a transient.
 """
 
 from __future__ import annotations
@@ -10,18 +12,88 @@ import numpy as np
 
 from rotorgear.analysis.orbits.family import Range, SystemFamily
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch
-from rotorgear.analysis.orbits.start import run_periods
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.progress import Progress
 from rotorgear.results.orbits import OrbitVerification
+from rotorgear.solvers.periodic.arclength import Node, at_value
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.special import Certified
+from rotorgear.solvers.time.contact_equilibrium import equilibrium
+from rotorgear.solvers.time.exponential import Exponential
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, state_at_rest
+from rotorgear.solvers.time.newmark import Newmark
+from rotorgear.solvers.time.run import Schedule, run
 
+# Shares of the range at which a branch may begin.
+_PLACES = (0.0, 1.0, 0.5, 0.75, 0.25)
+# Base periods of the transient that a branch may begin from, and its steps in each.
+_SETTLE = 400
+_RUN_STEPS = 400
+_MOST_DENSE = 400
+
+
+def integrator_for(system: LocalSystem) -> Integrator:
+    """The exponential method where all modes are cheap."""
+    return Exponential() if system.n <= _MOST_DENSE and np.all(system.M.diagonal() > 0.0) else Newmark()
+
+
+def run_periods(
+    system: LocalSystem, order: float, periods: int, q: np.ndarray, v: np.ndarray, steps: int = _RUN_STEPS
+) -> tuple[State, np.ndarray]:
+    """Run over base periods from a motion: the state at the end, and local displacements at all steps (r, m)."""
+    T = 2.0 * np.pi / (order * abs(float(system.rotation.speeds[0])))
+    h = T / steps
+    state = state_at_rest(system, h, q, v)
+    found: list[np.ndarray] = []
+
+    def keep(records: Records, _: State) -> None:
+        found.append(records.d)
+
+    run(system, integrator_for(system), Schedule(h, periods * steps, 1), state, keep)
+    return state, np.concatenate(found)
+
+
+def first_node(orbits: AnyOrbits, family: SystemFamily, *, from_transient: bool, progress: Progress) -> Node:
+    """A solution at the begin of the range, or else at another value, by Newton's method or a transient.
+
+    Raises:
+        AnalysisError: no way leads to a periodic motion.
+    """
+    ways = [(p, False) for p in _PLACES if not from_transient] + [(p, True) for p in _PLACES]
+    why = ""
+    for p, settling in ways:
+        try:
+            y = settled(orbits, family, p, progress) if settling else orbits.start(p)
+            return at_value(orbits, y, p, -1.0 if p == 1.0 else 1.0)
+        except ConvergenceError as error:
+            why = str(error)
+    raise AnalysisError(
+        f"no periodic motion was found in the range ({why}): neither from the static state nor by transients of {_SETTLE} "
+        "periods; try another range"
+    )
+
+
+def settled(orbits: AnyOrbits, family: SystemFamily, p: float, progress: Progress) -> np.ndarray:
+    """Unknowns of the motion at the end of a transient from rest."""
+    progress(0.02, "settling by a transient")
+    shares = family.shares_at(p)
+    system = family.system(shares)
+    state, d = run_periods(system, family.order, _SETTLE, equilibrium(system).q, np.zeros(system.n))
+    if isinstance(orbits, HarmonicOrbits):
+        # The records begin one step behind the begin of a period.
+        return orbits.from_samples(np.roll(d[-_RUN_STEPS:], 1, axis=0))
+    return orbits.from_motion(state.q, state.v, family.plant(*shares))
+
+
+# Stretches of a branch that are looked at, the first ones.
+_STRETCHES = 6
 _PERIODS = 36
 _STEPS = 4000
 # Size of the deviation at the begin of each period, over the peak to peak: contacts then close a step earlier or later.
-_PUSH = 1e-4
-# Of so many last periods the growth is told: the other multipliers have died out there.
-_TOLD = 18
+_DEVIATION = 1e-4
+# The growth is that of the last periods, in which the other multipliers have died out.
+_LAST = 18
 _OTHERS = 3e-3
 
 
@@ -29,17 +101,16 @@ def verified(
     branches: list[Branch], family: SystemFamily, column: np.ndarray, along: Range
 ) -> tuple[OrbitVerification, ...]:
     """Start transients on a motion of each stretch of the branches, in its middle; `column`: displacements that are compared."""
-    return tuple(_verified(branch, one, family, column, along) for branch in branches for one in _middles(branch))
-
-
-def _middles(branch: Branch) -> list[Certified]:
-    """One motion of each stretch of one stability, the first six."""
-    stretches: list[list[Certified]] = []
-    for one in branch.nodes:
-        if not stretches or stretches[-1][-1].stable != one.stable:
-            stretches.append([])
-        stretches[-1].append(one)
-    return [stretch[len(stretch) // 2] for stretch in stretches][:6]
+    checks = []
+    for branch in branches:
+        stretches: list[list[Certified]] = []
+        for one in branch.nodes:
+            if not stretches or stretches[-1][-1].stable != one.stable:
+                stretches.append([])
+            stretches[-1].append(one)
+        middles = [stretch[len(stretch) // 2] for stretch in stretches][:_STRETCHES]
+        checks += [_verified(branch, one, family, column, along) for one in middles]
+    return tuple(checks)
 
 
 def _verified(
@@ -64,13 +135,13 @@ def _verified(
         return state.q, state.v, d[:, column]
 
     end_q, end_v, after_one = period_from(q, v)
-    # Records stand at the ends of steps: the period is rows 0 to the last.
+    # Records are those of the ends of steps: the period is rows 0 to the last.
     orbit = np.vstack([after_one[-1:], after_one[:-1]])
     deviation = float(np.abs(orbit[::each][1:] - exact[1:]).max() / size)
     deviation = max(deviation, float(np.abs(after_one[-1] - (plant.B.T @ q)[column]).max() / size))
-    push = plant.still.X @ np.ones(plant.m)
-    moved = float(np.abs((plant.B.T @ push)[column]).max(initial=0.0)) or 1.0
-    dq = push * (_PUSH * size / moved)
+    direction = plant.static.X @ np.ones(plant.m)
+    moved = float(np.abs((plant.B.T @ direction)[column]).max(initial=0.0)) or 1.0
+    dq = direction * (_DEVIATION * size / moved)
     dv = np.zeros(q.size)
     waves: list[np.ndarray] = []
     shares: list[float] = []
@@ -80,7 +151,7 @@ def _verified(
         away = float(np.abs(waves[-1]).max()) / size
         if not 0.0 < away < np.inf:
             break
-        shares.append(_PUSH / away)
+        shares.append(_DEVIATION / away)
         # Motions without strain neither grow nor move the contacts.
         dq = shares[-1] * _strained(plant, other_q - end_q)
         dv = shares[-1] * _strained(plant, other_v - end_v)
@@ -95,7 +166,7 @@ def _growth(waves: list[np.ndarray], shares: list[float]) -> float:
     Where one pair outlasts all others, A^2 w = a A w + b w for all deviations w: a real multiplier or both of a complex pair are
     roots of x^2 = a x + b.
     """
-    last = range(max(len(shares) - _TOLD, 0), len(shares) - 2)
+    last = range(max(len(shares) - _LAST, 0), len(shares) - 2)
     if not last:
         return float("nan")
     here, once, twice = (

@@ -277,7 +277,7 @@ def _of_gearbox(model: Model, name: str, count: int, finer: int, progress: Progr
 
 
 def _reference(frequency: np.ndarray, error: np.ndarray, dofs: int) -> tuple[np.ndarray, str, float]:
-    """Frequencies (k,) in Hz that stand for the truth, in words, and what they resolve."""
+    """Frequencies (k,) in Hz that are taken for the truth, what they are in words, and the relative error that they resolve."""
     largest = float(error.max())
     words = (
         f"the same body in a mesh of {dofs} dofs, its own estimated error of {largest:.1e} taken off; fixed modes: against "

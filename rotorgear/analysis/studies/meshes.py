@@ -1,6 +1,6 @@
 """Studies over meshes of the shafts: basic elements in each segment, then meshes refined to an accuracy.
 
-Each is a row of the table: the analysis that runs, the quantity that is compared, and the reference that stands for the truth.
+Each is a row of the table: the analysis that runs, the quantity that is compared, and the reference that is taken for the truth.
 """
 
 from __future__ import annotations

@@ -14,10 +14,9 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
-from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, equations_of, scale_of
+from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of
 from rotorgear.analysis.orbits.places import told_of
-from rotorgear.analysis.orbits.refined import change
-from rotorgear.analysis.orbits.start import run_periods
+from rotorgear.analysis.orbits.verify import run_periods
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
@@ -234,7 +233,7 @@ def _one_motion(model: Model, operating: float, starts: int) -> tuple[float, lis
     at = {"operation.speed": speeds}
     runs = sweep(model, at, initial_conditions=starts, throw=_SPREAD, discard=_DISCARD, sample=_TRIED)
     for k, speed in enumerate(speeds):
-        # Contacts that hardly move have a peak to peak of rounding, which says nothing.
+        # Contacts that hardly move have a peak to peak of rounding only.
         sizes = runs.peak_to_peak[k]
         kinds = {runs.motion_at(k, r) for r in range(starts)}
         if len(kinds) == 1 and np.ptp(sizes, axis=0).max() <= _ALIKE * sizes.max():
@@ -356,7 +355,7 @@ def orbits_convergence_study(
 
     plans = [("harmonics", h, h, INSTANTS * h) for h in harmonics if 2 * h <= finest]
     plans += [("instants", n, HARMONICS, HARMONICS * n) for n in densities if finest >= 2 * HARMONICS]
-    compared = "contacts" if told.contacts.column.size else "bearings, elements and unbalances"
+    compared = "contacts" if told.contact else "bearings, elements and unbalances"
     study = Study(
         [
             Setting(f"{h} harmonics, {instants} instants", knob, value, {"harmonics": h, "instants": instants})

@@ -36,7 +36,7 @@ class Axis:
 def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     """Return an axis from a text "FROM:TO:COUNT", a text of values with commas, or a sequence of numbers or texts.
 
-    A value is a number with its unit; a unit that stands with one value only serves them all.
+    A value is a number with its unit; a unit that one value alone has is that of all.
 
     Raises:
         AnalysisError: no numbers, two units, or fewer than one value.

@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
-from rotorgear.analysis.sweep.certify import Judge, bounded, judged, to_certify
-from rotorgear.analysis.sweep.indicators import motion_statistics
+from rotorgear.analysis.sweep.certify import Judge, bounded, judged, motion_statistics, to_certify
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
-from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
-from rotorgear.solvers.lanes.small_system import steps_stable
+from rotorgear.solvers.batch.run_block import Orbit, Plan, Start, run_block
+from rotorgear.solvers.batch.small_system import steps_stable
 from rotorgear.solvers.time.statistics import compared, gain
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
@@ -70,7 +69,7 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
 
 def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
     """Yield jobs that can run in one block."""
-    from rotorgear.solvers.contact.vectors import LANES
+    from rotorgear.solvers.contact.vectors import BATCH
 
     kinds: dict[Any, list[Job]] = {}
     for job in jobs:
@@ -82,7 +81,7 @@ def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarra
         assert own[0] is not None
         size = (2 * own[0].system.turns * count + 1) * len(own[0].system.columns.kind) * 4
         same = len({p.shape for p in own if p}) == 1
-        width = LANES if same else int(np.clip(_MOST_TABLE // size, 1, LANES))
+        width = BATCH if same else int(np.clip(_MOST_TABLE // size, 1, BATCH))
         for at in range(0, len(members), width):
             yield members[at : at + width]
 
@@ -94,7 +93,7 @@ def run_jobs(
     judge: Judge,
     go_on: Callable[[], bool] | None = None,
 ) -> list[Orbit]:
-    """Run the jobs of one block; those whose response type does not stand settle longer, in rounds of twice the length each.
+    """Run the jobs of one block; those whose response type is not settled run on, in rounds of twice the length each.
 
     One that leaves all bounds on that way stays what it was after the periods that were asked for.
     """
@@ -164,8 +163,8 @@ def _with_multipliers(
     judge: Judge,
     go_on: Callable[[], bool] | None,
 ) -> tuple[list[Orbit], dict[int, Start]]:
-    """The orbits with the multipliers that certify them, where exponents leave that open, and where each goes on from."""
-    from rotorgear.solvers.contact.vectors import LANES
+    """The orbits with the multipliers that certify them, where exponents do not, and the state from which each runs on."""
+    from rotorgear.solvers.contact.vectors import BATCH
 
     found = list(orbits)
     onward = {i: orbits[i].end for i in chosen}
@@ -176,7 +175,7 @@ def _with_multipliers(
 
         def advance(states: Sequence[Start], length: int, point: Point = points[i]) -> list[Start]:
             once = Plan(plan.steps, 0, length, 0)
-            cuts = (states[k : k + LANES] for k in range(0, len(states), LANES))
+            cuts = (states[k : k + BATCH] for k in range(0, len(states), BATCH))
             return [one.end for own in cuts for one in _run([point] * len(own), own, once, go_on)]
 
         certified = certificate(points[i].system, orbits[i].end, sizes, periods, advance, judge.tolerance)
@@ -197,7 +196,7 @@ def _with_doubts(
 
     The same periods follow from where a run ended, in half as many steps, or twice as many where those would be unstable.
     """
-    from rotorgear.solvers.lanes.kernel_parts import LOSSES
+    from rotorgear.solvers.batch.kernel_parts import LOSSES
 
     found = list(orbits)
     parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
@@ -246,7 +245,7 @@ class Workers:
             self._own.shutdown(wait=True, cancel_futures=True)
 
     def go_on(self) -> bool:
-        """Whether nobody has stopped the run; counts how often it was asked."""
+        """Whether the run goes on; counts how often it was asked."""
         self._asked += 1
         return not self._stop.is_set()
 

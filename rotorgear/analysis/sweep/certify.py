@@ -1,4 +1,4 @@
-"""Whether a run of a sweep may stand: its response type and its exponents agree, and nothing still changes.
+"""Whether the response type of a run is settled: its section and its exponents agree, and nothing changes any more.
 
     kT              the largest exponent is below zero by more than its error; or the section repeats to 1e-4 and the exponent is
                     not above zero, by more than its error where the step can't hide its sign; for k > 1 the range of the section
@@ -7,11 +7,13 @@
     quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
     chaotic         it is above that bound by a standard error
 
-A kT whose orbit Newton's method finds stands or falls with the multipliers of that orbit instead, and with the period of that
-orbit (multipliers.py); one that is unstable goes on from a small deviation in the direction that grows most.
+A kT whose orbit Newton's method finds is judged by the multipliers of that orbit instead, and by its period
+(multipliers.py); one that is unstable is run on from a small deviation in the direction that grows most.
 
-What does not stand settles longer, in rounds of twice the length each, from where it got to. What still does not after the last
-of them is "not settled".
+A run that is not settled runs on from its end, in rounds of twice the length each. One that is not after the last round either
+is "not settled".
+
+Indicators of the contacts over the periods that a run of a sweep counts.
 """
 
 from __future__ import annotations
@@ -21,10 +23,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, Motion, classify, exponents, period_of
-from rotorgear.analysis.sweep.indicators import indicators
 from rotorgear.analysis.sweep.multipliers import SURE
 from rotorgear.analysis.sweep.point import Point
-from rotorgear.solvers.lanes.lanes import Orbit
+from rotorgear.solvers.batch.run_block import Orbit
+from rotorgear.solvers.time.statistics import MotionStatistics, Statistics
 
 # Exponents per period of the fastest mesh that count as zero whatever their error.
 _ZERO = 2e-4
@@ -34,8 +36,9 @@ _REPEATS = 5e-3
 # Longest periods whose multipliers are asked for, and most degrees of freedom: their cost grows with both.
 _LONGEST = 4
 _MOST = 40
-# Sizes of a motion beyond which it counts as one without bounds.
+# A motion beyond this many times the static deflection, the backlash or the smallest displacement that counts has no bounds.
 _FAR = 1e4
+_SMALLEST = 1e-6  # m
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ class Judge:
 
 
 def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion, bool]:
-    """The response type of a run, and whether it stands."""
+    """The response type of a run, and whether it is settled."""
     counted = point.system.columns.counted
     x = orbit.section[:, counted, 0]
     measures = indicators(orbit, counted, steps)
@@ -81,7 +84,7 @@ def to_certify(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[in
 
     The sizes are those of its counted displacements (c,) in m, peak to peak.
 
-    What comes back fast needs none: growth that an exponent does not see in so many periods is slower than the bound of chaos.
+    What comes back fast needs none: growth that an exponent does not see in that many periods is slower than the bound of chaos.
     Cages do not repeat with the common period, and so a system with rolling elements has no such map.
     """
     system = point.system
@@ -105,11 +108,53 @@ def _stays(x: np.ndarray) -> bool:
 
 def bounded(orbit: Orbit, point: Point) -> bool:
     """Whether a run stays within the sizes that its motions can have."""
-    return orbit.finite and not np.any(np.abs(orbit.section[:, point.system.columns.counted, 0]) > _FAR * _size(point))
-
-
-def _size(point: Point) -> float:
-    """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
+    if not orbit.finite:
+        return False
     columns = point.system.columns
     backlash = columns.clearance[columns.counted & np.isfinite(columns.clearance)]
-    return float(max(np.abs(point.static_force / point.stiffness).max(initial=0.0), backlash.max(initial=0.0), 1e-6))
+    static = np.abs(point.static_force / point.stiffness).max(initial=0.0)
+    size = max(static, backlash.max(initial=0.0), _SMALLEST)
+    return not np.any(np.abs(orbit.section[:, columns.counted, 0]) > _FAR * size)
+
+
+def indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.ndarray]:
+    """Indicators of the contacts, which are the local displacements `counted` (m,); watched are two displacements of each."""
+    from rotorgear.solvers.batch import kernel_parts as k
+
+    sums = orbit.sums[counted].T
+    total = np.maximum(sums[[k.FRONT, k.APART, k.BACK]].sum(axis=0), 1.0)
+    d = Statistics.of_sums(total, sums[k.D_SUM], sums[k.D_SQUARES], sums[k.D_MIN], sums[k.D_MAX])
+    displacement = d.largest - d.least
+    motion = motion_statistics(orbit, counted)
+    approach = np.ptp(motion.approach, axis=1)
+    return {
+        "peak_to_peak": sums[k.X_MAX] - sums[k.X_MIN],
+        "displacement": displacement,
+        "peak_to_peak_transmission_error": np.ptp(motion.transmission_error, axis=1),
+        "peak_to_peak_approach": approach,
+        "rms_approach": d.rms * (approach / np.where(displacement > 0.0, displacement, 1.0)),
+        "mean_force": motion.force.mean,
+        "rms_force": motion.force.rms,
+        "largest_force": motion.force.largest,
+        "driving": motion.shares[:, 0],
+        "apart": motion.shares[:, 1],
+        "back": motion.shares[:, 2],
+        "losses": sums[k.LOSSES] / total * steps,
+    }
+
+
+def motion_statistics(orbit: Orbit, counted: np.ndarray) -> MotionStatistics:
+    """Statistics of the contacts, as every analysis of motions tells them."""
+    from rotorgear.solvers.batch import kernel_parts as k
+
+    sums = orbit.sums[counted].T
+    sides = sums[[k.FRONT, k.APART, k.BACK]]
+    total = np.maximum(sides.sum(axis=0), 1.0)
+    transmission_error, approach = np.split(orbit.extremes, 2)
+    return MotionStatistics(
+        Statistics.of_sums(total, sums[k.F_SUM], sums[k.F_SQUARES], sums[k.F_MIN], sums[k.F_MAX]),
+        (sides / total).T,
+        transmission_error,
+        approach,
+        sums[k.LOSSES] / total,
+    )

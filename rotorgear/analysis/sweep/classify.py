@@ -80,8 +80,12 @@ def classify(
         return Motion(NOT_PERIODIC, 0)
     if exponent > max(chaos, error) and not _grows(x):
         return Motion(CHAOTIC, 0)
-    if abs(exponent) <= chaos and _steady(x):
-        return Motion(QUASI_PERIODIC, 0)
+    if abs(exponent) <= chaos:
+        # Both halves of the section cover the same range.
+        half = len(x) // 2
+        first, second, whole = (np.array([part.min(axis=0), part.max(axis=0)]) for part in (x[:half], x[half:], x))
+        if np.all(np.abs(first - second) <= _SAME_RANGE * np.maximum(whole[1] - whole[0], 1e-300)):
+            return Motion(QUASI_PERIODIC, 0)
     return Motion(NOT_SETTLED, 0)
 
 
@@ -110,10 +114,3 @@ def _grows(x: np.ndarray) -> bool:
     """Whether the range of the second half of a section is far larger than that of the first: unstable, not chaotic."""
     half = len(x) // 2
     return bool(np.any(np.ptp(x[half:], axis=0) > _GROWTH * np.ptp(x[:half], axis=0)))
-
-
-def _steady(x: np.ndarray) -> bool:
-    """Whether both halves of a section cover the same range."""
-    half = len(x) // 2
-    first, second, all_of = (np.array([part.min(axis=0), part.max(axis=0)]) for part in (x[:half], x[half:], x))
-    return bool(np.all(np.abs(first - second) <= _SAME_RANGE * np.maximum(all_of[1] - all_of[0], 1e-300)))

@@ -130,7 +130,7 @@ class Block:
         self._future = future
 
     def cancel(self) -> None:
-        """Give it up; what a worker has begun it ends, and nobody hears of it."""
+        """Give the work up; what a worker has begun it finishes, and the result is dropped."""
         with suppress(OSError, RuntimeError, TimeoutError):
             self._future.cancel()
 

@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.sweep.axes import Axis
-from rotorgear.analysis.sweep.certify import bounded, judged
+from rotorgear.analysis.sweep.certify import bounded, indicators, judged
 from rotorgear.analysis.sweep.classify import FAILED, NOT_SETTLED, exponents
-from rotorgear.analysis.sweep.indicators import indicators
 from rotorgear.analysis.sweep.notes import notes
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.model.model import Model
 from rotorgear.results.sweep import Reduction, SweepResult
-from rotorgear.solvers.lanes.lanes import Orbit
+from rotorgear.solvers.batch.run_block import Orbit
 from rotorgear.solvers.time.statistics import STATISTICS
 
 _TABLES = (
@@ -82,14 +81,17 @@ def gathered(
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
-        kind, stands = judged(orbit, point, int(steps[i]), request.judge)
-        motion[i * r + run] = kind.kind if stands else NOT_SETTLED
-    static = np.array(
-        [q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
-    )
-    stiffness = np.array(
-        [q.stiffness if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
-    )
+        kind, settled = judged(orbit, point, int(steps[i]), request.judge)
+        motion[i * r + run] = kind.kind if settled else NOT_SETTLED
+    none = np.full((2, c), np.nan)
+    both = [np.stack([q.static_force, q.stiffness]) if q and q.contact == contact else none for q in points]
+    static, stiffness = np.stack(both, axis=1)
+    warnings = notes(axes, points, failed, motion, request.settle, orbits)
+    if reduction is not None and reduction.error > request.reduction_error:
+        warnings += (
+            f"the reduction is {100.0 * reduction.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for "
+            "more modes, or leave their number open",
+        )
     return SweepResult(
         model=model,
         address=tuple(axis.address for axis in axes),
@@ -115,20 +117,10 @@ def gathered(
         dofs=max(q.system.n for q in sound),
         seconds=laps,
         method="Runge-Kutta of order 4 in SIMD batches of 32 points",
-        warnings=notes(axes, points, failed, motion, request.settle, orbits) + _reduction(reduction, request),
+        warnings=warnings,
         portraits=None,
         statistic=STATISTICS,
         statistics_error=statistics_error,
         reduction=reduction,
         **tables,
-    )
-
-
-def _reduction(reduction: Reduction | None, request: Request) -> tuple[str, ...]:
-    """What modes that were fixed by hand leave open."""
-    if reduction is None or reduction.error <= request.reduction_error:
-        return ()
-    return (
-        f"the reduction is {100.0 * reduction.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for more "
-        "modes, or leave their number open",
     )

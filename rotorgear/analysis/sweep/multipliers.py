@@ -18,8 +18,8 @@ import numpy as np
 import scipy.linalg as la
 
 from rotorgear.analysis.sweep.classify import period_of
-from rotorgear.solvers.lanes.lanes import Start
-from rotorgear.solvers.lanes.small_system import SmallSystem
+from rotorgear.solvers.batch.run_block import Start
+from rotorgear.solvers.batch.small_system import SmallSystem
 
 # Steps of the differences, over the size of the motion: rounding of a period leaves 1e-14 of it.
 _STEP = 1e-5
@@ -30,9 +30,9 @@ _NEAR = 0.1
 # ln|mu| of a period within which differences can't tell its sign.
 SURE = 1e-4
 # How far along the most unstable direction a run begins anew, over the size of the motion.
-_PUSH = 1e-2
+_MOVED = 1e-2
 
-# Where states are after so many common periods.
+# Where states are after a number of common periods.
 Advance = Callable[[Sequence[Start], int], list[Start]]
 
 
@@ -43,8 +43,8 @@ class Certificate:
     Attributes:
         growth: ln|mu| of the largest multiplier in one common period.
         repeats: common periods after which the orbit repeats; a divisor of those of the map.
-        onward: where the run goes on from: its end; beside an unstable orbit moved along the direction that grows most, unless it
-        is further along it already.
+        onward: state from which the run goes on: its end; beside an unstable orbit moved along the direction that grows most,
+        unless it is further along it already.
     """
 
     growth: float
@@ -55,7 +55,7 @@ class Certificate:
 def certificate(
     system: SmallSystem, end: Start, sizes: np.ndarray, periods: int, advance: Advance, tolerance: float
 ) -> Certificate | None:
-    """The orbit of so many common periods near a state, with its multipliers.
+    """The orbit of a number of common periods near a state, with its multipliers.
 
     Args:
         system: the small system. end: a state near the orbit.
@@ -66,8 +66,10 @@ def certificate(
     Returns:
         The certificate; None where Newton's method finds no orbit near by, as where a contact only just closes.
     """
-    U = _with_strain(system)
     n = system.n
+    # Orthonormal states [z, z'] (2 n, s) without those of rigid motions.
+    V = la.null_space(system.rigid) if len(system.rigid) else np.eye(n)
+    U = la.block_diag(V, V)
     # z = L^T q: a displacement d = B^T z of that size.
     scale = float(sizes.max()) / float(np.linalg.norm(system.B, axis=0).max())
     begun = np.concatenate([end.z, end.dz])
@@ -93,7 +95,13 @@ def certificate(
     mu, left, right = la.eig(M, left=True)
     most = int(np.argmax(np.abs(mu)))
     growth = float(np.log(max(abs(mu[most]), 1e-300))) / periods
-    repeats = _period(x, after, system, sizes, periods, tolerance)
+    # After how many common periods the orbit repeats is told as of a run (classify.py), from a section of its own.
+    counted = system.B[:, system.columns.counted].T
+    states = [x]
+    for _ in range(periods - 1):
+        states.append(after([states[-1]], 1)[0])
+    section = np.array([counted @ state[:n] for state in states])
+    repeats = period_of(np.tile(section, (3, 1)), sizes, tolerance) or periods
     if growth < SURE:
         return Certificate(growth, repeats, end)
     # Slow motions may still be far from the orbit; only what lies along the direction of growth counts.
@@ -101,27 +109,10 @@ def certificate(
     beside = abs(np.vdot(left[:, most], U.T @ (begun - x)) / np.vdot(left[:, most], along)) * np.linalg.norm(
         np.real(along)
     )
-    if beside < _PUSH * scale:
+    if beside < _MOVED * scale:
         direction = U @ np.real(along)
-        begun = begun + _PUSH * scale * direction / np.linalg.norm(direction)
+        begun = begun + _MOVED * scale * direction / np.linalg.norm(direction)
     return Certificate(growth, repeats, Start(begun[:n], begun[n:]))
-
-
-def _period(
-    x: np.ndarray,
-    after: Callable[[Sequence[np.ndarray], int], np.ndarray],
-    system: SmallSystem,
-    sizes: np.ndarray,
-    periods: int,
-    tolerance: float,
-) -> int:
-    """Common periods after which the orbit through x (2 n,) repeats, told as of a run (classify.py) from its own section."""
-    counted = system.B[:, system.columns.counted].T
-    states = [x]
-    for _ in range(periods - 1):
-        states.append(after([states[-1]], 1)[0])
-    section = np.array([counted @ state[: system.n] for state in states])
-    return period_of(np.tile(section, (3, 1)), sizes, tolerance) or periods
 
 
 def _on_orbit(
@@ -141,9 +132,3 @@ def _on_orbit(
         if np.linalg.norm(x - begun) > _NEAR * scale * np.sqrt(len(x)):
             return None
     return None
-
-
-def _with_strain(system: SmallSystem) -> np.ndarray:
-    """Orthonormal states [z, z'] (2 n, s) without those of rigid motions."""
-    V = la.null_space(system.rigid) if len(system.rigid) else np.eye(system.n)
-    return np.asarray(la.block_diag(V, V))

@@ -12,7 +12,7 @@ from rotorgear.analysis.sweep.axes import Axis
 from rotorgear.analysis.sweep.classify import CHAOTIC, FAILED, NOT_SETTLED, period_in, repeats
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.model.model import Model
-from rotorgear.solvers.lanes.lanes import Orbit
+from rotorgear.solvers.batch.run_block import Orbit
 
 # Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
 _FORGOTTEN = 3.0

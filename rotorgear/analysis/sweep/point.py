@@ -1,9 +1,14 @@
-"""One point of a sweep made ready: the model at its parameters as a small system, with tables of what depends on time."""
+"""One point of a sweep made ready: the model at its parameters as a small system, with tables of what depends on time.
+
+What repeats in a model that turns: orders of all laws, and the period that they have in common.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import gcd, lcm
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,14 +16,13 @@ from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import mean_torsion_notes, springs_about_mean
-from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
-from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Reduced, Wanted
+from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Wanted
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Columns
-from rotorgear.solvers.lanes.own_laws import own_laws
-from rotorgear.solvers.lanes.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
+from rotorgear.solvers.batch.columns import OWN_LAW, TABLE_ROWS, Columns
+from rotorgear.solvers.batch.own_laws import own_laws
+from rotorgear.solvers.batch.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
 from rotorgear.solvers.time.contact_equilibrium import (
     Equilibrium,
     equilibrium,
@@ -28,8 +32,73 @@ from rotorgear.solvers.time.contact_equilibrium import (
 )
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
-from rotorgear.system.local import LocalModel, local_model
+from rotorgear.system.local import local_model
 from rotorgear.system.system import flow_system
+
+if TYPE_CHECKING:
+    from rotorgear.solvers.time.local_forces import LocalLaw
+
+
+# Periods of the fastest mesh in the common one, at most.
+MOST_TURNS = 1000
+_WHOLE = 1e-9  # relative error of a fraction that approximates a ratio of speeds
+
+
+def shared_period(orders: list[Fraction]) -> tuple[Fraction, int]:
+    """The highest order, and how many of its periods everything that varies has in common, however many.
+
+    Raises:
+        AnalysisError: nothing varies.
+    """
+    if not orders:
+        raise AnalysisError("nothing repeats: a sweep needs a mesh with teeth, or an unbalance, that turns")
+    fastest = max(orders)
+    base = Fraction(gcd(*(o.numerator for o in orders)), lcm(*(o.denominator for o in orders)))
+    return fastest, int(fastest / base)
+
+
+def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
+    """The highest order, and how many of its periods everything that varies has in common.
+
+    Raises:
+        AnalysisError: nothing varies, or the common period is too long.
+    """
+    fastest, turns = shared_period(orders)
+    if turns > MOST_TURNS:
+        raise AnalysisError(
+            f"the meshes repeat together after {turns} periods of the fastest only (at most {MOST_TURNS}); choose "
+            "numbers of teeth with common factors"
+        )
+    return fastest, turns
+
+
+def refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:
+    """AnalysisError where unbalances or torque ripples make the common period too long, and meshes alone don't."""
+    try:
+        common_period(orders)
+    except AnalysisError as error:
+        if not meshes or len(meshes) == len(orders):
+            raise
+        raise AnalysisError(
+            f"{error}; without unbalances and torque ripples the meshes repeat after {common_period(meshes)[1]}: leave these "
+            "out, as by --over 'unbalances.*.magnitude=0 kg m'"
+        ) from None
+
+
+def orders_of(law: LocalLaw, label: str) -> list[Fraction]:
+    """Orders of what varies in a law and belongs to the common period; none where it stays the same."""
+    orders = []
+    for each in law.repeats():
+        if not each.common:
+            continue
+        order = Fraction(each.order).limit_denominator(100000)
+        if abs(float(order) - each.order) > _WHOLE * each.order:
+            raise AnalysisError(
+                f"{label}: its order {each.order:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
+            )
+        orders.append(order)
+    return orders
+
 
 _KEPT = 1000  # states at rest
 # Systems with casings are reduced from this many dofs on; below, there is nothing to gain.
@@ -85,7 +154,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Still:
+class AtRest:
     """What of a point does not depend on its speed: local system, orders, names of contacts, state at rest, whether it drifts."""
 
     local: LocalSystem
@@ -110,7 +179,7 @@ class PointMaker:
     def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:
         self._wanted = wanted or Wanted()
         self._elements = elements
-        self._known: dict[str, Still | Large] = {}
+        self._known: dict[str, AtRest | Large] = {}
         self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
         self.left_out: list[tuple[str, ...]] = []
 
@@ -126,24 +195,27 @@ class PointMaker:
         slow = 1.0 if speed > 0.0 else -1.0
         standing = model.operation.model_copy(update={"speed": slow})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
-        if not _standing(model):
-            return self._at(self._still(model, speed), speed, model.damping.modal_ratio)
+        if not _only_turns(model):
+            return self._at(self._made(model, speed), speed, model.damping.modal_ratio)
         if key not in self._known:
             if len(self._known) >= _KEPT:
                 self._known.clear()
-            # At one speed for all: errors that move push on dampers at rest, and no point may depend on the first one.
-            self._known[key] = self._still(model, slow)
+            # At one speed for all: moving errors act on dampers at rest, and no point may depend on the first one.
+            self._known[key] = self._made(model, slow)
         return self._at(self._known[key], speed, model.damping.modal_ratio)
 
-    def _at(self, known: Still | Large, speed: float, modal_ratio: float) -> Point | Large:
+    def _at(self, known: AtRest | Large, speed: float, modal_ratio: float) -> Point | Large:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
-    def _still(self, model: Model, speed: float) -> Still | Large:
+    def _made(self, model: Model, speed: float) -> AtRest | Large:
         system = flow_system(model, plan_in_time(self._elements)).with_state(state_in_time(model, speed))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
-        built = replace(built, local=_with_approaches(built))
+        # Watched is the approach of each contact in the transverse plane, too, behind the transmission errors.
+        approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
+        watched = np.hstack([built.local.watched_vectors, approach])
+        built = replace(built, local=replace(built.local, watched=watched))
         notes = (*left_out(system, "time", speed), *transient_left_out(built), *mean_torsion_notes(system, speed))
         self.left_out.append(notes)
         for part in built.parts:
@@ -162,7 +234,7 @@ class PointMaker:
         if self._wanted.modes is not None or large or np.any(built.local.M.diagonal() <= 0.0):
             most = MOST_WITH_BODIES if bodies else MOST_COORDINATES
             return Large(built.local, orders, contact, speed, model.damping.modal_ratio, most)
-        return still(built.local, orders, contact, self._free_of(built.local))
+        return at_rest(built.local, orders, contact, self._free_of(built.local))
 
     def _free_of(self, local: LocalSystem) -> np.ndarray:
         """Motions without strain; those of the point before where inertia and stiffness are the same to the last bit."""
@@ -173,16 +245,7 @@ class PointMaker:
         return self._free[1]
 
 
-def _with_approaches(built: LocalModel) -> LocalSystem:
-    """The system that watches the approach of each contact in the transverse plane too, behind the transmission errors."""
-    local = built.local
-    meshes = [i for i, part in enumerate(built.parts) if part.is_mesh]
-    transverse = np.array([built.parts[i].transverse for i in meshes])
-    approach = local.B[:, local.forces.first[meshes]].toarray() / transverse
-    return replace(local, watched=np.hstack([local.watched_vectors, approach]))
-
-
-def _standing(model: Model) -> bool:
+def _only_turns(model: Model) -> bool:
     """Whether only the rotation depends on the speed: no power, tables, films, bodies, internal damping, torque over speed."""
     operation = model.operation
     assert operation is not None
@@ -197,9 +260,9 @@ def _standing(model: Model) -> bool:
     )
 
 
-def still(
+def at_rest(
     local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], free: np.ndarray | None = None
-) -> Still:
+) -> AtRest:
     """Find the state at rest of a system with local forces.
 
     Args:
@@ -212,16 +275,16 @@ def still(
     if not np.all(np.isfinite(static)):
         # Contacts that are open at rest: what the driving flanks alone would carry.
         static = local.forces.reference_stiffness @ (local.B.T @ rest.q)
-    return Still(local, orders, contact, rest, static, unbalanced(local, rest.free))
+    return AtRest(local, orders, contact, rest, static, unbalanced(local, rest.free))
 
 
-def ready_reduced(point: Large, reduced: Reduced) -> Point:
+def ready_reduced(point: Large, local: LocalSystem, shapes: Shapes) -> Point:
     """Make a point ready that was reduced."""
-    known = replace(still(reduced.local, point.orders, point.contact), shapes=reduced.shapes)
+    known = replace(at_rest(local, point.orders, point.contact), shapes=shapes)
     return ready(known, point.speed, point.modal_ratio)
 
 
-def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
+def ready(known: AtRest, speed: float, modal_ratio: float = 0.0) -> Point:
     """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
     local = replace(known.local, rotation=Rotation.constant(speed))
     fastest, turns = common_period(known.orders)
@@ -232,7 +295,7 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     system = small_system(
         local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
-    # What the drive carries stays at its speed, whatever pushes on it.
+    # What the drive carries stays at its speed, whatever acts on it.
     drifts = len(system.carried) < len(system.rigid) and known.drifts
     shape = b"".join(law.table_key() for law in laws)
     counted = columns.counted
@@ -251,7 +314,7 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
 
 def table_of(point: Point, steps: int) -> np.ndarray:
     """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
-    from rotorgear.solvers.lanes.kernel_parts import tabulate
+    from rotorgear.solvers.batch.kernel_parts import tabulate
 
     rows = 2 * point.system.turns * steps + 1
     angles = np.pi / steps / point.order * np.arange(rows)

@@ -1,4 +1,14 @@
-"""Large systems of a sweep reduced to few coordinates: one basis for all points that differ in speed and load only."""
+"""Large systems of a sweep reduced to few coordinates: one basis for all points that differ in speed and load only.
+
+Frequencies at which a reduced system of a sweep is compared with the whole one.
+
+    harmonics of all that repeats, as far as its law says that they matter and up to the 10th, at up to 16 of the speeds
+    an even grid up to the highest of these at the highest speed
+    natural frequencies in that range
+
+Compared a little off the axis, s = w (i + 0.005), as with a damping ratio of 0.005 more: models without damping have finite peaks
+then, and the frequencies need not hit them.
+"""
 
 from __future__ import annotations
 
@@ -11,21 +21,46 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.common.excitation import rates
-from rotorgear.analysis.sweep.probes import probes_for
 from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction
+from rotorgear.solvers.batch.columns import PRESCRIBED
+from rotorgear.solvers.batch.small_system import Shapes
 from rotorgear.solvers.frequency.contact_basis import (
     Candidates,
     Choice,
+    Probes,
     Scale,
     candidates,
     choose,
     full_receptances,
     reduced,
 )
-from rotorgear.solvers.lanes.columns import PRESCRIBED
-from rotorgear.solvers.lanes.small_system import Shapes
+from rotorgear.solvers.time.local_forces import LocalLaw
 from rotorgear.solvers.time.local_system import LocalSystem
+
+_ASIDE = 0.005
+_SPEEDS = 16
+_GRID = 48
+_NATURAL = 96
+
+
+def probes_for(laws: Sequence[LocalLaw], speeds: Sequence[float], natural: np.ndarray, damping: float = 0.0) -> Probes:
+    """Return where receptances are compared.
+
+    Args:
+        laws: what acts. speeds: of the reference in rad/s. natural: (p,) rad/s. damping: ratio of all modes that D does not hold.
+    """
+    several = np.unique(speeds)
+    several = several[np.unique(np.linspace(0, len(several) - 1, _SPEEDS).round().astype(int))]
+    fastest = float(several[np.argmax(np.abs(several))])
+    pairs = [(float(speed), w) for speed in several for w in rates(laws, float(speed))]
+    top = rates(laws, fastest).max()
+    inside = natural[(natural > 0.0) & (natural <= top)]
+    inside = inside[np.unique(np.linspace(0, len(inside) - 1, min(_NATURAL, len(inside))).round().astype(int))]
+    pairs += [(fastest, float(w)) for w in (*np.linspace(top / _GRID, top, _GRID), *inside)]
+    speed, w = np.array(pairs).T
+    return Probes(speed, w * (1j + _ASIDE + damping))
+
 
 # Coordinates of a reduced system at most: its cost grows with the square of them.
 MOST_COORDINATES = 160
@@ -37,7 +72,7 @@ _CANDIDATES = 300
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a reduction must reach: a largest relative difference of receptances, or so many modes whatever that gives."""
+    """What a reduction must reach: a largest relative difference of receptances, or a number of modes whatever it gives."""
 
     error: float = 0.01
     modes: int | None = None
@@ -69,14 +104,6 @@ class Large:
         return digest.digest()
 
 
-@dataclass(frozen=True)
-class Reduced:
-    """The system of a point in its basis, and the shapes of that."""
-
-    local: LocalSystem
-    shapes: Shapes
-
-
 class Reducer:
     """Reduces points of a sweep; modes that have served one model are tried first for the next one."""
 
@@ -85,8 +112,10 @@ class Reducer:
         self._modes: np.ndarray | None = None
         self.found: list[Reduction] = []
 
-    def __call__(self, points: Sequence[Large], heard: Callable[[int, float], None]) -> list[Reduced]:
-        """Reduce points with the same `key`.
+    def __call__(
+        self, points: Sequence[Large], heard: Callable[[int, float], None]
+    ) -> list[tuple[LocalSystem, Shapes]]:
+        """Reduce points with the same `key`: the system of each in the common basis, and the shapes of that.
 
         Args:
             points: at least one. heard: is told the size of the basis and its error while it grows.
@@ -101,7 +130,13 @@ class Reducer:
         # Shapes are for what the motion makes: prescribed forces are loads of their own.
         kinds = [column.kind for law in local.forces.laws for column in law.columns()]
         acting = np.flatnonzero(np.array(kinds) != PRESCRIBED)
-        among = candidates(local, _loads(points), acting, _CANDIDATES)
+        # Independent directions (n, l) of the loads.
+        loads = np.unique(np.array([point.local.load for point in points]), axis=0).T
+        loads = loads[:, np.any(loads != 0.0, axis=0)]
+        if loads.shape[1]:
+            U, sizes, _ = np.linalg.svd(loads, full_matrices=False)
+            loads = np.asarray(U[:, sizes > 1e-10 * sizes[0]])
+        among = candidates(local, loads, acting, _CANDIDATES)
         top = float(rates(local.forces.laws, first.speed).max())
         probes = probes_for(local.forces.laws, [point.speed for point in points], among.w, first.modal_ratio)
         full = full_receptances(local, probes)
@@ -143,9 +178,7 @@ class Reducer:
                 time.perf_counter() - begun,
             )
         )
-        return [
-            Reduced(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points
-        ]
+        return [(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points]
 
     def _chosen(self, among: Candidates, grown: Callable[[np.ndarray | None], Choice]) -> Choice:
         """The modes of the last model where they do; else chosen anew."""
@@ -184,13 +217,3 @@ def scale_of(local: LocalSystem) -> Scale:
     for law, at in zip(forces.laws, forces.first, strict=False):
         root[at : at + law.components] = np.sqrt(np.maximum(np.diag(law.closed_stiffness()), 0.0))
     return Scale(forces.reference_stiffness, forces.reference_damping, root)
-
-
-def _loads(points: Sequence[Large]) -> np.ndarray:
-    """Independent directions (n, l) of the loads of points."""
-    loads = np.unique(np.array([point.local.load for point in points]), axis=0).T
-    loads = loads[:, np.any(loads != 0.0, axis=0)]
-    if not loads.shape[1]:
-        return loads
-    U, sizes, _ = np.linalg.svd(loads, full_matrices=False)
-    return np.asarray(U[:, sizes > 1e-10 * sizes[0]])

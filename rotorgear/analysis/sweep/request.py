@@ -11,8 +11,8 @@ from rotorgear.analysis.sweep.certify import Judge
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, Wanted
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.lanes.lanes import Start
-from rotorgear.solvers.lanes.small_system import SmallSystem, steps_needed, steps_stable
+from rotorgear.solvers.batch.run_block import Start
+from rotorgear.solvers.batch.small_system import SmallSystem, steps_needed, steps_stable
 
 DIRECTIONS = ("each", "up", "down", "both")
 MOST_STEPS = 5000
@@ -112,8 +112,8 @@ def start_of(system: SmallSystem, number: int, seed: int, throw: float = 1.0) ->
 def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.ndarray, dict[int, str]]:
     """Steps of each point in a period of its fastest mesh, and why a point can't be run with them.
 
-    Without a wanted number: so many that the highest frequency is followed, from 200 on, in classes 2^(1/2) apart, so that few
-    different numbers occur.
+    Without a wanted number they follow the highest frequency, from 200 on, in classes 2^(1/2) apart, so that few different
+    numbers occur.
     """
     steps = np.zeros(len(points), dtype=np.int64)
     refused = {}

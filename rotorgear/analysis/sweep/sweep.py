@@ -1,34 +1,40 @@
-"""Sweeps over one or two parameters of a model: each point settles, is sampled, and is classified."""
+"""Sweeps over one or two parameters of a model: each point settles, is sampled, and is classified.
+
+Which points of a sweep get a portrait, how long it is, and the runs that go on from where the counted ones ended.
+"""
 
 from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from math import lcm
 
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
+from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, number_in, points_of
 from rotorgear.analysis.sweep.blocks import Workers, blocks, packed, unpacked, waves
-from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
+from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
 from rotorgear.analysis.sweep.gather import gathered
 from rotorgear.analysis.sweep.notes import coarse_shafts, left_out_of, short_of_modes
-from rotorgear.analysis.sweep.point import Point, PointMaker
-from rotorgear.analysis.sweep.portrait import Wanted, portraits_of, wanted_points
-from rotorgear.analysis.sweep.reduce import Large
+from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
+from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
 from rotorgear.analysis.sweep.request import Request, start_of, steps_of
-from rotorgear.analysis.sweep.shrink import shrunk
 from rotorgear.analysis.transient.histories import Stream
-from rotorgear.errors import RotorgearError
+from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.model.model import Model, model_hash
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.sweep import SweepResult
-from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start
+from rotorgear.results.portrait import Portraits
+from rotorgear.results.sweep import Reduction, SweepResult
+from rotorgear.solvers.batch.run_block import Orbit, Plan, Start
+from rotorgear.solvers.batch.trajectory import trajectory
 from rotorgear.solvers.sparse.factor import single_thread
 
+# How many portraits, or the values of the parameters next to which points keep theirs.
+WantedPortraits = int | Sequence[float | str | Sequence[float]]
 # Share of the progress that making the points ready gets.
 _READY = 0.1
 
@@ -53,7 +59,7 @@ def sweep(
     modes: int | None = None,
     reduction_error: float = 0.01,
     elements: int | None = None,
-    portraits: Wanted = 0,
+    portraits: WantedPortraits = 0,
     workers: int | None = None,
     executor: Pool | None = None,
     stream: Stream | None = None,
@@ -114,7 +120,7 @@ def sweep(
     wanted = wanted_points(portraits, axes)
     with single_thread(0):
         models, large, failure, left_out = _ready(model, axes, values, change, request, progress)
-        points, failure, reduction = shrunk(large, failure, request.reduction, progress, _READY)
+        points, failure, reduction = reduce_large(large, failure, request.reduction, progress, _READY)
         chosen, refused = steps_of(points, steps)
         for i, reason in refused.items():
             points[i] = None
@@ -170,6 +176,39 @@ def _ready(
         points.append(point)
         failure.append(reason)
     return texts, points, failure, maker.left_out
+
+
+def reduce_large(
+    points: Sequence[Point | Large | None], failure: Sequence[str], wanted: Wanted, progress: Progress, share: float
+) -> tuple[list[Point | None], list[str], Reduction | None]:
+    """Return the points with the large ones reduced, why points failed, and what was reduced.
+
+    Args:
+        points: in their order; those that failed are None. failure: why.
+        wanted: what a reduction must reach. progress: is told `share` all the time, and how far a basis is.
+    """
+    groups: dict[bytes, list[int]] = {}
+    for i, point in enumerate(points):
+        if isinstance(point, Large):
+            groups.setdefault(point.key, []).append(i)
+    done: list[Point | None] = [None if isinstance(point, Large) else point for point in points]
+    reasons = list(failure)
+    reducer = Reducer(wanted)
+    for number, members in enumerate(groups.values()):
+        own = [point for point in (points[i] for i in members) if isinstance(point, Large)]
+        text = f"basis {number + 1} of {len(groups)}: " if len(groups) > 1 else "basis: "
+
+        def heard(size: int, error: float, text: str = text) -> None:
+            progress(share, f"{text}{size} coordinates, {100.0 * error:.2g} % off")
+
+        try:
+            for i, large, (local, shapes) in zip(members, own, reducer(own, heard), strict=True):
+                done[i] = ready_reduced(large, local, shapes)
+        except RotorgearError as error:
+            for i in members:
+                done[i] = None
+                reasons[i] = str(error)
+    return done, reasons, reducer.summary
 
 
 def _run(
@@ -236,3 +275,111 @@ def _start(
     if before is not None and old is not None and before.finite and old.system.size == point.system.size:
         return before.end.moved(old.system, point.system)
     return start_of(point.system, run % request.starts, request.seed, request.throw)
+
+
+MOST_PORTRAITS = 16
+# Common periods of a portrait: enough to tell subharmonics apart, fewer where the common period is long.
+_LONGEST = 64
+_SHORTEST = 8
+_MOST_RECORDS = 100_000
+# Records in a period of the fastest mesh that are kept at least.
+_FEWEST = 20
+
+
+def wanted_points(wanted: WantedPortraits, axes: Sequence[Axis]) -> list[int] | int:
+    """The points next to values of the parameters, or how many are wanted anywhere.
+
+    Raises:
+        AnalysisError: too many, or values off the sweep.
+    """
+    count = wanted if isinstance(wanted, int) else len(wanted)
+    if not 0 <= count <= MOST_PORTRAITS:
+        raise AnalysisError(f"portraits: got {count}, expected 0 to {MOST_PORTRAITS} points")
+    if isinstance(wanted, int):
+        return wanted
+    return list(dict.fromkeys(_nearest(value, axes) for value in wanted))
+
+
+def _nearest(value: float | str | Sequence[float], axes: Sequence[Axis]) -> int:
+    """Number of the point next to a value of each parameter."""
+    parts = value.split(",") if isinstance(value, str) else np.atleast_1d(np.asarray(value, dtype=float)).tolist()
+    if len(parts) != len(axes):
+        what = "a value" if len(axes) == 1 else "two values with a comma"
+        raise AnalysisError(f"portrait: got '{value}', expected {what} of {' and '.join(a.address for a in axes)}")
+    place = 0
+    for axis, part in zip(axes, parts, strict=True):
+        number = number_in(axis, part, "portrait")
+        all_of = np.array(axis.values)
+        if not all_of.min() - 1e-9 * abs(all_of.min()) <= number <= all_of.max() + 1e-9 * abs(all_of.max()):
+            raise AnalysisError(
+                f"portrait: got '{part}', expected {axis.address} from {all_of.min():g} to {all_of.max():g} {axis.unit}".rstrip()
+            )
+        place = place * len(all_of) + int(np.argmin(np.abs(all_of - number)))
+    return place
+
+
+def spread(shape: Sequence[int], sound: Sequence[bool], count: int) -> list[int]:
+    """Up to `count` sound points that cover the sweep: evenly along one parameter, or a grid over two."""
+    if len(shape) == 1:
+        own = np.flatnonzero(sound)
+        return [] if not own.size or not count else [int(own[i]) for i in _even(own.size, min(count, own.size))]
+    rows = max(1, min(shape[0], int(np.sqrt(count))))
+    columns = min(shape[1], count // rows)
+    rows = min(shape[0], count // max(1, columns))
+    grid = [i * shape[1] + k for i in _even(shape[0], rows) for k in _even(shape[1], columns)]
+    return [p for p in grid if sound[p]]
+
+
+def _even(size: int, count: int) -> list[int]:
+    """`count` places that cover 0 to size - 1; the middle one for a single."""
+    if count == 1:
+        return [(size - 1) // 2]
+    return [int(i) for i in np.linspace(0, size - 1, count).round()]
+
+
+def length_of(turns: int, steps: int, repeats: int = 1) -> tuple[int, int]:
+    """Common periods of a portrait, and the steps between two of its records; a motion that repeats is kept in whole periods."""
+    own = turns * steps
+    periods = int(np.clip(_MOST_RECORDS // own, _SHORTEST, _LONGEST))
+    periods -= periods % repeats if repeats <= periods else 0
+    divisors = [e for e in range(1, max(1, steps // _FEWEST) + 1) if own % e == 0]
+    fitting = [e for e in divisors if periods * own // e <= _MOST_RECORDS]
+    return periods, fitting[0] if fitting else divisors[-1]
+
+
+def portraits_of(
+    result: SweepResult,
+    wanted: list[int] | int,
+    points: Sequence[Point | None],
+    request: Request,
+    orbits: dict[tuple[int, int], Orbit],
+    progress: Progress,
+) -> Portraits | None:
+    """Run the chosen points on from where they ended, those that were not thrown at random; None where no point is sound."""
+    sound = [not reason for reason in result.failure]
+    chosen = (
+        spread(result.shape.tolist(), sound, wanted) if isinstance(wanted, int) else [p for p in wanted if sound[p]]
+    )
+    if not chosen:
+        return None
+    begun = request.settle + request.count
+    runs = list(range(0, len(request.runs), request.starts))
+    kinds = [[result.motion_at(p, run) for run in runs] for p in chosen]
+    sizes = [
+        length_of(int(result.turns[p]), int(result.steps[p]), lcm(*map(period_in, own)))
+        for p, own in zip(chosen, kinds, strict=True)
+    ]
+    periods, every = (np.array(x) for x in zip(*sizes, strict=True))
+    records = result.turns[chosen] * result.steps[chosen] // every
+    values = np.full((len(chosen), len(runs), int((periods * records).max()), len(result.contact), 3), np.nan)
+    for k, p in enumerate(chosen):
+        progress(1.0, f"portrait {k + 1} of {len(chosen)}")
+        point = points[p]
+        assert point is not None
+        table = table_of(point, int(result.steps[p]))
+        for j, run in enumerate(runs):
+            if kinds[k][j] == FAILED:
+                continue
+            own = trajectory(point.system, orbits[p, run].end, table, int(result.steps[p]), *sizes[k], begun=begun)
+            values[k, j, : len(own)] = own[:, point.system.columns.counted]
+    return Portraits(np.array(chosen), np.array(runs), result.turns[chosen], periods, records, values)

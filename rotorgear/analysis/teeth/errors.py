@@ -41,7 +41,7 @@ _COARSER_BLANK = 2.0
 # of means and of ripples, which keep more. By 34/80 (20.86 degrees, two loads), 30/72 (33.27) and 32/64 (28).
 _ROUGH_SECTION = MeshSize(5, 2, 3, 2, 2)
 _OF_SECTION = {"default": (0.6, 1.0), "fine": (0.55, 0.8)}
-# The same of the largest pressure in space: it stands where contact lines end at the edge of a face, and comes to rest slowly.
+# The same of the largest pressure in space: it occurs where contact lines end at the edge of a face, and converges slowly.
 _OF_PRESSURE = {"preview": 3.0, "default": 1.5, "fine": 0.7}
 # Slices beside the usual ones.
 _MORE_SLICES = 1.5
@@ -71,9 +71,13 @@ def error_parts(
     if uncoupled:
         return None
     sampling = sampling_errors(found)
-    compared = _compared(found)
+    # Other meshes are looked at at positions that are spread evenly, and at the extremes of all curves.
+    even = np.arange(0.0, found.curve.period, 1.0 / _COMPARED)
+    nearest = np.abs(found.position[:, None] - even).argmin(axis=0)
+    values = found.curve.values[:, [0, 1, 3]]
+    compared = np.unique([*nearest, *values.argmax(axis=0), *values[:, :2].argmin(axis=0)])
     u = found.position[compared]
-    here = found.curve.values[compared][:, [0, 1, 3]]
+    here = values[compared]
     periods = round(found.curve.period)
 
     def curves(other: ToothPair, told: Progress) -> np.ndarray:
@@ -93,7 +97,9 @@ def error_parts(
     if space:
         more = replace(teeth, fe=replace(fe, slices=round(_MORE_SLICES * found.problem.slices)))
         slices = _apart(here, curves(more, part_of(progress, 0.6, 1.0)))
-    return ErrorParts(elements, slices, sampling, _total(elements, slices, sampling))
+    known = [part for part in (elements, slices, sampling) if part is not None]
+    total = _combined(*known, how=lambda *values: max(_LEAST, sum(values)))
+    return ErrorParts(elements, slices, sampling, total)
 
 
 def _on_wheels(teeth: ToothPair) -> bool:
@@ -134,15 +140,6 @@ def _remaining(teeth: ToothPair, coarser: MeshSize, space: bool) -> float:
     return max(share, _OF_WHEELS[fe.preset]) if on_wheels else share
 
 
-def _compared(found: SolvedHelices) -> np.ndarray:
-    """Numbers of the positions at which other meshes are looked at: spread evenly, with the extremes of all curves."""
-    u = found.position
-    even = np.arange(0.0, found.curve.period, 1.0 / _COMPARED)
-    spread = np.abs(u[:, None] - even).argmin(axis=0)
-    values = found.curve.values[:, [0, 1, 3]]
-    return np.unique([*spread, *values.argmax(axis=0), *values[:, :2].argmin(axis=0)])
-
-
 def _apart(here: np.ndarray, there: np.ndarray, share: float = 1.0, of_pressure: float = 1.0) -> MeshErrors:
     """Relative differences of transmission error, stiffness and largest pressure (m, 3) at the same positions."""
     difference = there - here
@@ -175,11 +172,6 @@ def sampling_errors(found: SolvedHelices) -> MeshErrors:
         ste_harmonics=float(sampling.harmonics_error(ORDERS)[:, 0].max()) / strongest,
         largest_pressure=float(sampling.largest_error()[2] / kept.values[:, 2].max()),
     )
-
-
-def _total(*parts: MeshErrors | None) -> MeshErrors:
-    known = [part for part in parts if part is not None]
-    return _combined(*known, how=lambda *values: max(_LEAST, sum(values)))
 
 
 def _combined(*parts: MeshErrors, how: Callable[..., float]) -> MeshErrors:

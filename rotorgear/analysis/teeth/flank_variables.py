@@ -37,7 +37,7 @@ ALONG_FACE = ("crowning", "end_relief", "end_relief_length", "helix_slope", "bia
 
 @dataclass(frozen=True)
 class Variable:
-    """One number that is looked for.
+    """One number that the optimisation varies.
 
     Attributes:
         text: as it was asked for.
@@ -86,18 +86,16 @@ def flank_variables(
         raise AnalysisError(f"bounds: '{min(strange)}' is not among what is optimised.")
     flanks = (mesh.teeth.first_flank, mesh.teeth.second_flank)
     for field, number in taken:
-        # Amount and length come together: one that is not looked for must stand in the file.
+        # Amount and length come together: one that is not varied must be given in the file.
         partner = LENGTHS.get(field) or next((length for length, amount in LENGTHS.items() if amount == field), None)
-        if partner is not None and (partner, number) not in taken and not _given(flanks[number], field, partner):
+        if partner is None or (partner, number) in taken:
+            continue
+        # Without an amount its length means nothing.
+        amount = LENGTHS.get(field, field)
+        if not (getattr(flanks[number], amount) and getattr(flanks[number], partner)):
             other = (mesh.pinion, mesh.gear)[number]
             raise AnalysisError(f"optimise {field}: name {partner} too, or give both for '{other.name}' in the model.")
     return tuple(found)
-
-
-def _given(flank: object, field: str, partner: str) -> bool:
-    """Whether the model gives the other one of amount and length; without an amount its length means nothing."""
-    amount = LENGTHS.get(field, field)
-    return bool(getattr(flank, amount)) and bool(getattr(flank, partner))
 
 
 def _bounds(teeth: ToothPair, field: str, text: str, given: Mapping[str, Sequence[object]]) -> tuple[float, float]:

@@ -6,7 +6,6 @@ K_v of a mesh of a model: ISO 6336-1 method B where its inputs are given, else t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -33,7 +32,6 @@ from rotorgear.gears.stiffness.dynamic_factor import (
     simple_dynamic_factor,
 )
 from rotorgear.gears.stiffness.iso import pair_iso_stiffness
-from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.model.checks.gears import ball_diameter
 from rotorgear.model.checks.meshes import mesh_findings
@@ -73,43 +71,31 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
     inertias = [gear.body.polar_inertia / mesh.helices for gear in order]
     try:
         if min(inertias) > 0.0:
-            relief = min(gear.part.tip_relief for gear in order)
-            return iso_dynamic_factor(_method_b(teeth, spin, velocity, line_load, inertias, grades, relief))
+            g1 = teeth.first
+            g2 = teeth.second
+            stiffness = pair_iso_stiffness(teeth, line_load)
+            # Deviations are those of the tolerance classes.
+            classes = [(gear, grade) for gear, grade in zip((g1, g2), grades, strict=True) if grade is not None]
+            inputs = DynamicMesh(
+                pinion_teeth=g1.teeth,
+                ratio=g2.teeth / g1.teeth,
+                pinion_speed=spin,
+                pitch_line_velocity=velocity,
+                total_contact_ratio=teeth.pair.total_contact_ratio,
+                line_load=line_load,
+                single_stiffness=stiffness.single,
+                mesh_stiffness=stiffness.mesh_alpha,
+                reduced_mass=reduced_mass(inertias[0], inertias[1], g1.base_radius, g2.base_radius, teeth.width),
+                base_pitch_deviation=max(base_pitch_deviation(*item) for item in classes),
+                profile_deviation=max(profile_form_deviation(*item) for item in classes),
+                tip_relief=min(gear.part.tip_relief for gear in order),
+            )
+            return iso_dynamic_factor(inputs)
         ratio = teeth.second.teeth / teeth.first.teeth
         worst = max(grade for grade in grades if grade is not None)
         return simple_dynamic_factor(velocity, teeth.first.teeth, ratio, line_load, teeth.pair.overlap_ratio, worst)
     except AnalysisError as error:
         return f"K_v: {error}"
-
-
-def _method_b(
-    teeth: ToothPair,
-    spin: float,
-    velocity: float,
-    line_load: float,
-    inertias: list[float],
-    grades: list[int | None],
-    relief: float,
-) -> DynamicMesh:
-    """Inputs of method B from the pair, pinion first; deviations are those of the tolerance classes."""
-    g1 = teeth.first
-    g2 = teeth.second
-    stiffness = pair_iso_stiffness(teeth, line_load)
-    classes = [(gear, grade) for gear, grade in zip((g1, g2), grades, strict=True) if grade is not None]
-    return DynamicMesh(
-        pinion_teeth=g1.teeth,
-        ratio=g2.teeth / g1.teeth,
-        pinion_speed=spin,
-        pitch_line_velocity=velocity,
-        total_contact_ratio=teeth.pair.total_contact_ratio,
-        line_load=line_load,
-        single_stiffness=stiffness.single,
-        mesh_stiffness=stiffness.mesh_alpha,
-        reduced_mass=reduced_mass(inertias[0], inertias[1], g1.base_radius, g2.base_radius, teeth.width),
-        base_pitch_deviation=max(base_pitch_deviation(*item) for item in classes),
-        profile_deviation=max(profile_form_deviation(*item) for item in classes),
-        tip_relief=relief,
-    )
 
 
 _POSITIONS = 256
@@ -227,6 +213,15 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, mesh.name, force * base or None)
     factor = dynamic if isinstance(dynamic, DynamicFactor) else None
+    notes = [*mesh_findings(mesh), *(curve.warnings if curve else ()), *(factor.warnings if factor else ())]
+    if factor and factor.resonance_ratio:
+        notes += [
+            f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
+            for gear in (mesh.part.pinion, mesh.part.gear)
+            if sum(gear in (other.pinion, other.gear) for other in model.meshes.values()) > 1
+        ]
+    speed = model.operation.speed if model.operation else None
+    cosine = math.cos(pair.working_transverse_pressure_angle)
     return MeshSheetRow(
         name=mesh.name,
         pinion=mesh.pinion.name,
@@ -247,7 +242,8 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         base_pitch_m=teeth.base_pitch,
         approach_length_m=-pair.start_of_contact,
         recess_length_m=pair.end_of_contact,
-        working_pitch_diameter_m=_pitch_diameters(teeth),
+        # d_w = d_b / cos a_wt
+        working_pitch_diameter_m=(2.0 * g1.base_radius / cosine, 2.0 * g2.base_radius / cosine),
         active_root_diameter_m=pair.active_root_diameters(g1, g2),
         tip_clearance_m=(_clearance(g1, g2, pair.centre_distance), _clearance(g2, g1, pair.centre_distance)),
         transverse_backlash_m=pair.transverse_backlash,
@@ -266,40 +262,16 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2 if curve else None,
         stiffness_definition=curve.definition if curve else None,
         stiffness_body=curve.body if curve else None,
-        pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion.shaft, g1),
+        pitch_line_velocity_m_per_s=(
+            0.5 * g1.reference_diameter * abs(model.layout.train.ratio(mesh.pinion.shaft) * speed) if speed else None
+        ),
         tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
         base_tangential_force_n=force * base if force else None,
         dynamic_factor=factor.value if factor else None,
         resonance_ratio=factor.resonance_ratio if factor else None,
         dynamic_factor_method=dynamic if isinstance(dynamic, str) else dynamic.method,
-        warnings=(
-            *mesh_findings(mesh),
-            *(curve.warnings if curve else ()),
-            *(_of_factor(model, mesh, factor) if factor else ()),
-        ),
+        warnings=tuple(notes),
     )
-
-
-def _of_factor(model: Model, mesh: MeshLayout, factor: DynamicFactor) -> Iterator[str]:
-    """Warnings of K_v, and a sentence for a gear with further mates, whose resonances method B doesn't know."""
-    yield from factor.warnings
-    for gear in (mesh.part.pinion, mesh.part.gear):
-        if factor.resonance_ratio and sum(gear in (other.pinion, other.gear) for other in model.meshes.values()) > 1:
-            yield f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
-
-
-def _velocity(model: Model, shaft: str, g: GearGeometry) -> float | None:
-    """v (m/s) at the reference circle at the speed of the operating point."""
-    if model.operation is None or not model.operation.speed:
-        return None
-    spin = model.layout.train.ratio(shaft) * model.operation.speed
-    return 0.5 * g.reference_diameter * abs(spin)
-
-
-def _pitch_diameters(teeth: ToothPair) -> tuple[float, float]:
-    """Working pitch diameters d_w = d_b / cos a_wt in m."""
-    cosine = math.cos(teeth.pair.working_transverse_pressure_angle)
-    return 2.0 * teeth.first.base_radius / cosine, 2.0 * teeth.second.base_radius / cosine
 
 
 def _clearance(g: GearGeometry, mate: GearGeometry, distance: float) -> float:

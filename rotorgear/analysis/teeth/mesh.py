@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import HelixContact, LoadPoint, MeshResult
 
 POSITIONS = 64
-# More positions or periods than these are a slip of the keyboard.
+# More positions or periods than these are taken for a typing error.
 _MOST_POSITIONS = 4096
 _MOST_PERIODS = 256
 # An accuracy that is asked for takes no more positions than this by itself.
@@ -63,7 +64,7 @@ def mesh(
 
     Raises:
         AnalysisError: a mesh, load or setting that can't be; an accuracy that no preset reaches.
-        ConvergenceError: contact that does not come to rest.
+        ConvergenceError: the contact does not converge.
         MissingExtraError: scikit-fem is not installed.
     """
     require_positions(positions)
@@ -76,7 +77,12 @@ def mesh(
     if request.model != "tooth_fe":
         return _other(model, request, positions, clock)
     assert request.teeth is not None
-    cycle = Cycle(positions, _periods(request.teeth, periods))
+    if periods is None:
+        wrong = (*request.teeth.first_flank.single_teeth, *request.teeth.second_flank.single_teeth)
+        periods = min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
+    if not 1 <= periods <= _MOST_PERIODS:
+        raise AnalysisError(f"--periods: got {periods}, expected 1 to {_MOST_PERIODS}")
+    cycle = Cycle(positions, periods)
     if accuracy is None:
         teeth = request.teeth
         found, errors = _with_errors(request, teeth, cycle, estimate, progress)
@@ -90,18 +96,9 @@ def mesh(
 
 
 def require_positions(positions: int) -> None:
-    """AnalysisError unless so many positions of a mesh period can be asked for."""
+    """AnalysisError unless that number of positions in a mesh period is allowed."""
     if not 8 <= positions <= _MOST_POSITIONS:
         raise AnalysisError(f"--positions: got {positions}, expected 8 to {_MOST_POSITIONS} in a mesh period")
-
-
-def _periods(teeth: ToothPair, wanted: int | None) -> int:
-    if wanted is not None:
-        if not 1 <= wanted <= _MOST_PERIODS:
-            raise AnalysisError(f"--periods: got {wanted}, expected 1 to {_MOST_PERIODS}")
-        return wanted
-    wrong = (*teeth.first_flank.single_teeth, *teeth.second_flank.single_teeth)
-    return min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
 
 
 def _with_errors(
@@ -158,6 +155,21 @@ def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, cycle: Cy
     )
 
 
+def _common(model: Model, request: MeshRequest, clock: Clock) -> dict[str, Any]:
+    """What a result says of the mesh and the run, whatever the stiffness model."""
+    return {
+        "title": model.title,
+        "mesh": request.name,
+        "pinion": request.mesh.pinion.name,
+        "gear": request.mesh.gear.name,
+        "helices": request.helices,
+        "stagger": request.mesh.part.stagger,
+        "load": request.load,
+        "memory_bytes": largest_memory(),
+        "seconds": clock.total(),
+    }
+
+
 def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> MeshResult:
     """A mesh with another stiffness model: its curve, and the transmission error that follows from it at the load."""
     normal = request.load.normal_force_n / request.helices if request.load else None
@@ -167,19 +179,13 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
     clock.lap("stiffness")
     width = request.teeth.width if request.teeth else request.mesh.pinion.part.width or 0.0
     return MeshResult(
-        title=model.title,
-        mesh=request.name,
-        pinion=request.mesh.pinion.name,
-        gear=request.mesh.gear.name,
+        **_common(model, request, clock),
         stiffness_model=curve.model,
         preset=None,
         definition=curve.definition,
         body=curve.body,
-        helices=request.helices,
         face_width=width,
         base_helix_angle=curve.base_helix_angle,
-        stagger=request.mesh.part.stagger,
-        load=request.load,
         position=curve.position,
         event=np.zeros(len(curve.position), bool),
         stiffness=curve.transverse,
@@ -192,8 +198,6 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
         slice_errors=None,
         sampling_errors=None,
         dofs=0,
-        memory_bytes=largest_memory(),
-        seconds=clock.total(),
         loads=(),
         warnings=curve.warnings,
     )
@@ -220,19 +224,13 @@ def _result(
             "tilt: the shafts are rigid here; statics finds the misalignment over the face by their deflection"
         )
     return MeshResult(
-        title=model.title,
-        mesh=request.name,
-        pinion=request.mesh.pinion.name,
-        gear=request.mesh.gear.name,
+        **_common(model, request, clock),
         stiffness_model="tooth_fe",
         preset=teeth.fe.preset,
         definition="secant",
         body=found.problem.body,
-        helices=request.helices,
         face_width=teeth.width,
         base_helix_angle=teeth.pair.base_helix_angle,
-        stagger=request.mesh.part.stagger,
-        load=request.load,
         position=found.position,
         event=found.curve.event,
         stiffness=found.stiffness,
@@ -245,8 +243,6 @@ def _result(
         slice_errors=errors.slices if errors else None,
         sampling_errors=errors.sampling if errors else None,
         dofs=found.problem.unknowns,
-        memory_bytes=largest_memory(),
-        seconds=clock.total(),
         loads=loads,
         warnings=tuple(dict.fromkeys(notes)),
     )

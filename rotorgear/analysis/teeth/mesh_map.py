@@ -27,7 +27,7 @@ ORDERS = 3
 AXES = {"torque": "torque", "misalignment": "length"}
 # Places along the face at which the load per width is compared with its mean.
 _PLACES = 32
-# More points are a slip of the keyboard.
+# More points than these are taken for a typing error.
 _MOST_POINTS = 10_000
 
 
@@ -166,7 +166,7 @@ def mesh_map(
 
     Raises:
         AnalysisError: a mesh, load or setting that can't be; torques of both senses.
-        ConvergenceError: contact that does not come to rest.
+        ConvergenceError: the contact does not converge.
         MissingExtraError: scikit-fem is not installed.
     """
     require_positions(positions)
@@ -182,11 +182,14 @@ def mesh_map(
     figures = []
     for number, (i, j) in enumerate(points):
         told = part_of(progress, 0.3 + 0.7 * number / len(points), 0.3 + 0.7 * (number + 1) / len(points))
-        askew = replace(teeth, misalignment=float(misalignment[j]))
-        figures.append(mesh_figures(request, askew, float(load[i]), positions, told))
+        misaligned = replace(teeth, misalignment=float(misalignment[j]))
+        figures.append(mesh_figures(request, misaligned, float(load[i]), positions, told))
     clock.lap("teeth and contact")
     shape = (len(load), len(misalignment))
     notes = dict.fromkeys(note for point in figures for note in point.warnings)
+    missing = ["error estimates: `rotorgear mesh` without --over gives them for one point"]
+    if teeth.first_flank.single_teeth or teeth.second_flank.single_teeth:
+        missing.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
     return MeshMap(
         title=model.title,
         mesh=request.name,
@@ -205,13 +208,6 @@ def mesh_map(
         mean_stiffness=np.reshape([point.mean_stiffness for point in figures], shape),
         dofs=problem.unknowns,
         seconds=clock.total(),
-        left_out=_left_out(teeth.first_flank.single_teeth or teeth.second_flank.single_teeth),
+        left_out=tuple(missing),
         warnings=tuple(notes),
     )
-
-
-def _left_out(single: tuple[int, ...]) -> tuple[str, ...]:
-    said = ["error estimates: `rotorgear mesh` gives them for one point"]
-    if single:
-        said.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
-    return tuple(said)

@@ -6,7 +6,7 @@ The mean of the peak to peak over the operating points, weighted, is the smalles
 
 It has kinks and flat valleys, so that no derivatives are taken: differential evolution (Storn and Price, Journal of Global
 Optimization 11 (1997) 341) finds the valley, Nelder and Mead's simplex its bottom. Flanks beyond the pressure limit count with
-their excess, so that the search finds back. Then modifications are strewn evenly within their tolerances, by Sobol's points,
+their excess, so that the search finds back. Then modifications are varied evenly within their tolerances, by Sobol's points,
 for the band that holds 90 % of them. Only gaps change from one flank to the next: compliances of the teeth are computed once.
 """
 
@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.request import quantity
 from rotorgear.analysis.teeth.flank_variables import (
     ALONG_FACE,
     Variable,
@@ -46,7 +47,7 @@ from rotorgear.results.mesh_optimum import FlankVariable, MeshOptimum
 _TRIES = 60
 _EVOLUTION = 0.6
 _POPULATION = 6
-# A flank that exceeds the pressure limit by a share e counts as 1 + e times so many means of the model's flanks: worse than
+# A flank that exceeds the pressure limit by a share e counts as 1 + e times this many means of the model's flanks: worse than
 # any within the limit.
 _EXCESS = 100.0
 _BAND = (0.05, 0.95)
@@ -56,7 +57,7 @@ _SHARES = (0.05, 0.8)  # of the progress: after the teeth, and after the search
 
 
 class _EnoughError(Exception):
-    """So many flanks were tried as were asked for."""
+    """All flanks that were asked for are tried."""
 
 
 @dataclass
@@ -81,9 +82,9 @@ class _Search:
     def points(self, teeth: ToothPair) -> list[MeshFigures]:
         """Figures at all operating points, torque by torque."""
         return [
-            mesh_figures(self.request, replace(teeth, misalignment=float(askew)), float(torque), self.positions)
+            mesh_figures(self.request, replace(teeth, misalignment=float(misalignment)), float(torque), self.positions)
             for torque in self.torque
-            for askew in self.misalignment
+            for misalignment in self.misalignment
         ]
 
     def mean(self, points: Sequence[MeshFigures]) -> float:
@@ -97,7 +98,7 @@ class _Search:
         return max(0.0, max(point.largest_pressure for point in points) / self.limit - 1.0)
 
     def __call__(self, shares: np.ndarray) -> float:
-        """What is to become small, for variables (v,) as shares of their bounds."""
+        """The objective, for variables (v,) as shares of their bounds."""
         if self.tried >= self.most:
             raise _EnoughError
         shares = np.clip(shares, 0.0, 1.0)
@@ -160,7 +161,7 @@ def optimise_flanks(
 
     Raises:
         AnalysisError: a mesh, variable, bound or load that can't be; no flank within the pressure limit.
-        ConvergenceError: contact that does not come to rest.
+        ConvergenceError: the contact does not converge.
         MissingExtraError: scikit-fem is not installed.
     """
     from scipy.optimize import differential_evolution, minimize
@@ -326,10 +327,7 @@ def _tolerances(variables: Sequence[Variable], given: Mapping[str, object]) -> n
         if variable.text not in given:
             found.append(_TOLERANCE * (variable.high - variable.low))
             continue
-        try:
-            value = parse_quantity(given[variable.text], "length")
-        except QuantityError as error:
-            raise AnalysisError(f"tolerance {variable.text}: got {given[variable.text]!r}, expected {error}") from None
+        value = quantity(given[variable.text], "length", f"tolerance {variable.text}")
         if value < 0.0:
             raise AnalysisError(
                 f"tolerance {variable.text}: got {given[variable.text]!r}, expected one that is not negative"
@@ -345,10 +343,10 @@ def _band(
     from scipy.stats import qmc
 
     # Sobol's points are balanced for powers of two: the next one, of which the first ones are taken.
-    strewn = qmc.Sobol(len(values), seed=np.random.default_rng(12)).random_base2(max(1, int(np.ceil(np.log2(samples)))))
+    varied = qmc.Sobol(len(values), seed=np.random.default_rng(12)).random_base2(max(1, int(np.ceil(np.log2(samples)))))
     least = np.array([0.0 if variable.low >= 0.0 else -np.inf for variable in search.variables])
     found = []
-    for number, shares in enumerate(strewn[:samples]):
+    for number, shares in enumerate(varied[:samples]):
         changed = np.maximum(values + tolerance * (2.0 * shares - 1.0), least)
         points = search.points(with_values(search.teeth, search.variables, changed))
         found.append([search.mean(points), *(point.ste_peak_to_peak for point in points)])

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.analysis.common.request import quantity
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.cycle_positions import SampledCurves
 from rotorgear.gears.loaded.helix_cycles import HelixCycles
@@ -25,7 +26,7 @@ from rotorgear.model.layout.mesh_layout import MeshLayout, mirrored
 from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.quantity import nearest
 from rotorgear.results.mesh import MeshLoad
 
 
@@ -232,10 +233,7 @@ def _load(model: Model, mesh: MeshLayout, given: float | str | None) -> tuple[Me
     lever = mesh.pinion.base_radius
     cosine = math.cos(mesh.pinion.base_helix_angle)
     if given is not None:
-        try:
-            torque = parse_quantity(given, "torque")
-        except QuantityError as error:
-            raise AnalysisError(f"--torque: got {given!r}, expected {error}") from None
+        torque = quantity(given, "torque", "--torque")
         if torque == 0.0 or not math.isfinite(torque):
             raise AnalysisError(f"--torque: got {torque:g} N m, expected one that is not zero")
         force = abs(torque) / lever

@@ -1,4 +1,12 @@
-"""One integration of a local model: its histories and ledger, kept in memory and, if wished, streamed chunk by chunk."""
+"""One integration of a local model: its histories and ledger, kept in memory and, if wished, streamed chunk by chunk.
+
+Energy ledger of a transient: what comes in, what is stored, what is dissipated, and what integration made or lost.
+
+Sums over contacts are taken at every step, those over linear dampers at the records (trapezoidal rule), stored
+energies at some of them.
+
+What a transient records beside its contacts: bearing forces, motions of points, bearings and gears, as rows on q, v and a.
+"""
 
 from __future__ import annotations
 
@@ -6,15 +14,205 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
+import scipy.sparse as sp
 
-from rotorgear.analysis.transient.channels import Channels
-from rotorgear.analysis.transient.energy_ledger import LedgerBook
+from rotorgear.analysis.common.points import point_rows
 from rotorgear.errors import ConvergenceError
+from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.arguments import Gathered
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State
+from rotorgear.solvers.time.local_system import Fields, Integrator, LocalSystem, Observed, Records, State, local_values
 from rotorgear.solvers.time.run import Schedule, run
+from rotorgear.system.local import LocalModel
+
+_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Channels:
+    """p channels: value = Y_q q + Y_v v + Y_a a + Y_F F, with rows (p, n) and (p, m) by kind for those that have any."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: dict[str, tuple[np.ndarray, np.ndarray]]
+
+    def values(self, fields: Fields, F: np.ndarray) -> np.ndarray:
+        """Values (r, p) at the recorded steps with the local forces F (r, m)."""
+        values = np.zeros((len(F), len(self.names)))
+        for kind, (which, Y) in self.rows.items():
+            values[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
+        return values
+
+    def observed(self, n: int, m: int) -> Observed:
+        """The channels as rows that integrators gather statistics of at every step, for n dofs and m local forces."""
+        rows = {kind: np.zeros((len(self.names), m if kind == "F" else n)) for kind in "qvaF"}
+        for kind, (which, Y) in self.rows.items():
+            rows[kind][which] = Y
+        return Observed(**rows)
+
+
+def channels(local: LocalModel) -> Channels:
+    """Forces of bearings, motions of points, orbits of the shafts in their bearings, and fluctuations of the gears' speeds."""
+    system = local.system
+    every = _bearing_forces(local)
+    for name, point in system.model.points.items():
+        dof = DOF_NAMES.index(point.direction)
+        row = point_rows(system, (name,)).toarray()[0]
+        unit = "m" if dof < 3 else "rad"
+        for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
+            every.append((f"points.{name} {what}", unit + per, {kind: row}))
+
+    def motion(label: str, unit: str, kind: str, dof: int) -> None:
+        """A channel of one dof of a node, if it is free."""
+        row = np.asarray(system.dofs.transform[[dof], :].toarray()[0])
+        if row.any():
+            every.append((label, unit, {kind: row}))
+
+    for name in system.model.bearings:
+        node = system.nodes.at(*system.layout.place(f"bearings.{name}"))
+        for k, axis in enumerate("xy"):
+            motion(f"bearings.{name} displacement {axis}", "m", "q", 6 * node + k)
+    for name in system.model.gears:
+        # Of a gear whose teeth turn against its shaft, those of the teeth.
+        dofs = system.nodes.of_gear(name, *system.layout.place(f"gears.{name}"))
+        motion(f"gears.{name} speed fluctuation", "rad/s", "v", int(dofs[5]))
+    rows = {}
+    for kind in "qvaF":
+        which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)
+        if which.size:
+            rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
+    return Channels(tuple(item[0] for item in every), tuple(item[1] for item in every), rows)
+
+
+def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
+    """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
+    forces: list[tuple[str, str, dict[str, np.ndarray]]] = []
+    T = local.system.dofs.transform
+    beta = local.system.model.damping.rayleigh_beta
+    firsts = local.local.forces.first
+    rolling = {
+        part.part: (int(first), part.law.components)
+        for part, first in zip(local.parts, firsts, strict=False)
+        if part.part.startswith("bearings.")
+    }
+    for part, first in zip(local.parts, firsts, strict=False):
+        if part.part.startswith("nonlinear_elements."):
+            directions = local.system.model.nonlinear_elements[part.label].directions
+            for k, direction in enumerate(directions):
+                unit = "N" if direction in _AXES else "N m"
+                forces.append((f"{part.part} force {direction}", unit, {"F": np.eye(local.local.m)[int(first) + k]}))
+    for group in local.groups:
+        if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
+            continue
+        motions = T[group.dofs[0], :].toarray()
+        matrices = group.matrices
+        none = np.zeros((motions.shape[0],) * 2)
+        stiffness = sum((A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), none)
+        damping = none if matrices.damping is None else matrices.damping[0]
+        # C = beta K damps in every part that has a stiffness, so a bearing has its share; alpha M is of the masses.
+        if beta and matrices.stiffness is not None:
+            damping = damping + beta * matrices.stiffness[0]
+        for k, axis in enumerate(_AXES):
+            rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ motions}
+            if group.part in rolling and k < rolling[group.part][1]:
+                rows["F"] = np.eye(local.local.m)[rolling[group.part][0] + k]
+            if damping.any():
+                rows["v"] = damping[-6 + k] @ motions
+            if any(row.any() for row in rows.values()):
+                forces.append((f"{group.part} force {axis}", "N", rows))
+    return forces
+
+
+# Records of a chunk at which stored energies are evaluated.
+_SAMPLES = 4
+_ROUNDING = 1e-9
+
+
+@dataclass
+class LedgerBook:
+    """Collects the ledger chunk by chunk."""
+
+    system: LocalSystem
+    h: float
+    start: State
+    damping_rows: np.ndarray
+    table: list[np.ndarray] = field(default_factory=list)
+    _spent: float = 0.0
+    _last: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        s = self.system
+        K = sp.csc_array(0.5 * (s.K + s.K.T))
+        self._stiffness = K
+        # Powers v^T A w, w = v or q, of damping and of forces that circulate: A and unit rows over the dofs that it touches.
+        self._powers: list[tuple[np.ndarray, np.ndarray, str]] = []
+        for matrix, kind in ((0.5 * (s.D + s.D.T), "v"), (s.K - K, "q")):
+            A = sp.csc_array(matrix)
+            A.eliminate_zeros()
+            touched = np.unique(np.concatenate([A.tocoo().row, A.tocoo().col]))
+            if touched.size:
+                self._powers.append((A[touched][:, touched].toarray(), np.eye(s.n)[touched], kind))
+        self._load = s.load[None, :]
+        self._all = np.eye(s.n)
+        _, energy = local_values(s, self.start.q, self.start.v, 0.0)
+        contact = float(energy.reshape(-1, 4)[:, 0].sum())
+        kinetic, strain = self._stored(self.start.q[None], self.start.v[None])
+        self._stored_at_start = float(kinetic[0] + strain[0]) + contact
+        self._work_at_start = float(s.load @ self.start.q)
+        self.table.append(np.array([[0.0, kinetic[0], strain[0], contact, 0.0, 0.0, 0.0]]))
+
+    def _stored(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        s = self.system
+        return 0.5 * np.einsum("ri,ri->r", v, (s.M @ v.T).T), 0.5 * np.einsum("ri,ri->r", q, (self._stiffness @ q.T).T)
+
+    def add(self, records: Records) -> None:
+        """Take a chunk of records."""
+        if not records.t.size:
+            return
+        power = np.zeros(records.t.size)
+        for A, rows, kind in self._powers:
+            v = records.fields.rows("v", rows)
+            w = v if kind == "v" else records.fields.rows("q", rows)
+            power = power + np.einsum("ri,ri->r", v, w @ A.T)
+        if len(self.damping_rows):
+            power = power + np.sum(records.fields.rows("v", self.damping_rows) ** 2, axis=1)
+        t0, p0 = self._last or (0.0, power[0])
+        steps = np.diff(records.t, prepend=t0)
+        spent = self._spent + np.cumsum(steps * 0.5 * (power + np.concatenate([[p0], power[:-1]])))
+        self._spent, self._last = float(spent[-1]), (float(records.t[-1]), float(power[-1]))
+        which = np.unique(np.linspace(0, records.t.size - 1, _SAMPLES + 1).astype(int)[1:])
+        fields = records.fields.chosen(which)
+        q = fields.rows("q", self._all)
+        v = fields.rows("v", self._all)
+        kinetic, strain = self._stored(q, v)
+        laws = records.energy[which].sum(axis=1)
+        work = q @ self._load[0] - self._work_at_start
+        self.table.append(
+            np.column_stack(
+                [records.t[which], kinetic, strain, laws[:, 0], work, laws[:, 1], spent[which] + laws[:, 2]]
+            )
+        )
+
+    def sums(self) -> tuple[float, float, float]:
+        """What must be known to go on: energy spent in dampers, and time and power of the last record."""
+        return (self._spent, *(self._last or (0.0, 0.0)))
+
+    def set_sums(self, sums: np.ndarray) -> None:
+        """Go on after a chunk that was read."""
+        self._spent, self._last = float(sums[0]), (float(sums[1]), float(sums[2]))
+
+    def close(self) -> EnergyLedger:
+        """Return the ledger."""
+        t, kinetic, strain, contact, work, excitation, dissipated = np.vstack(self.table).T
+        stored = kinetic + strain + contact
+        numerical = stored - self._stored_at_start - work - excitation + dissipated
+        # Less than rounding of the energy that is stored is no exchange of energy.
+        terms = (work, excitation, dissipated, stored - self._stored_at_start, kinetic)
+        scale = max(_ROUNDING * float(np.abs(stored).max()), *(float(np.abs(x).max()) for x in terms))
+        share = float(np.abs(numerical).max()) / scale if scale > 0.0 else 0.0
+        return EnergyLedger(t, kinetic, strain, contact, work, excitation, dissipated, numerical, share)
+
 
 _STATE = ("q", "v", "a", "F", "before", "d", "sums", "last", "events")
 _TABLES = ("t", "d", "watched", "F", "values")
@@ -64,14 +262,22 @@ def integrate(
     """Integrate from the start state; a run that stops early keeps what it has and says why in `status`.
 
     Args:
-        frames: so many records at the end keep all displacements.
+        frames: number of records at the end that keep all displacements.
         settled: records before the statistics count; contact events and statistics are counted anew from there.
     """
     state = start.copy()
     found = Histories(state, schedule.h)
     book = LedgerBook(local, schedule.h, start, integrator.damping_rows(local, float(local.rotation.speeds[0])))
     for chunk in stream.begin(settings or {}) if stream else []:
-        _take(found, book, chunk)
+        found.parts.append({name: chunk[name] for name in _TABLES})
+        if chunk["ledger"].size:
+            book.table.append(chunk["ledger"])
+        book.set_sums(chunk["spent"])
+        state.step = int(chunk["state step"])
+        for name in _STATE:
+            setattr(state, name, chunk[f"state {name}"].copy())
+        state.gathered = Gathered(*(chunk[f"gathered {name}"].copy() for name in Gathered._fields))
+        state.inner = {name.removeprefix("inner "): x.copy() for name, x in chunk.items() if name.startswith("inner ")}
     boundary = settled * schedule.every
     watched = np.ascontiguousarray(local.watched_vectors.T)
 
@@ -131,17 +337,3 @@ def state_arrays(state: State) -> dict[str, np.ndarray]:
     gathered = {f"gathered {name}": value for name, value in state.gathered._asdict().items()}
     inner = {f"inner {name}": value for name, value in state.inner.items()}
     return {"state step": np.array(state.step), **plain, **gathered, **inner}
-
-
-def _take(found: Histories, book: LedgerBook, chunk: dict[str, np.ndarray]) -> None:
-    """Take over a chunk of an interrupted run, with the state at its end."""
-    found.parts.append({name: chunk[name] for name in _TABLES})
-    if chunk["ledger"].size:
-        book.table.append(chunk["ledger"])
-    book.set_sums(chunk["spent"])
-    state = found.state
-    state.step = int(chunk["state step"])
-    for name in _STATE:
-        setattr(state, name, chunk[f"state {name}"].copy())
-    state.gathered = Gathered(*(chunk[f"gathered {name}"].copy() for name in Gathered._fields))
-    state.inner = {name.removeprefix("inner "): x.copy() for name, x in chunk.items() if name.startswith("inner ")}

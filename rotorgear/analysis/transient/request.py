@@ -1,20 +1,30 @@
-"""What a transient was asked for, with its defaults: speed over time, duration, first step, method and the reason for it."""
+"""What a transient was asked for, with its defaults: speed over time, duration, first step, method and the reason for it.
+
+A transient made ready, and its runs: the one that counts, and those that choose the step and tell its error.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.common.request import check_whole
+from rotorgear.analysis.common.discretise import plan_in_time
+from rotorgear.analysis.common.request import check_whole, quantity, speed_or_operating
+from rotorgear.analysis.static.about_equilibrium import state_in_time
+from rotorgear.analysis.static.mean_state import springs_about_mean
+from rotorgear.analysis.transient.histories import Channels, Histories, Stream, channels, integrate
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.model import Model
-from rotorgear.quantity import QuantityError, parse_quantity
+from rotorgear.model.model import Model, model_hash
+from rotorgear.progress import Progress
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, forces_at_rest
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
-from rotorgear.system.system import System
+from rotorgear.solvers.time.run import Schedule
+from rotorgear.system.local import LocalModel, local_model
+from rotorgear.system.system import System, flow_system
 
 METHODS = ("auto", "newmark", "hht", "generalised-alpha", "exponential", "explicit")
 # Periods of the slowest mesh that settle, and as many that count.
@@ -40,23 +50,13 @@ class Grid:
     every: int
 
 
-def quantity(value: float | str, dimension: str, name: str) -> float:
-    """Parse a quantity; AnalysisError with the name of the argument where it is not one."""
-    try:
-        return parse_quantity(value, dimension)
-    except QuantityError as error:
-        raise AnalysisError(f"{name}: got {value!r}, expected {error}") from None
-
-
 def rotation_of(system: System, speed: float | str | Sequence[tuple[float, float | str]] | None) -> Rotation:
     """Speed of the reference over time from a number, a text, or pairs of time and speed."""
-    if speed is None:
-        given = system.model.operation.speed if system.model.operation else None
+    if speed is None or isinstance(speed, int | float | str):
+        given = speed_or_operating(speed, system.model)
         if given is None:
             raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
         return Rotation.constant(given)
-    if isinstance(speed, int | float | str):
-        return Rotation.constant(quantity(speed, "speed", "speed"))
     pairs = [(quantity(t, "time", "speed"), quantity(w, "speed", "speed")) for t, w in speed]
     return Rotation(np.array([t for t, _ in pairs]), np.array([w for _, w in pairs]))
 
@@ -170,7 +170,7 @@ def integrator_of(
     """Return the integrator and why it was chosen.
 
     Raises:
-        AnalysisError: unknown method, or one that can't serve this model.
+        AnalysisError: unknown method, or one that this model can't take.
     """
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
@@ -226,3 +226,109 @@ def _chosen(local: LocalSystem, steps: int, modal_ratio: float, modes: int | Non
     if exponential < newmark:
         return "exponential", f"constant speed, {local.n} dofs, and enough steps to pay for the complex modes"
     return "newmark", f"too few steps ({steps}) to pay for the complex modes of {local.n} dofs"
+
+
+@dataclass(frozen=True)
+class Task:
+    """A model made ready: local forces, channels, static state and forces, mesh frequencies in Hz, largest speed in rad/s."""
+
+    local: LocalModel
+    channels: Channels
+    rest: Equilibrium
+    rest_force: np.ndarray
+    frequencies: dict[str, float]
+    largest: float
+
+
+def prepare(
+    model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None
+) -> Task:
+    """Make a model ready.
+
+    Raises:
+        AnalysisError: nothing is free to move, or the speed makes no sense.
+    """
+    given = model if isinstance(model, System) else flow_system(model, plan_in_time(elements))
+    rotation = rotation_of(given, speed)
+    largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
+    direction = -1 if largest < 0.0 else 1
+    if direction != given.direction:
+        given = given.with_state(given.model.torque_flow(direction))
+    found = state_in_time(given.model, largest, direction)
+    # Forces and flanks of a given torque flow are kept where the equilibrium has none of the teeth; what else a given state has
+    # is linear about another equilibrium, and motions in time take the laws themselves.
+    keep = given.state.is_flow and not found.faces
+    given = given.with_state(replace(given.state, films=found.films) if keep else found)
+    if given.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
+    rest = equilibrium(local.local)
+    force = forces_at_rest(local.local, tuple(part.law.mean() for part in local.parts))
+    seen = channels(local)
+    observed = seen.observed(local.local.n, local.local.m)
+    local = replace(local, local=replace(local.local, observed=observed))
+    return Task(local, seen, rest, force, mesh_frequencies(given, largest), largest)
+
+
+def damped(model: Model | System, modal_damping: float | None) -> Model | System:
+    """The model with another damping ratio of its modes."""
+    if modal_damping is None:
+        return model
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
+    given = model.model if isinstance(model, System) else model
+    damping = given.damping.model_copy(update={"modal_ratio": modal_damping})
+    changed = given.model_copy(update={"damping": damping})
+    return flow_system(changed, model.plan).with_state(model.state) if isinstance(model, System) else changed
+
+
+def run_task(
+    task: Task,
+    integrator: Integrator,
+    grid: Grid,
+    progress: Progress,
+    *,
+    stream: Stream | None = None,
+    text: str = "",
+    key: str = "",
+    frames: int = 0,
+) -> Histories:
+    """Integrate over a grid; `text` names a run that only serves another one, which does not go on after an interruption."""
+    h = grid.spacing / grid.every
+    system = task.local.local
+    settings = {
+        "model": model_hash(task.local.system.model),
+        "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {system.watched_vectors.shape[1]} "
+        f"{integrator.name} {key} {system.rotation.times.tolist()} "
+        f"{system.rotation.speeds.tolist()}",
+    }
+
+    def told(fraction: float, step: str) -> None:
+        progress(fraction, f"{text}: {step}" if text else step)
+
+    found = integrate(
+        system,
+        integrator,
+        Schedule(h, grid.records * grid.every, grid.every),
+        state_at_rest(system, h, task.rest.q),
+        task.channels,
+        grid.settled,
+        stream=stream,
+        settings=settings,
+        frames=frames,
+        progress=told,
+    )
+    if text and found.status.startswith("interrupted"):
+        raise KeyboardInterrupt
+    return found
+
+
+def coarser(grid: Grid) -> tuple[Grid, float]:
+    """The grid of twice the step, or of three times where steps between records are three, and by how much its step is larger.
+
+    Where every step is recorded, every second record is missing.
+    """
+    if grid.every == 1:
+        return replace(grid, spacing=2.0 * grid.spacing, records=grid.records // 2, settled=grid.settled // 2), 2.0
+    every = grid.every // 2
+    return replace(grid, every=every), grid.every / every

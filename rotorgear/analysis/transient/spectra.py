@@ -16,7 +16,7 @@ from rotorgear.results.transient import TransientResult
 
 # Width of a line in bins between its half heights.
 _WIDTH = {"hann": 2.0, "flattop": 3.8, "boxcar": 1.2}
-# A line stands so much above the largest one's share to be listed, and above its surroundings.
+# A line is listed from this share of the largest one on.
 _FLOOR = 1e-4
 _MOST_LINES = 30
 

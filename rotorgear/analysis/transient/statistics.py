@@ -44,19 +44,18 @@ def of_meshes(found: Histories, task: Any) -> MotionStatistics:
     Forces of steps are means, half a step away from the end of the time: where one rises until there, its last record counts.
     """
     local = task.local.local
-    meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
-    columns = local.forces.first[meshes].astype(int)
+    meshes = task.local.meshes
+    columns = task.local.mesh_columns
     force = Statistics.of_steps(found.state.gathered).chosen(columns)
     last = found.table("F")[-1, columns]
     force = replace(force, least=np.minimum(force.least, last), largest=np.maximum(force.largest, last))
     moved = np.where(np.isfinite(found.state.extremes), found.state.extremes, np.nan)
-    transverse = np.array([task.local.parts[i].transverse for i in meshes])
     events = found.state.events[meshes] / (int(found.state.gathered.steps[0]) or np.nan)
     return MotionStatistics(
         force,
         events[:, :3],
         moved[local.m : local.m + local.watched_vectors.shape[1]],
-        moved[columns] / transverse[:, None],
+        moved[columns] / task.local.transverse[:, None],
         events[:, 3],
     )
 
@@ -70,7 +69,7 @@ def of_channels(found: Histories, task: Any) -> Statistics:
 def judged(found: Histories, task: Any) -> Judged:
     """The statistics of each contact, and the root mean square of each channel."""
     meshes = of_meshes(found, task)
-    labels = [part.label for part in task.local.parts if part.is_mesh]
+    labels = [task.local.parts[i].label for i in task.local.meshes]
     names = [f"{what} {label}" for label in labels for what in STATISTICS]
     force = meshes.force
     still = bool(labels) and bool(np.all(force.rms <= _STILL * np.hypot(force.mean, force.rms)))

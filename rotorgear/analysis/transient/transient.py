@@ -1,34 +1,57 @@
-"""Nonlinear transient: time response with backlash, k(t) and e(t), to a stated accuracy."""
+"""Nonlinear transient: time response with backlash, k(t) and e(t), to a stated accuracy.
+
+Mean contact forces against statics: over a settled time, forces balance the loads on every free motion of what they join.
+
+With R the motions that neither springs nor bearings hold (K R = 0, contacts left out), M-orthonormal, the equations of motion
+give in the mean over a time T
+
+    R^T B mean(F) = R^T f - R^T M [q'(T) - q'(0)]/T
+
+and the last term goes to zero as the run settles or T grows. So the part of the mean forces that R sees is that of statics.
+
+The step of a transient that reaches an accuracy, and what is said where none within reach does.
+"""
 
 from __future__ import annotations
 
 import time as clock
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
-from rotorgear.analysis.transient.balance import off_statics
-from rotorgear.analysis.transient.choice_of_step import Choice, fine_enough
 from rotorgear.analysis.transient.histories import Histories, Stream
-from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
-from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
+from rotorgear.analysis.transient.notes import adrift, transient_left_out, transient_warnings
+from rotorgear.analysis.transient.request import (
+    Grid,
+    Task,
+    base_frequencies,
+    coarser,
+    damped,
+    grid_of,
+    integrator_of,
+    prepare,
+    quantity,
+    run_task,
+    run_up,
+)
 from rotorgear.analysis.transient.statistics import Judged, judged, of_channels, of_meshes
-from rotorgear.analysis.transient.task import Task, coarser, damped, prepare, run_task
-from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
+from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.explicit import Explicit, check_length
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator
-from rotorgear.solvers.time.statistics import STATISTICS, gain
+from rotorgear.solvers.time.statistics import STATISTICS, Statistics, gain
 from rotorgear.system.system import System
 
 DEFAULT_ACCURACY = 0.01
@@ -158,14 +181,19 @@ def _result(
     system = task.local.system
     local = task.local.local
     of_run = judged(found, task)
-    errors, largest = _errors(of_run, found, others, task)
+    errors = np.full(of_run.value.size, np.nan)
+    largest = float("nan")
+    if others and all(run.status == "success" for run in (found, *(run for run, _ in others))):
+        # Each comparison tells errors of its own kind: of the step, or of the modes that are missing. They add up.
+        pairs = [of_run.errors(judged(run, task), factor) for run, factor in others]
+        errors = np.sum([error for error, _ in pairs], axis=0)
+        largest = float(sum(worst for _, worst in pairs))
     contacts = of_meshes(found, task)
     force = contacts.force
     seen = of_channels(found, task)
     t = found.table("t")
-    meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
-    columns = [int(local.forces.first[i]) for i in meshes]
-    transverse = np.array([task.local.parts[i].transverse for i in meshes])
+    meshes = task.local.meshes
+    columns = task.local.mesh_columns
     steps = int(found.state.gathered.steps[0])
     negative = found.state.gathered.sums[columns, 2] / (steps or np.nan)
     if found.ledger is None:
@@ -180,7 +208,7 @@ def _result(
         speed=local.rotation.speed(t),
         settle=grid.settled * grid.spacing,
         contact=tuple(task.local.parts[i].label for i in meshes),
-        approach=found.table("d")[:, columns] / transverse,
+        approach=found.table("d")[:, columns] / task.local.transverse,
         transmission_error=found.table("watched"),
         approach_range=contacts.approach,
         transmission_error_range=contacts.transmission_error,
@@ -249,11 +277,128 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
     return found
 
 
-def _errors(
-    of_run: Judged, found: Histories, others: list[tuple[Histories, float]], task: Task
-) -> tuple[np.ndarray, float]:
-    """Errors of the statistics: the sum of those that the comparisons tell, and the largest."""
-    if not others or any(run.status != "success" for run in (found, *(run for run, _ in others))):
-        return np.full(of_run.value.size, np.nan), float("nan")
-    pairs = [of_run.errors(judged(run, task), factor) for run, factor in others]
-    return np.sum([errors for errors, _ in pairs], axis=0), float(sum(largest for _, largest in pairs))
+# Share of the static force that a mean may be off beside its error: what is left of a start, and incomplete periods.
+_SHARE = 0.01
+_SEEN = 1e-9
+_ROUNDING = 1e-6
+
+
+def off_statics(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
+    """Sentences on contacts whose mean force differs from statics by more than its error (c,)."""
+    local = task.local.local
+    force = Statistics.of_steps(found.state.gathered).chosen(slice(0, local.m))
+    meshes = task.local.meshes
+    known = np.all(np.isfinite(task.rest_force)) and task.rest.converged
+    steady = local.rotation.is_constant and not adrift(task.rest, task.local)
+    if not (np.all(np.isfinite(force.mean)) and meshes and known and steady):
+        return ()
+    # Motions without strain don't depend on inertia: what has none gets what makes it no slower than the others.
+    mass = local.M.diagonal()
+    stiffness = local.stiffness_about.diagonal()
+    fastest = float(np.max(stiffness / np.where(mass > 0.0, mass, np.inf)))
+    light = np.where(mass > 0.0, 0.0, stiffness / (fastest or 1.0))
+    try:
+        A = free_motions(sp.csc_array(local.M + sp.diags_array(light)), local.K).T @ local.B.toarray()
+    except RotorgearError as refusal:
+        return (f"mean contact forces are not compared with statics: {refusal}",)
+    _, size, V = np.linalg.svd(A, full_matrices=False)
+    seen = V[size > _SEEN * size.max(initial=0.0)]
+    off = seen.T @ (seen @ (force.mean - task.rest_force))
+    # Of flanks that carry nothing, statics leave the rounding of what the others carry.
+    rounding = _ROUNDING * float(np.abs(task.rest_force).max(initial=0.0))
+    notes = []
+    for k, i in enumerate(meshes):
+        j = int(local.forces.first[i])
+        scale = float(np.hypot(force.mean[j], force.rms[j]))
+        allowed = max(_SHARE * max(abs(task.rest_force[j]), scale), float(np.nan_to_num(error[k])), rounding)
+        if abs(off[j]) > allowed:
+            notes.append(
+                f"{task.local.parts[i].label}: the mean contact force is {force.mean[j]:.4g} N, the loads need "
+                f"{force.mean[j] - off[j]:.4g} N by statics: not settled, no whole number of periods, or too large a step"
+            )
+    return tuple(notes)
+
+
+_HALVINGS = 6
+# The search gives up after this many halvings in a row that leave more than this share of the error.
+_FRUITLESS = 2
+_FALLS = 0.5
+# What a halving leaves of the error with second order.
+_SECOND_ORDER = 0.25
+# Most steps of a run that helps to choose the step.
+_PROBE = 60_000
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The grid with the step that was chosen, and the share of the error that a halving left; untried, that of second order."""
+
+    grid: Grid
+    left: float = _SECOND_ORDER
+
+    def remedy(self, error: float, wanted: float, frequency: float, method: str) -> str:
+        """What would reach the accuracy that this grid's run missed by its error.
+
+        `frequency` in Hz is that in whose periods steps are counted.
+        """
+        if self.left > _FALLS:
+            return "smaller steps do not lower it: the motion is chaotic, or the time too short for its statistics"
+        steps = self.grid.every / (self.grid.spacing * frequency) * (error / wanted) ** (-1.0 / np.log2(self.left))
+        if not np.isfinite(steps):
+            return "take more steps in a period of the fastest motion (--steps)"
+        many = f"{float(f'{steps:.2g}'):.0f} steps in a mesh period (--steps)"
+        return f"about {many} of the same method ({method}) would reach it, by how it falls"
+
+
+def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress) -> Choice:
+    """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step.
+
+    The search ends early where what halvings leave of the error says that those to come won't reach the accuracy.
+    """
+    records = min(grid.records, max(_PROBE // grid.every, 8))
+    probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
+    last = _probed(task, integrator, probe, progress)
+    errors: list[float] = []
+    for number in range(1, _HALVINGS + 1):
+        finer = replace(probe, every=2 * probe.every)
+        now = _probed(task, integrator, finer, progress)
+        errors.append(now.errors(last, gain(2.0))[1] if now and last else np.inf)
+        # What the finer of the two was found to be good for.
+        if errors[-1] <= accuracy:
+            # The coarser one is four times worse, and no better than its own comparison with twice its step, which is stated.
+            enough = False
+            if len(errors) == 1 and errors[-1] <= _SECOND_ORDER * accuracy:
+                double, ratio = coarser(probe)
+                other = _probed(task, integrator, double, progress)
+                enough = bool(last and other and last.errors(other, gain(ratio))[1] <= accuracy)
+            return Choice(replace(grid, every=probe.every if enough else finer.every), _left(errors))
+        if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
+            # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
+            return Choice(grid, 1.0)
+        probe = finer
+        last = now
+        # Each further halving may leave as much as the better one of the last two, or what second order leaves.
+        recent = np.array(errors[-3:])
+        hoped = _SECOND_ORDER
+        if not np.isfinite(errors[-1]):
+            hoped = 0.0
+        elif recent.size == 3 and np.all(np.isfinite(recent)):
+            hoped = float(min((recent[1:] / recent[:-1]).min(), _FALLS))
+        if number >= _FRUITLESS and errors[-1] * hoped ** (_HALVINGS - number) > accuracy:
+            break
+    return Choice(replace(grid, every=probe.every), _left(errors))
+
+
+def _left(errors: list[float]) -> float:
+    """Share of the error that a halving left in the mean over the last two."""
+    known = [error for error in errors[-3:] if np.isfinite(error)]
+    return float((known[-1] / known[0]) ** (1.0 / (len(known) - 1))) if len(known) > 1 else _SECOND_ORDER
+
+
+def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Judged | None:
+    """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
+    try:
+        found = run_task(task, integrator, grid, progress, text="choosing the step")
+    except ConvergenceError:
+        return None
+    return judged(found, task) if found.status == "success" else None

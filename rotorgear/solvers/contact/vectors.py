@@ -1,7 +1,7 @@
-"""Compiled: one number for each of LANES systems as a value of its own, so that loops over systems need no loops.
+"""Compiled: one number for each of BATCH systems as a value of its own, so that loops over systems need no loops.
 
-An array of lanes has the systems as its last axis, is contiguous, and is read and written row by row: row i are the LANES
-numbers from i LANES on, whatever the axes before. The values add, subtract and multiply with each other and with numbers;
+An array of lanes has the systems as its last axis, is contiguous, and is read and written row by row: row i are the BATCH
+numbers from i BATCH on, whatever the axes before. The values add, subtract and multiply with each other and with numbers;
 products may be fused with sums. They turn into vector instructions as wide as the machine has, without the checks for
 overlapping arrays that keep a compiler from doing so with loops.
 """
@@ -22,8 +22,8 @@ from numba.extending import intrinsic, lower_builtin, register_model
 
 from rotorgear.solvers.time.compiled import compiled
 
-LANES = 32
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+BATCH = 32
+_VECTOR = ir.VectorType(ir.DoubleType(), BATCH)
 _FLAGS = ("contract", "nsz")
 
 
@@ -31,7 +31,7 @@ class LaneType(types.Type):
     """Type of the values."""
 
     def __init__(self) -> None:
-        super().__init__(name=f"Lanes{LANES}")
+        super().__init__(name=f"Lanes{BATCH}")
 
 
 @register_model(LaneType)
@@ -48,7 +48,7 @@ lanes = LaneType()
 def _place(context: Any, builder: Any, array_type: Any, array: Any, row: Any) -> Any:
     """Pointer to a row of an array."""
     data = context.make_array(array_type)(context, builder, array).data
-    at = builder.gep(data, [builder.mul(row, ir.Constant(row.type, LANES))])
+    at = builder.gep(data, [builder.mul(row, ir.Constant(row.type, BATCH))])
     return builder.bitcast(at, _VECTOR.as_pointer())
 
 
@@ -56,7 +56,7 @@ def _splat(builder: Any, number: Any) -> Any:
     """A number for all lanes."""
     blank = ir.Constant(_VECTOR, ir.Undefined)
     first = builder.insert_element(blank, number, ir.Constant(ir.IntType(32), 0))
-    return builder.shuffle_vector(first, blank, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
+    return builder.shuffle_vector(first, blank, ir.Constant(ir.VectorType(ir.IntType(32), BATCH), [0] * BATCH))
 
 
 @intrinsic
@@ -185,10 +185,10 @@ def formula(function: Callable[..., Any]) -> Any:
 
 @compiled(inner=True)
 def work(rows):
-    """New rows (rows, LANES) of zeros that begin where vector registers read best."""
-    raw = np.zeros(rows * LANES + 8)
+    """New rows (rows, BATCH) of zeros that begin where vector registers read best."""
+    raw = np.zeros(rows * BATCH + 8)
     at = ((-raw.ctypes.data) % 64) // 8
-    return raw[at : at + rows * LANES].reshape(rows, LANES)
+    return raw[at : at + rows * BATCH].reshape(rows, BATCH)
 
 
 @compiled(inner=True)

@@ -46,7 +46,7 @@ class Equations(Protocol):
     def linear(self, y: np.ndarray, p: float) -> Linear:
         """r and its derivatives."""
 
-    def settle_on(self, p: float) -> None:
+    def prepare_at(self, p: float) -> None:
         """Make what is approximated between values exact at this one."""
 
 
@@ -80,7 +80,7 @@ def corrected(equations: Equations, guess: np.ndarray, normal: np.ndarray, tange
     for _ in range(4):
         z, done, iterations = _newton(equations, z, guess, normal)
         taken += iterations
-        equations.settle_on(float(z[-1]))
+        equations.prepare_at(float(z[-1]))
         if np.linalg.norm(equations.residual(z[:-1], float(z[-1]))) <= 10.0 * max(
             done, _ROUNDING * (1.0 + float(np.linalg.norm(z)))
         ):
@@ -150,7 +150,7 @@ def at_value(equations: Equations, y: np.ndarray, p: float, sense: float = 1.0) 
     """The solution next to a guess y at one value of the parameter."""
     normal = np.zeros(y.size + 1)
     normal[-1] = sense
-    equations.settle_on(p)
+    equations.prepare_at(p)
     return corrected(equations, np.append(y, p), normal, normal)
 
 

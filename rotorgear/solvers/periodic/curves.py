@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg as la
 
 from rotorgear.solvers.periodic.arclength import Linear
-from rotorgear.solvers.periodic.cycle import Cycle
+from rotorgear.solvers.periodic.samples import Cycle
 from rotorgear.solvers.periodic.shooting import ShootingOrbits
 from rotorgear.solvers.periodic.special import DOUBLING, Orbits
 
@@ -25,7 +25,7 @@ from rotorgear.solvers.periodic.special import DOUBLING, Orbits
 _ALONG = 1e-5
 _DIFFERENCE = 1e-6
 _VIEWS = 6
-# Linear equations behind a point of the curve that are made anew, and every so many later ones.
+# The linear equations of a point of the curve are made anew up to this iteration, and at every multiple of the next number.
 _ANEW = 1
 _RENEWED = 6
 
@@ -92,8 +92,8 @@ class SpecialCurve:
         rows = np.flatnonzero(np.round(marks))
         # Place of each unknown of y among those that A takes.
         self._places = rows[np.argsort(marks[rows])]
-        own.settle_on(p)
-        other.settle_on(p)
+        own.prepare_at(p)
+        other.prepare_at(p)
         U, _, Vt = np.linalg.svd(self._equations(y, p, q, smooth=True)[2])
         self._b = U[:, -1]
         self._c = Vt[-1]
@@ -114,7 +114,7 @@ class SpecialCurve:
         """The equations of the motions at q."""
         return self._view(q)[0]
 
-    def settle_on(self, q: float) -> None:
+    def prepare_at(self, q: float) -> None:
         """From the next point on."""
         self._settle = True
 
@@ -154,7 +154,7 @@ class SpecialCurve:
             p = float(z[-1])
             if self._settle:
                 for one in self._view(q):
-                    one.settle_on(p)
+                    one.prepare_at(p)
             r, J, A = self._equations(y, p, q, smooth=False)
             v, w, g = self._bordered(A)
             if self._settle:

@@ -74,7 +74,7 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
         V = np.asarray(found.vectors[:, found.rigid_count :])
         count = V.shape[1]
         highest = float(np.sqrt(max(w2[-1], 0.0)))
-        V = _free_of(np.hstack([V, plant.still.X]), R, M)
+        V = _free_of(np.hstack([V, plant.static.X]), R, M)
         complete = False
     if not R.shape[1] or not _tied(plant, R):
         return ModalBasis(V, complete, highest, count)
@@ -87,7 +87,7 @@ def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
     V = V / _sizes(V, M)
     for _ in range(2):
         V = V - R @ (R.T @ (M @ V))
-    # A vector of R leaves rounding, whose direction says nothing.
+    # A vector of R leaves rounding, whose direction is arbitrary.
     size = _sizes(V, M)
     own = size > _ROUNDING
     V = V[:, own] / size[own]

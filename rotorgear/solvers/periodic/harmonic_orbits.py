@@ -8,19 +8,19 @@ import numpy as np
 
 from rotorgear.solvers.periodic.arclength import Linear
 from rotorgear.solvers.periodic.balance import Grid, balance, coefficients, samples_of, synthesised, unknowns
-from rotorgear.solvers.periodic.cycle import Cycle
 from rotorgear.solvers.periodic.floquet import FINER, ModalBasis, basis_of, multipliers
 from rotorgear.solvers.periodic.plant import Plant, PlantAt
 from rotorgear.solvers.periodic.receptances import Receptances
+from rotorgear.solvers.periodic.samples import Cycle
 from rotorgear.solvers.periodic.switches import switches_of
 
 # Step of a difference in the parameter, as a share of the range.
 _DIFFERENCE = 1e-6
-# Modes up to so many base frequencies, and so many times the contact's own, belong to the map over a period.
+# Modes up to this multiple of the base frequency, and of the contact's own, belong to the map over a period.
 _BASES = 16.0
 _CONTACTS = 3.0
 # Values whose receptances are kept.
-_MOST_SETTLED = 2000
+_MOST_KEPT = 2000
 
 
 class HarmonicOrbits:
@@ -41,7 +41,7 @@ class HarmonicOrbits:
         self.scale = scale
         self._receptances = receptances or Receptances(grid.harmonics, grid.order)
         # Receptances (H + 1, m, m) at values settled on, and the watched displacements (H, p, m) of unit forces there.
-        self._settled: dict[float, tuple[np.ndarray, np.ndarray]] = {}
+        self._kept: dict[float, tuple[np.ndarray, np.ndarray]] = {}
         self._last: tuple[bytes, float, np.ndarray] | None = None
         self._basis: ModalBasis | None = None
         self._basis_of: Plant | None = None
@@ -51,21 +51,21 @@ class HarmonicOrbits:
         """Number of unknowns."""
         return (2 * self.grid.harmonics + 1) * self.scale.size
 
-    def settle_on(self, p: float) -> None:
+    def prepare_at(self, p: float) -> None:
         """Solve for the exact receptances at a value, unless they follow from those of its neighbours to rounding."""
-        if p in self._settled:
+        if p in self._kept:
             return
         plant = self._plant_at(p)
         own = self._receptances
-        if own.serves(plant, p):
+        if own.holds_for(plant, p):
             self._settle(p, own.near(plant), own.watched(plant))
         else:
             self._solve_at(p)
 
     def _settle(self, p: float, R: np.ndarray, watched: np.ndarray) -> None:
-        if len(self._settled) > _MOST_SETTLED:
-            self._settled.clear()
-        self._settled[p] = (R, watched)
+        if len(self._kept) > _MOST_KEPT:
+            self._kept.clear()
+        self._kept[p] = (R, watched)
 
     def _solve_at(self, p: float) -> np.ndarray:
         """Displacements (H, n, m) of unit local forces at a value."""
@@ -76,13 +76,13 @@ class HarmonicOrbits:
 
     def _receptance(self, p: float) -> np.ndarray:
         if not self._receptances.begun:
-            self.settle_on(p)
-        if p in self._settled:
-            return self._settled[p][0]
+            self.prepare_at(p)
+        if p in self._kept:
+            return self._kept[p][0]
         return self._receptances.near(self._plant_at(p))
 
     def along(self, plant_at: PlantAt) -> HarmonicOrbits:
-        """The same for other plants of the same structure: receptances between exact ones serve both."""
+        """The same for other plants of the same structure: both share receptances between exact ones."""
         return HarmonicOrbits(plant_at, self.grid, self.scale, self._receptances)
 
     def coefficients(self, y: np.ndarray) -> np.ndarray:
@@ -117,7 +117,7 @@ class HarmonicOrbits:
 
     def _rest(self, c: np.ndarray, plant: Plant, R: np.ndarray, u: np.ndarray) -> np.ndarray:
         rest = c - np.einsum("hab,hb->ha", R, u)
-        rest[0] -= plant.still.d
+        rest[0] -= plant.static.d
         return unknowns(rest / self.scale)
 
     def linear(self, y: np.ndarray, p: float) -> Linear:
@@ -159,7 +159,7 @@ class HarmonicOrbits:
         if self._basis is None or self._basis_of is None or self._basis_of.K is not plant.K:
             contact = plant.forces.reference_stiffness
             root = np.sqrt(np.maximum(np.diag(contact), 0.0))
-            R = plant.still.R * root * root[:, None]
+            R = plant.static.R * root * root[:, None]
             alive = np.linalg.eigvalsh(0.5 * (R + R.T)).max(initial=0.0)
             w = self.grid.frequency(plant.speed)
             own = _contact_frequency(plant) if alive > 0.0 else 0.0
@@ -180,16 +180,16 @@ class HarmonicOrbits:
         return multipliers(plant, self._modes(plant), fine, switches)
 
     def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> Cycle:
-        """A period of a solution; `settle_on` has been at its value."""
+        """A period of a solution; `prepare_at` has been at its value."""
         plant = self._plant_at(p)
         grid = self.grid
         c = self.coefficients(y)
-        self.settle_on(p)
-        moved = self._settled[p][1]
+        self.prepare_at(p)
+        moved = self._kept[p][1]
         u = balance(c, plant, grid, tangents=False).u
         W = plant.watched
         seen = np.zeros((grid.harmonics + 1, W.shape[1]), complex)
-        seen[0] = W.T @ (plant.still.q + plant.still.X @ u[0].real)
+        seen[0] = W.T @ (plant.static.q + plant.static.X @ u[0].real)
         if W.shape[1]:
             seen[1:] = np.einsum("hpm,hm->hp", moved, u[1:])
         N = instants or grid.instants
@@ -206,8 +206,8 @@ class HarmonicOrbits:
         u = balance(self.coefficients(y), plant, self.grid, tangents=False).u
         q = np.einsum("hnm,hm->hn", X, u[1:])
         turn = 1j * self.grid.frequency(plant.speed) * np.arange(1, len(u))[:, None]
-        still = plant.still.q + plant.still.X @ u[0].real
-        return still + q.real.sum(axis=0), (turn * q).real.sum(axis=0)
+        static = plant.static.q + plant.static.X @ u[0].real
+        return static + q.real.sum(axis=0), (turn * q).real.sum(axis=0)
 
     def finer(self) -> HarmonicOrbits:
         """The same motions with twice the harmonics and instants."""
@@ -251,7 +251,7 @@ def static_displacements(plant: Plant) -> np.ndarray:
         reference_stiffness=plant.forces.reference_stiffness,
         reference_damping=plant.forces.reference_damping,
     )
-    still = plant.still
+    static = plant.static
 
     def tangent(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         from rotorgear.solvers.periodic.balance import pairs
@@ -263,8 +263,8 @@ def static_displacements(plant: Plant) -> np.ndarray:
         K[a, b] = now.Kd[0, flat]
         return now.F[0], K
 
-    found = local_equilibrium(still.d, still.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
-    return np.asarray(found.d if found.converged else still.d)
+    found = local_equilibrium(static.d, static.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
+    return np.asarray(found.d if found.converged else static.d)
 
 
 def _contact_frequency(plant: Plant) -> float:

@@ -101,7 +101,7 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
                         total += A[stage, s] * k[s, i, c]
                     trial[i, c] = x[i, c] + step * total
             rates(small, laws, tau + node[stage] * step, trial, work, k[stage])
-        # The last stage stands at the end of the step: first same as last.
+        # The last stage is at the end of the step: first same as last.
         error = 0.0
         for c in range(columns):
             size = 1.0
@@ -127,7 +127,7 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
                 set_row(kept, number, x[:, 0])
                 number += 1
             factor = 5.0 if scaled < 1e-4 else min(5.0, 0.9 * scaled ** (-0.2))
-            # A step cut short by an output says nothing against the length before it.
+            # A step that an output cuts short is no reason to shorten the next one.
             h = max(h, factor * step) if last else factor * step
         else:
             h = step * max(0.1, 0.9 * scaled ** (-0.2))

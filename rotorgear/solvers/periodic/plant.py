@@ -60,17 +60,17 @@ class Plant:
             in_comparable_units(self.free, self.K, self.M),
             left_null_space(self.K, self.M, self.free),
         )
-        return Elastic(self.M, self.free, solver, _settled(self.M, self.free, solver, self.B))
+        return Elastic(self.M, self.free, solver, _static(self.M, self.free, solver, self.B))
 
     @cached_property
-    def still(self) -> Still:
+    def static(self) -> StaticSolution:
         """What follows from stiffness and load."""
         own = self.elastic
-        q = _settled(own.M, own.free, own.solver, self.load)
-        return Still(own.X, q, self.B.T @ own.X, self.B.T @ q)
+        q = _static(own.M, own.free, own.solver, self.load)
+        return StaticSolution(own.X, q, self.B.T @ own.X, self.B.T @ q)
 
 
-def _settled(M: sp.csc_array, free: np.ndarray, solver: SupportedSolver, f: np.ndarray) -> np.ndarray:
+def _static(M: sp.csc_array, free: np.ndarray, solver: SupportedSolver, f: np.ndarray) -> np.ndarray:
     """Static displacements of forces f without the motions `free`."""
     q = solver.solve(f - M @ (free @ (free.T @ f)))
     return np.asarray(q - free @ (free.T @ (M @ q)))
@@ -87,7 +87,7 @@ class Elastic:
 
 
 @dataclass(frozen=True)
-class Still:
+class StaticSolution:
     """Static displacements X (n, m) of unit local forces and q (n,) of the load, and what of them the laws see."""
 
     X: np.ndarray
@@ -130,7 +130,7 @@ class Plants:
             # Cached properties of the same arguments.
             plant.__dict__["elastic"] = old.elastic
             if np.array_equal(old.load, system.load):
-                plant.__dict__["still"] = old.still
+                plant.__dict__["static"] = old.static
         self._last = plant
         return plant
 

@@ -23,7 +23,7 @@ from rotorgear.solvers.sparse.factor import factor_general
 # Systems up to this size are solved densely, and those whose damping is full to such a share, as modal damping makes it.
 _DENSE = 60
 _FULL = 0.3
-# Exact solutions that the rational form is made of, and its change without the oldest one that it may serve with.
+# Exact solutions that the rational form is made of, and the largest change without the oldest of them up to which it is used.
 _KEPT = 3
 _ENOUGH = 1e-10
 # How far beyond these solutions, over what they span, it is worth a try.
@@ -100,7 +100,7 @@ class Receptances:
         self._small.clear()
         return X
 
-    def serves(self, plant: Plant, place: float) -> bool:
+    def holds_for(self, plant: Plant, place: float) -> bool:
         """Whether the rational form is exact but for rounding at a plant: without its oldest solution it gives the same."""
         # Bases cost as much as half a solution: not where a form of so few can't reach.
         low = min(self._places, default=0.0)
@@ -164,7 +164,7 @@ class Receptances:
 
     def with_static(self, plant: Plant, R: np.ndarray) -> np.ndarray:
         """R of h = 0 ... H from those from 1 on."""
-        return np.concatenate([plant.still.R[None].astype(complex), R])
+        return np.concatenate([plant.static.R[None].astype(complex), R])
 
 
 def _full(A: sp.csc_array) -> bool:

@@ -1,4 +1,4 @@
-"""A motion at many instants and what the laws answer there."""
+"""A motion at many instants, the answers of the laws there, and one period of it as results read it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from rotorgear.solvers.time.arguments import Answer, Instants, Laws
 from rotorgear.solvers.time.local_forces import LocalForces
+from rotorgear.solvers.time.statistics import PeriodicCurve
 
 
 @dataclass(frozen=True)
@@ -58,3 +59,26 @@ def answered(t: np.ndarray, d: np.ndarray, v: np.ndarray, forces: LocalForces, s
 def sampled(d: np.ndarray, v: np.ndarray, forces: LocalForces, speed: float, period: float) -> Samples:
     """The answers at equally spaced instants of a period."""
     return answered(period * np.arange(len(d)) / len(d), d, v, forces, speed)
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A period T in s; the motion at N instants; watched displacements and rates (N, p); coefficients of d and F (H + 1, m)."""
+
+    period: float
+    at: Samples
+    watched: np.ndarray
+    watched_rate: np.ndarray
+    displacement: np.ndarray
+    force: np.ndarray
+
+    def extremes(self) -> np.ndarray:
+        """Least and largest local displacements (m, 2), by the cubics through values and rates."""
+        return PeriodicCurve(self.period, self.at.d, self.at.v).extremes()
+
+
+def spectrum(values: np.ndarray, harmonics: int) -> np.ndarray:
+    """Coefficients c (H + 1, m) of values (N, m), d(t) = Re sum c_h e^{i h w t}."""
+    c = np.fft.rfft(values, axis=0)[: harmonics + 1] / len(values)
+    c[1:] *= 2.0
+    return np.asarray(c)

@@ -13,11 +13,10 @@ import numpy as np
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.periodic.arclength import Linear
-from rotorgear.solvers.periodic.cycle import Cycle, spectrum
 from rotorgear.solvers.periodic.floquet import basis_of, sorted_by_size
 from rotorgear.solvers.periodic.harmonic_orbits import static_displacements
 from rotorgear.solvers.periodic.plant import Plant, PlantAt
-from rotorgear.solvers.periodic.samples import answered, arguments_of
+from rotorgear.solvers.periodic.samples import Cycle, answered, arguments_of, spectrum
 
 # Relative tolerance of the flow and its derivative, and the one that tells its error: no less, for rounding.
 TOLERANCE = 1e-11
@@ -111,7 +110,7 @@ class ShootingOrbits:
         """Number of unknowns."""
         return 2 * int(self._V.shape[1])
 
-    def settle_on(self, p: float) -> None:
+    def prepare_at(self, p: float) -> None:
         """Nothing is approximated."""
 
     def _small(self, plant: Plant) -> Small:
@@ -238,11 +237,11 @@ class ShootingOrbits:
     def start(self, p: float) -> np.ndarray:
         """Unknowns of the static state at a value."""
         plant = self._plant_at(p)
-        still = plant.still
+        static = plant.static
         d = static_displacements(plant)
         # q = q0 + X u with u from the laws at d.
-        u = np.linalg.lstsq(still.R, d - still.d, rcond=None)[0]
-        return self.from_motion(still.q + still.X @ u, np.zeros(len(still.q)), plant)
+        u = np.linalg.lstsq(static.R, d - static.d, rcond=None)[0]
+        return self.from_motion(static.q + static.X @ u, np.zeros(len(static.q)), plant)
 
     def from_motion(self, q: np.ndarray, v: np.ndarray, plant: Plant) -> np.ndarray:
         """Unknowns of displacements and velocities (n,) at the begin of a period."""

@@ -29,7 +29,7 @@ except ImportError:
 
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 # Places in the package whose functions are compiled, or compiled into others.
-COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/lanes", "solvers/periodic")
+COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/batch", "solvers/periodic")
 # Number of such folders that are kept: other checkouts or versions may be in use at the same time.
 MOST_VERSIONS = 12
 # Sums may be reordered so that they vectorise; NaN and infinity keep their meaning, so that divergence is seen.

@@ -81,7 +81,7 @@ class LocalLaw(Protocol):
         """Whether the energy it stores is the potential of its elastic force."""
 
     def columns(self, speed: float = 1.0) -> tuple[Any, ...]:
-        """How each displacement acts in a sweep: a `Column` of solvers/lanes/columns.py each."""
+        """How each displacement acts in a sweep: a `Column` of solvers/batch/columns.py each."""
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
         """What varies in the columns, (r, k, 4)."""

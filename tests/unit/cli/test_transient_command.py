@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rotorgear as rg
-from rotorgear.analysis.transient.choice_of_step import Choice
+from rotorgear.analysis.transient.transient import Choice
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
 from tests.paths import MODELS

@@ -8,7 +8,7 @@ import pytest
 from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
-from rotorgear.solvers.lanes.columns import ERROR, PUSH, SLOPE, STIFFNESS
+from rotorgear.solvers.batch.columns import ERROR, PUSH, SLOPE, STIFFNESS
 
 ANGLES = np.linspace(0.0, 0.7, 9)
 

@@ -32,7 +32,7 @@ class Cubic:
     def linear(self, y: np.ndarray, p: float) -> Linear:
         return Linear(self.residual(y, p), np.diag(self.a - 3.0 * y**2), np.ones(1))
 
-    def settle_on(self, p: float) -> None:
+    def prepare_at(self, p: float) -> None:
         pass
 
     def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
@@ -91,7 +91,7 @@ class Apart:
     def linear(self, y: np.ndarray, p: float) -> Linear:
         return Linear(self.residual(y, p), np.diag(p - 0.6 - (y - 1.0) ** 2 - 2.0 * y * (y - 1.0)), y)
 
-    def settle_on(self, p: float) -> None:
+    def prepare_at(self, p: float) -> None:
         pass
 
     def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:

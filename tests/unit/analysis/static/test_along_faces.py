@@ -15,7 +15,7 @@ from rotorgear.analysis.static.along_faces import equilibrate_along_faces
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.transient.notes import transient_left_out
-from rotorgear.analysis.transient.task import prepare
+from rotorgear.analysis.transient.request import prepare
 from rotorgear.errors import ModelError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.stiffness.face_load import uniform_line

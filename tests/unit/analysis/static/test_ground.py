@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.transient.task import prepare
+from rotorgear.analysis.transient.request import prepare
 from tests.models import lumped_gear
 from tests.paths import MODELS
 

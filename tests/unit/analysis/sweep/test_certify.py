@@ -10,7 +10,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.sweep.certify import Judge, judged
-from rotorgear.solvers.lanes.lanes import Orbit
+from rotorgear.solvers.batch.run_block import Orbit
 
 JUDGE = Judge(tolerance=0.02, chaos=0.02)
 POINT: Any = SimpleNamespace(system=SimpleNamespace(turns=1, columns=SimpleNamespace(counted=np.array([True]))))

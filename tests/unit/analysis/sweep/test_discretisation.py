@@ -9,7 +9,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.sweep import point as sweep_point
 from rotorgear.analysis.sweep.point import PointMaker
-from rotorgear.analysis.transient.task import prepare
+from rotorgear.analysis.transient.request import prepare
 from rotorgear.errors import AnalysisError
 from tests.paths import ROOT
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rotorgear.analysis.sweep.multipliers import SURE, Certificate, certificate
-from rotorgear.solvers.lanes.lanes import Start
+from rotorgear.solvers.batch.run_block import Start
 
 SIZE = 1e-5
 # The orbit passes here; the last displacement and velocity are those of a rigid motion.

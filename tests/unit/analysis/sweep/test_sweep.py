@@ -15,12 +15,11 @@ from rotorgear.analysis.sweep.axes import Family, axis_of, axis_of_option, numbe
 from rotorgear.analysis.sweep.blocks import waves
 from rotorgear.analysis.sweep.classify import classify, exponents, period_of
 from rotorgear.analysis.sweep.notes import notes
-from rotorgear.analysis.sweep.period import common_period
-from rotorgear.analysis.sweep.point import ready, still, table_of
+from rotorgear.analysis.sweep.point import at_rest, common_period, ready, table_of
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
-from rotorgear.solvers.lanes.small_system import SmallSystem
+from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.small_system import SmallSystem
 from tests.paths import ROOT
 from validation.benchmarks.sweep_speed import apart
 from validation.oscillators import integrate, local_system
@@ -63,7 +62,7 @@ def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
     K = np.diag([0.4, 0.3, 0.5])
     M = np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 1.5]])
     local = local_system(M, 0.05 * M, K, [0.1, -0.05, 0.0], [(law, [[1.0], [-1.0], [0.2]])], speed=speed)
-    point = ready(still(local, [Fraction(1)], ("m",)), speed)
+    point = ready(at_rest(local, [Fraction(1)], ("m",)), speed)
     steps = 800
     periods = 6
     start = Start(point.system.rest, np.zeros(n))
@@ -81,7 +80,7 @@ def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
 def test_the_method_is_of_order_four_where_teeth_do_not_part() -> None:
     law = MeshContact(1.0, 0.05, gap="bilateral", order=1.0, stiffness_cos=(0.2,), error_sin=(0.1,))
     local = local_system(np.eye(1), [[0.05]], [[0.4]], [0.1], [(law, [[1.0]])], speed=0.9)
-    point = ready(still(local, [Fraction(1)], ("m",)), 0.9)
+    point = ready(at_rest(local, [Fraction(1)], ("m",)), 0.9)
 
     def end(steps: int) -> float:
         start = Start(np.zeros(1), np.zeros(1))
@@ -98,7 +97,7 @@ def damped_chain(rigid: bool) -> SmallSystem:
     local = local_system(
         np.diag([1.0, 3.0]), 0.04 * np.diag([1.0, 3.0]), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=0.8
     )
-    return ready(still(local, [Fraction(1)], ("m",)), 0.8).system
+    return ready(at_rest(local, [Fraction(1)], ("m",)), 0.8).system
 
 
 @pytest.mark.parametrize("rigid", [False, True])
@@ -481,7 +480,7 @@ def test_a_slow_motion_does_not_look_like_growth() -> None:
     law = MeshContact(1.0, 0.1, gap="bilateral", order=1.0, stiffness_cos=(0.2,), error_cos=(0.1,))
     K = [[1e-6, 0.0], [0.0, 1e-6]]
     local = local_system(np.diag([1.0, 1.0]), np.zeros((2, 2)), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=1.0)
-    point = ready(still(local, [Fraction(1)], ("m",)), 1.0)
+    point = ready(at_rest(local, [Fraction(1)], ("m",)), 1.0)
     start = Start(point.system.rest, np.zeros(2))
     orbit = run_block([point.system], [start], [table_of(point, 100)], Plan(100, 60, 60, 1))[0]
     assert abs(exponents(orbit.growth, 1.0)[0][0]) < 1e-4

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.point import ready, still, table_of
+from rotorgear.analysis.sweep.point import at_rest, ready, table_of
 from rotorgear.forces.ball_bearing import BallBearing
 from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.torque_curve import TorqueCurve
-from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
-from rotorgear.solvers.lanes.own_laws import not_held, own_laws
+from rotorgear.solvers.batch.own_laws import not_held, own_laws
+from rotorgear.solvers.batch.run_block import Plan, Start, run_block
 from rotorgear.solvers.time.local_system import LocalSystem
 from tests.models import spur_pair
 from validation.oscillators import integrate, local_system
@@ -55,7 +55,7 @@ def with_law(law: ForceLaw, columns: Any, speed: float = 0.9, contact: MeshConta
 )
 def test_laws_follow_newmark_in_small_steps(law: ForceLaw, columns: np.ndarray) -> None:
     local = with_law(law, columns)
-    point = ready(still(local, [Fraction(1)], ("m",)), 0.9)
+    point = ready(at_rest(local, [Fraction(1)], ("m",)), 0.9)
     steps = 800
     periods = 5
     start = Start(point.system.rest, np.zeros(5))
@@ -76,7 +76,7 @@ def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pyte
     local = with_law(smooth, np.array([[0.0], [1.0], [0.0], [-1.0], [0.0]]), contact=smooth)
 
     def orbit(own: bool) -> Any:
-        known = still(local, [Fraction(1)], ("m", "n"))
+        known = at_rest(local, [Fraction(1)], ("m", "n"))
         if own:
             monkeypatch.setattr(MeshContact, "columns", ForceLaw.columns)
         points = [ready(known, speed) for speed in (0.8, 0.9, 1.1)]
@@ -156,7 +156,7 @@ def test_a_torque_that_steps_is_refused() -> None:
 def test_a_bearing_without_stiffness_at_rest_still_holds_its_shaft() -> None:
     law = BallBearing(9, 12e-3, 60e-3, clearance=8e-6, order=0.4)
     local = local_system(np.eye(5), 0.05 * np.eye(5), np.zeros((5, 5)), np.zeros(5), [(law, np.eye(5))], speed=0.9)
-    rest = still(local, [Fraction(1)], ()).rest
+    rest = at_rest(local, [Fraction(1)], ()).rest
     own = own_laws(local.forces, np.ones(5, dtype=bool), 1.0)
     assert rest.free.shape == (5, 5)
     # The balls answer when the shaft moves far enough, whichever way.
@@ -233,7 +233,7 @@ def test_the_drive_carries_only_what_nothing_else_brakes_and_friction_pushes(
     across[columns[0], 2] = across[columns[1], 2] = 1.0
     across[:, :1] = mesh
     local = local_system(np.eye(4), C, K, [0.1, -0.1, 0.0, 0.0], [(MESH, mesh), (law, across)], speed=0.9)
-    system = ready(still(local, [Fraction(1)], ("m",)), 0.9).system
+    system = ready(at_rest(local, [Fraction(1)], ("m",)), 0.9).system
     assert len(system.rigid) == 1
     assert len(system.carried) == carried
     if carried:

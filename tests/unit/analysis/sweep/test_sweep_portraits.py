@@ -1,4 +1,4 @@
-"""Portraits: trajectories through the Poincare points of the lanes, spectra against closed forms, the points that get one."""
+"""Portraits: trajectories through the Poincare points of the batch, spectra against closed forms, the points that get one."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.sweep.axes import Axis
-from rotorgear.analysis.sweep.point import Point, PointMaker, ready, still, table_of
-from rotorgear.analysis.sweep.portrait import length_of, spread, wanted_points
+from rotorgear.analysis.sweep.point import Point, PointMaker, at_rest, ready, table_of
 from rotorgear.analysis.sweep.request import start_of
+from rotorgear.analysis.sweep.sweep import length_of, spread, wanted_points
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.ball_bearing import BallBearing
 from rotorgear.forces.law import ForceLaw
@@ -22,8 +22,8 @@ from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.torque_curve import TorqueCurve
 from rotorgear.results.portrait import DISPLACEMENT, FORCE, Portraits
-from rotorgear.solvers.lanes.lanes import Plan, run_block
-from rotorgear.solvers.lanes.trajectory import recorded
+from rotorgear.solvers.batch.run_block import Plan, run_block
+from rotorgear.solvers.batch.trajectory import trajectory
 from tests.unit.analysis.sweep.test_sweep import PAIR, TWO_STAGES
 from tests.unit.analysis.sweep.test_sweep_laws import MESH, with_law
 from validation.oscillators import local_system
@@ -34,7 +34,7 @@ def point_of(law: MeshContact, speed: float = 0.9) -> Point:
     M = np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 1.5]])
     K = np.diag([0.4, 0.3, 0.5])
     local = local_system(M, 0.05 * M, K, [0.1, -0.05, 0.0], [(law, [[1.0], [-1.0], [0.2]])], speed=speed)
-    return ready(still(local, [Fraction(1)], ("m",)), speed)
+    return ready(at_rest(local, [Fraction(1)], ("m",)), speed)
 
 
 LAWS = {
@@ -50,12 +50,12 @@ LAWS = {
 
 
 def check(point: Point, steps: int, periods: int, settle: int = 20) -> None:
-    """The trajectory begins with the last Poincare point and goes through those of the lanes, with their forces."""
+    """The trajectory begins with the last Poincare point and goes through those of the batch, with their forces."""
     table = table_of(point, steps)
     system = point.system
     settled = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle, 2, 0))[0]
     whole = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle + 2, periods, 0))[0]
-    path = recorded(system, settled.end, table, steps, periods + 1, begun=settle + 2)
+    path = trajectory(system, settled.end, table, steps, periods + 1, begun=settle + 2)
     mesh = system.columns.counted
     length = system.turns * steps
     size = np.abs(path[:, mesh]).max(axis=0)
@@ -67,7 +67,7 @@ def check(point: Point, steps: int, periods: int, settle: int = 20) -> None:
     assert counted[:, :, FORCE].max(axis=0) == pytest.approx(force[:, 9], rel=1e-11)
     assert counted[:, :, FORCE].sum(axis=0) == pytest.approx(force[:, 10], rel=1e-11)
     assert np.array_equal(
-        recorded(system, settled.end, table, steps, 1, 10, settle + 2)[:, mesh], path[:length:10, mesh]
+        trajectory(system, settled.end, table, steps, 1, 10, settle + 2)[:, mesh], path[:length:10, mesh]
     )
 
 
@@ -87,7 +87,7 @@ def test_the_trajectory_passes_through_the_poincare_points_of_the_lanes(name: st
 )
 def test_it_does_so_with_laws_that_lanes_run_one_at_a_time(law: ForceLaw, columns: np.ndarray) -> None:
     # Rolling elements do not repeat with the mesh: what they do depends on the periods that went by.
-    check(ready(still(with_law(law, columns), [Fraction(1)], ("m",)), 0.9), 100, 4)
+    check(ready(at_rest(with_law(law, columns), [Fraction(1)], ("m",)), 0.9), 100, 4)
 
 
 def test_it_does_so_over_a_common_period_of_two_meshes() -> None:
@@ -99,7 +99,7 @@ def test_it_does_so_over_a_common_period_of_two_meshes() -> None:
 def test_records_that_miss_the_poincare_points_are_refused() -> None:
     point = point_of(LAWS["undamped"])
     with pytest.raises(ValueError, match="no multiple of 7"):
-        recorded(point.system, start_of(point.system, 0, 1), table_of(point, 100), 100, 1, 7)
+        trajectory(point.system, start_of(point.system, 0, 1), table_of(point, 100), 100, 1, 7)
 
 
 def test_a_linear_forced_oscillator_has_the_lines_of_its_closed_form() -> None:
@@ -111,10 +111,10 @@ def test_a_linear_forced_oscillator_has_the_lines_of_its_closed_form() -> None:
     e = np.array([0.02, 0.005])
     law = MeshContact(k, c, 0.0, gap="bilateral", order=1.0, error_sin=tuple(e))
     local = local_system(np.eye(1), [[damping]], [[ground]], [0.1], [(law, [[1.0]])], speed=w)
-    point = ready(still(local, [Fraction(1)], ("m",)), w)
+    point = ready(at_rest(local, [Fraction(1)], ("m",)), w)
     table = table_of(point, 400)
     settled = run_block([point.system], [start_of(point.system, 0, 1)], [table], Plan(400, 80, 1, 0))[0]
-    path = recorded(point.system, settled.end, table, 400, 16)
+    path = trajectory(point.system, settled.end, table, 400, 16)
     own = Portraits(*(np.array(x) for x in ([0], [0], [1], [16], [400])), path[None, None])
     order, _ = own.spectrum(0)
     for n, error in enumerate(e, 1):

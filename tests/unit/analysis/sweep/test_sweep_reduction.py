@@ -13,14 +13,13 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import blocks as sweep_blocks
 from rotorgear.analysis.sweep.classify import exponents
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
-from rotorgear.analysis.sweep.probes import probes_for, rates
-from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
+from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted, probes_for, rates
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.model.model import Model
-from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
-from rotorgear.solvers.lanes.small_system import small_system
+from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.small_system import small_system
 from tests.models import pair_file, spur_pair
 from tests.paths import ROOT
 from tests.unit.analysis.sweep.test_sweep_laws import ROLLING
@@ -51,7 +50,7 @@ def large(model: Model, elements: int, modes: int | None = None) -> Large:
 
 def reduced_point(model: Model, elements: int, wanted: Wanted) -> Point:
     own = large(model, elements, 1)
-    return ready_reduced(own, Reducer(wanted)([own], lambda size, error: None)[0])
+    return ready_reduced(own, *Reducer(wanted)([own], lambda size, error: None)[0])
 
 
 def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_contact(tmp_path: Path) -> None:
@@ -154,9 +153,9 @@ def test_all_exponents_of_a_reduced_system_sum_up_to_its_trace(tmp_path: Path) -
 def test_rigid_motions_stay_free_and_the_drive_turns_without_strain(tmp_path: Path) -> None:
     own = large(pair(tmp_path), 6)
     found = Reducer(Wanted(0.01))([own], lambda size, error: None)[0]
-    rest = ready_reduced(own, found)
+    rest = ready_reduced(own, *found)
     whole = own.local
-    free = found.shapes.vectors @ np.linalg.solve(rest.system.root.T, rest.system.rigid.T)
+    free = found[1].vectors @ np.linalg.solve(rest.system.root.T, rest.system.rigid.T)
     assert free.shape[1] == 1
     K = whole.stiffness_about
     assert np.abs(K @ free).max() < 1e-11 * (abs(K) @ np.abs(free)).max()
@@ -166,7 +165,7 @@ def test_continuation_goes_on_in_another_basis(tmp_path: Path) -> None:
     soft = large(pair(tmp_path), 4)
     stiff = large(pair(tmp_path, MESH.replace("8e8", "9e8")), 4)
     reducer = Reducer(Wanted(0.001))
-    first, second = (ready_reduced(own, reducer([own], lambda n, e: None)[0]).system for own in (soft, stiff))
+    first, second = (ready_reduced(own, *reducer([own], lambda n, e: None)[0]).system for own in (soft, stiff))
     start = Start(first.rest, 1e-3 * first.rest)
     moved = start.moved(first, second)
     assert second.B.T @ moved.z == pytest.approx(first.B.T @ start.z, rel=5e-3)
@@ -227,8 +226,8 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
     with pytest.raises(AnalysisError, match="no inertia"):
         small_system(light.local, None, None, None, 1.0, 1)  # type: ignore[arg-type]
     found = Reducer(Wanted(0.01))([light], lambda size, error: None)[0]
-    assert found.local.n < own.local.n
-    assert ready_reduced(light, found).static_force == pytest.approx(ready_reduced(own, found).static_force, rel=1e-6)
+    assert found[0].n < own.local.n
+    assert ready_reduced(light, *found).static_force == pytest.approx(ready_reduced(own, *found).static_force, rel=1e-6)
 
 
 def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -> None:

@@ -70,7 +70,7 @@ def test_a_pair_ten_thousand_times_stiffer_carries_its_load_in_steps_that_its_ac
 def test_an_accuracy_out_of_reach_ends_the_search_and_names_the_steps_that_reach_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("rotorgear.analysis.transient.choice_of_step._HALVINGS", 2)
+    monkeypatch.setattr("rotorgear.analysis.transient.transient._HALVINGS", 2)
     how = {"time": 0.005, "discard": 0.0, "method": "newmark"}
     missed = rg.transient(spur_pair(), accuracy=1e-5, **how)
     assert missed.error_estimate > 1e-4

@@ -1,4 +1,4 @@
-"""Compiled: tangents of the lanes where a contact opens or closes within a step.
+"""Compiled: tangents of a batch where a contact opens or closes within a step.
 
 The tangent stiffness of a contact jumps there, and so does its damper. What the stages of the Runge-Kutta method make of that
 depends on where they happen to fall: exponents are then good to the first order in the step only. With the share theta of the
@@ -15,16 +15,16 @@ Leine and Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems 
 
 from __future__ import annotations
 
+from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, PRESCRIBED, SLOPE, STIFFNESS
+from rotorgear.solvers.batch.kernel_parts import CLEARANCE, GROWTH, IN_D, IN_V, PER_DEPTH, C, K, of
 from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, PENETRATION
-from rotorgear.solvers.contact.vectors import LANES, get, put
-from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, PRESCRIBED, SLOPE, STIFFNESS
-from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, FOUND, GROWTH, IN_D, IN_V, PER_DEPTH, C, K
+from rotorgear.solvers.contact.vectors import BATCH, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 # Of each column at the begin of a step: approach, its rate, whether it holds (0 or 1), shares of its stiffness there and in the
 # middle.
 X, RATE, HOLDS, BEGIN, MIDDLE = range(5)
-ENTERED = 5
+STEP_BEGIN = 5
 # Of each tangent and column: tau and its rate at the begin; velocity and displacement by the spring, and by the damper.
 TAU, TAU_RATE, BY_K, FAR_BY_K, BY_C, FAR_BY_C = range(6)
 DONE = 6
@@ -35,38 +35,38 @@ _WEIGHTS = (0.2777777777777778, 0.4444444444444444, 0.2777777777777778)
 
 
 @compiled(inner=True)
-def parts(kind, mode):
+def tangent_jumps(kind, mode):
     """Whether a column of this kind and mode has a tangent that jumps."""
     return kind not in (BILATERAL, PRESCRIBED, OWN_LAW) and mode != PENETRATION
 
 
 @compiled(fast=True, inner=True)
-def enter(columns, table, d, found, entered):
-    """Keep the begin of a step: d (2 m, w), found (m, 4, w) and table (m, 4, w) of its first stage; entered (m, 5, w)."""
+def keep_begin(columns, table, d, found, step_begin):
+    """Keep the begin of a step: d (2 m, w), found (m, 4, w) and table (m, 4, w) of its first stage; step_begin (m, 5, w)."""
     for j in range(columns.kind.size):
-        if not parts(columns.kind[j], columns.mode[j]):
+        if not tangent_jumps(columns.kind[j], columns.mode[j]):
             continue
-        for w in range(LANES):
-            entered[j, X, w] = d[2 * j, w] - table[j, ERROR, w]
-            entered[j, RATE, w] = d[2 * j + 1, w] - table[j, SLOPE, w]
-            entered[j, HOLDS, w] = 1.0 if found[j, IN_D, w] - found[j, GROWTH, w] > 0.0 else 0.0
-            entered[j, BEGIN, w] = table[j, STIFFNESS, w]
+        for w in range(BATCH):
+            step_begin[j, X, w] = d[2 * j, w] - table[j, ERROR, w]
+            step_begin[j, RATE, w] = d[2 * j + 1, w] - table[j, SLOPE, w]
+            step_begin[j, HOLDS, w] = 1.0 if found[j, IN_D, w] - found[j, GROWTH, w] > 0.0 else 0.0
+            step_begin[j, BEGIN, w] = table[j, STIFFNESS, w]
 
 
 @compiled(fast=True, inner=True)
-def do(number, h, columns, found, d, done, at):
+def add_contacts(number, h, columns, found, d, done, at):
     """Add what a stage's contacts do along a tangent with d (2 m, w) to rows of done from `at` on, DONE a column."""
     weight = (h / 6.0) if number in (0, 3) else (h / 3.0)
     far = 0.0 if number == 3 else h * h / 6.0
     for j in range(columns.kind.size):
-        if not parts(columns.kind[j], columns.mode[j]):
+        if not tangent_jumps(columns.kind[j], columns.mode[j]):
             continue
         row = at + DONE * j
         tau = get(d, 2 * j)
         rate = get(d, 2 * j + 1)
-        growth = get(found, FOUND * j + GROWTH) * tau
-        spring = get(found, FOUND * j + IN_D) * tau - growth
-        damper = get(found, FOUND * j + IN_V) * rate + growth
+        growth = of(found, j, GROWTH) * tau
+        spring = of(found, j, IN_D) * tau - growth
+        damper = of(found, j, IN_V) * rate + growth
         if number == 0:
             put(done, row + TAU, tau)
             put(done, row + TAU_RATE, rate)
@@ -129,17 +129,17 @@ def switch_at(h, x0, rate0, x1, rate1, k, c, clearance, per_depth, clamped):
 
 
 @compiled(fast=True, inner=True)
-def ended(columns, table, d, entered, ends):
-    """Whether any column of any lane has switched in a step that ends with d (2 m, w); ends (m, 4, w) are filled.
+def keep_end(columns, table, d, step_begin, ends):
+    """Whether any column of any system has switched in a step that ends with d (2 m, w); ends (m, 4, w) are filled.
 
     They are the approach, its rate, what holding has changed by (-1, 0, 1), and the share of the stiffness.
     """
     changed = 0.0
     for j in range(columns.kind.size):
-        if not parts(columns.kind[j], columns.mode[j]):
+        if not tangent_jumps(columns.kind[j], columns.mode[j]):
             continue
         clamped = columns.mode[j] != ADHESIVE
-        for w in range(LANES):
+        for w in range(BATCH):
             x = d[2 * j, w] - table[j, ERROR, w]
             rate = d[2 * j + 1, w] - table[j, SLOPE, w]
             values = columns.values
@@ -152,7 +152,7 @@ def ended(columns, table, d, entered, ends):
                 values[j, PER_DEPTH, w],
                 clamped,
             )
-            change = (1.0 if now else 0.0) - entered[j, HOLDS, w]
+            change = (1.0 if now else 0.0) - step_begin[j, HOLDS, w]
             ends[j, 0, w] = x
             ends[j, 1, w] = rate
             ends[j, 2, w] = change
@@ -162,19 +162,19 @@ def ended(columns, table, d, entered, ends):
 
 
 @compiled(inner=True)
-def correct(h, columns, entered, ends, pushes, d, done, tangents, ahead, at):
+def correct(h, columns, step_begin, ends, per_force, d, done, tangents, ahead, at):
     """Put one tangent right: its d (2 m, w) at the end, done from row `at` on; its state (2 n, w) and that of the stage to come.
 
-    pushes: -B by rows.
+    per_force: -B by rows.
     """
     n = tangents.shape[0] // 2
     values = columns.values
     for j in range(columns.kind.size):
-        if not parts(columns.kind[j], columns.mode[j]):
+        if not tangent_jumps(columns.kind[j], columns.mode[j]):
             continue
         clamped = columns.mode[j] != ADHESIVE
         row = at + DONE * j
-        for w in range(LANES):
+        for w in range(BATCH):
             change = ends[j, 2, w]
             if change == 0.0:
                 continue
@@ -182,12 +182,12 @@ def correct(h, columns, entered, ends, pushes, d, done, tangents, ahead, at):
             c = values[j, C, w]
             clearance = values[j, CLEARANCE, w]
             per_depth = values[j, PER_DEPTH, w]
-            x0 = entered[j, X, w]
-            rate0 = h * entered[j, RATE, w]
+            x0 = step_begin[j, X, w]
+            rate0 = h * step_begin[j, RATE, w]
             x1 = ends[j, 0, w]
             rate1 = h * ends[j, 1, w]
-            k0 = k * entered[j, BEGIN, w]
-            km = k * entered[j, MIDDLE, w]
+            k0 = k * step_begin[j, BEGIN, w]
+            km = k * step_begin[j, MIDDLE, w]
             k1 = k * ends[j, 3, w]
             theta = switch_at(h, x0, rate0 / h, x1, rate1 / h, km, c, clearance, per_depth, clamped)
             closes = change > 0.0
@@ -227,11 +227,11 @@ def correct(h, columns, entered, ends, pushes, d, done, tangents, ahead, at):
                 velocity += c * by_c - done[row + BY_C, w]
             displacement += c * far_by_c - done[row + FAR_BY_C, w]
             for i in range(n):
-                for p in range(pushes.first[i], pushes.first[i + 1]):
-                    if pushes.column[p] == j:
-                        moved = tangents[i, w] + pushes.value[p, w] * displacement
+                for p in range(per_force.first[i], per_force.first[i + 1]):
+                    if per_force.column[p] == j:
+                        moved = tangents[i, w] + per_force.value[p, w] * displacement
                         tangents[i, w] = moved
                         ahead[i, w] = moved
-                        moved = tangents[n + i, w] + pushes.value[p, w] * velocity
+                        moved = tangents[n + i, w] + per_force.value[p, w] * velocity
                         tangents[n + i, w] = moved
                         ahead[n + i, w] = moved

@@ -12,10 +12,10 @@ which the sides meet are put right. Tangents follow with s(x_1) T_1 - s(x_0) T_0
 
 from __future__ import annotations
 
+from rotorgear.solvers.batch.columns import CLOSING, ERROR, NEVER
+from rotorgear.solvers.batch.kernel_parts import CLEARANCE, DEPTH, GROWTH, IN_V, PER_DEPTH, C, of, put_of
 from rotorgear.solvers.contact.gap_contact import momentum
 from rotorgear.solvers.contact.vectors import fill, formula, get, put, where_positive
-from rotorgear.solvers.lanes.columns import CLOSING, ERROR, NEVER, TABLE_ROWS
-from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, DEPTH, FOUND, GROWTH, IN_V, PER_DEPTH, VALUES, C
 from rotorgear.solvers.time.compiled import compiled
 
 # What is kept of the end of a step: G, s, the side that touches, and whether the impulse of the step is put right (> 0).
@@ -28,16 +28,16 @@ def keep_start(values, x, kept):
     """Fill kept (m, 4, w) at the start of a run from the approach x (m, w)."""
     for j in range(x.shape[0]):
         end = momentum(*regularised(values, j), get(x, j))
-        put(kept, KEPT * j + INTEGRAL, end.integral)
-        put(kept, KEPT * j + SHARE, end.share)
-        put(kept, KEPT * j + SIDE, end.side)
-        put(kept, KEPT * j + RIGHT, end.side)
+        put_of(kept, j, INTEGRAL, end.integral)
+        put_of(kept, j, SHARE, end.share)
+        put_of(kept, j, SIDE, end.side)
+        put_of(kept, j, RIGHT, end.side)
 
 
 @formula
 def regularised(values, j):
     """Clearance, depth of regularisation and 1/depth of a column."""
-    return get(values, VALUES * j + CLEARANCE), get(values, VALUES * j + DEPTH), get(values, VALUES * j + PER_DEPTH)
+    return of(values, j, CLEARANCE), of(values, j, DEPTH), of(values, j, PER_DEPTH)
 
 
 @compiled(fast=True, inner=True)
@@ -52,17 +52,17 @@ def missing(jumps, values, table, d, used, kept, impulse):
         if jumps[j] == NEVER:
             put(impulse, j, none)
             continue
-        end = momentum(*regularised(values, j), get(d, 2 * j) - get(table, TABLE_ROWS * j + ERROR))
-        rest = get(values, VALUES * j + C) * (end.integral - get(kept, KEPT * j + INTEGRAL)) - get(used, j)
+        end = momentum(*regularised(values, j), get(d, 2 * j) - of(table, j, ERROR))
+        rest = of(values, j, C) * (end.integral - of(kept, j, INTEGRAL)) - get(used, j)
         right = one
         if jumps[j] == CLOSING:
-            right = end.side * (end.side - get(kept, KEPT * j + SIDE))
+            right = end.side * (end.side - of(kept, j, SIDE))
         put(impulse, j, where_positive(right, rest, none))
         put(used, j, none)
-        put(kept, KEPT * j + INTEGRAL, end.integral)
-        put(kept, KEPT * j + SHARE, end.share)
-        put(kept, KEPT * j + SIDE, end.side)
-        put(kept, KEPT * j + RIGHT, right)
+        put_of(kept, j, INTEGRAL, end.integral)
+        put_of(kept, j, SHARE, end.share)
+        put_of(kept, j, SIDE, end.side)
+        put_of(kept, j, RIGHT, right)
 
 
 @compiled(fast=True, inner=True)
@@ -74,10 +74,10 @@ def add_used_along(jumps, weight, found, kept, d, used, start, at, first):
     for j in range(jumps.size):
         if jumps[j] == NEVER:
             continue
-        now = get(found, FOUND * j + IN_V) * get(d, 2 * j + 1) + get(found, FOUND * j + GROWTH) * get(d, 2 * j)
+        now = of(found, j, IN_V) * get(d, 2 * j + 1) + of(found, j, GROWTH) * get(d, 2 * j)
         if first:
             put(used, at + j, weight * now)
-            put(start, at + j, get(kept, KEPT * j + SHARE) * get(d, 2 * j))
+            put(start, at + j, of(kept, j, SHARE) * get(d, 2 * j))
         else:
             put(used, at + j, get(used, at + j) + weight * now)
 
@@ -90,13 +90,13 @@ def missing_along(jumps, values, kept, d, used, start, at, impulse):
         if jumps[j] == NEVER:
             put(impulse, j, none)
             continue
-        change = get(kept, KEPT * j + SHARE) * get(d, 2 * j) - get(start, at + j)
-        rest = get(values, VALUES * j + C) * change - get(used, at + j)
-        put(impulse, j, where_positive(get(kept, KEPT * j + RIGHT), rest, none))
+        change = of(kept, j, SHARE) * get(d, 2 * j) - get(start, at + j)
+        rest = of(values, j, C) * change - get(used, at + j)
+        put(impulse, j, where_positive(of(kept, j, RIGHT), rest, none))
 
 
 @compiled(fast=True, inner=True)
-def push(matrix, impulse, stage, at, state, state_at):
+def add_impulses(matrix, impulse, stage, at, state, state_at):
     """Add impulses to the velocities, by rows of -B, in the stage to come (rows from `at` on) and the state."""
     first = matrix.first
     column = matrix.column

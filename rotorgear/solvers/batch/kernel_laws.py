@@ -1,24 +1,24 @@
 """Compiled: force laws that run one system at a time: rolling elements, friction, torques over speed.
 
-The laws work in SI: displacements of the lanes are metres already, velocities are multiplied and forces divided by powers of the
-rad/s of the fastest excitation, which the lanes use as unit of time. There are as many rows of parameters as systems; the lanes
-after those repeat the last one, and take its answers over.
+The laws work in SI: displacements of the systems are metres already, velocities are multiplied and forces divided by powers of
+the rad/s of the fastest excitation, whose radian is the unit of time of a batch. There are as many rows of parameters as systems;
+what fills the batch up after those repeats the last one, and takes its answers over.
 """
 
 from __future__ import annotations
 
-from rotorgear.solvers.contact.vectors import LANES, fill, get, put
-from rotorgear.solvers.lanes.kernel_parts import SIDE
+from rotorgear.solvers.batch.kernel_parts import SIDE
+from rotorgear.solvers.contact.vectors import BATCH, fill, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 _MOST_COMPONENTS = 6
-# Numbers that a law with so many components c needs beside its state: d, v, F, both tangents and four energies.
+# Numbers that a law with this many components c needs beside its state: d, v, F, both tangents and four energies.
 SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
 
 
 @compiled(inner=True)
 def schedule_laws(laws, time, state):
-    """Fill the state (w, s) of the laws in the lanes of all systems at a time in radians of the fastest excitation."""
+    """Fill the state (w, s) of the laws of all systems at a time in radians of the fastest excitation."""
     schedules = laws.schedules
     kind = laws.kind
     parameters = laws.parameters
@@ -85,7 +85,7 @@ def force_laws(laws, state, d, F, found, tangents, work):
             for j in range(k * k):
                 tangents[0, block_first[i] + j, w] = in_d[j] / (rate * rate)
                 tangents[1, block_first[i] + j, w] = in_v[j] / rate
-        for w in range(systems, LANES):
+        for w in range(systems, BATCH):
             for j in range(k):
                 F[a + j, w] = F[a + j, systems - 1]
                 found[a + j, SIDE, w] = found[a + j, SIDE, systems - 1]

@@ -1,4 +1,4 @@
-"""A small system with local forces as the lane kernels take it: mass one, time in radians of the fastest excitation.
+"""A small system with local forces as the kernels of a batch take it: mass one, time in radians of the fastest excitation.
 
 z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = B^T q
 """
@@ -11,8 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.lanes.columns import Columns
-from rotorgear.solvers.lanes.own_laws import OwnLaws, Taken, not_held, steepest, taken_at_rest
+from rotorgear.solvers.batch.columns import Columns
+from rotorgear.solvers.batch.own_laws import OwnLaws, Taken, not_held, steepest, taken_at_rest
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.solvers.time.local_system import LocalSystem
 

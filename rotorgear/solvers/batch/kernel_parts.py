@@ -1,14 +1,14 @@
-"""Compiled: what the lanes of kernel.py do in one stage of a step: tables, sparse products, contacts, statistics.
+"""Compiled: what the batch of kernel.py does in one stage of a step: tables, sparse products, contacts, statistics.
 
-Every array has the systems as its last axis of LANES entries, and is read by rows of lanes (solvers/contact/vectors.py).
+Every array has the systems as its last axis of BATCH entries, and is read by rows (solvers/contact/vectors.py).
 """
 
 from __future__ import annotations
 
+from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
 from rotorgear.solvers.contact.gap_contact import gap_contact, tied_contact
 from rotorgear.solvers.contact.kinds import BILATERAL
 from rotorgear.solvers.contact.vectors import fill, formula, get, larger, put, smaller, where_positive
-from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS, TABLE_ROWS
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import schedule_all
 
@@ -25,6 +25,24 @@ FRONT, APART, BACK, LOSSES, D_MIN, D_MAX, X_MIN, X_MAX, F_MIN, F_MAX, F_SUM, F_S
 SUMS = 14
 
 
+@formula
+def of(array, j, which):
+    """One of the quantities of column j, a number for each system, from an array (m, quantities, w)."""
+    return get(array, array.shape[1] * j + which)
+
+
+@formula
+def put_of(array, j, which, value):
+    """Write one of the quantities of column j."""
+    put(array, array.shape[1] * j + which, value)
+
+
+@formula
+def add_to(array, j, which, value):
+    """Add to one of the quantities of column j."""
+    put_of(array, j, which, of(array, j, which) + value)
+
+
 @compiled
 def tabulate(laws, angles, out):
     """State (r, s) of all laws at angles (r,) of the reference, at unit speed."""
@@ -34,18 +52,18 @@ def tabulate(laws, angles, out):
 
 @compiled(fast=True, inner=True)
 def read_table(table, at, out):
-    """One time of the tables for all lanes, out (m, 4, w); a table with one lane serves them all."""
+    """One time of the tables for all systems, out (m, 4, w); a table of one system is that of all."""
     for j in range(out.shape[0]):
         for f in range(table.shape[2]):
             if table.shape[3] == 1:
-                put(out, TABLE_ROWS * j + f, fill(table[at, j, f, 0]))
+                put_of(out, j, f, fill(table[at, j, f, 0]))
             else:
-                put(out, TABLE_ROWS * j + f, get(table, (at * out.shape[0] + j) * table.shape[2] + f))
+                put_of(out, j, f, get(table, (at * out.shape[0] + j) * table.shape[2] + f))
 
 
 @compiled(fast=True, inner=True)
 def product(matrix, x, out):
-    """out = A x for a sparse matrix with values by lane."""
+    """out = A x for a sparse matrix with values by system."""
     first = matrix.first
     column = matrix.column
     value = matrix.value
@@ -69,31 +87,31 @@ def contacts(columns, table, weight, d, F, found, used):
     for j in range(kind.size):
         if kind[j] == OWN_LAW:
             continue
-        prescribed = get(values, VALUES * j + FORCE) * get(table, TABLE_ROWS * j + PUSH)
+        prescribed = of(values, j, FORCE) * of(table, j, PUSH)
         if kind[j] == PRESCRIBED:
             put(F, j, prescribed)
             continue
-        k = get(values, VALUES * j + K) * get(table, TABLE_ROWS * j + STIFFNESS)
-        c = get(values, VALUES * j + C)
-        x = get(d, 2 * j) - get(table, TABLE_ROWS * j + ERROR)
-        rate = get(d, 2 * j + 1) - get(table, TABLE_ROWS * j + SLOPE)
+        k = of(values, j, K) * of(table, j, STIFFNESS)
+        c = of(values, j, C)
+        x = get(d, 2 * j) - of(table, j, ERROR)
+        rate = get(d, 2 * j + 1) - of(table, j, SLOPE)
         if kind[j] == BILATERAL:
-            leave(tied_contact(k, c, x, rate), prescribed, weight, rate, j, F, found, used)
+            write_contact(tied_contact(k, c, x, rate), prescribed, weight, rate, j, F, found, used)
         else:
-            clearance = get(values, VALUES * j + CLEARANCE)
-            per_depth = get(values, VALUES * j + PER_DEPTH)
+            clearance = of(values, j, CLEARANCE)
+            per_depth = of(values, j, PER_DEPTH)
             now = gap_contact(mode[j], k, c, clearance, per_depth, x, rate)
-            leave(now, prescribed, weight, rate, j, F, found, used)
+            write_contact(now, prescribed, weight, rate, j, F, found, used)
 
 
 @formula
-def leave(now, prescribed, weight, rate, j, F, found, used):
+def write_contact(now, prescribed, weight, rate, j, F, found, used):
     """Write what column j's contact found, and a force prescribed beside it; see `contacts`."""
     put(F, j, now.force + prescribed)
-    put(found, FOUND * j + IN_D, now.stiffness)
-    put(found, FOUND * j + IN_V, now.damping)
-    put(found, FOUND * j + SIDE, now.side)
-    put(found, FOUND * j + GROWTH, now.growth)
+    put_of(found, j, IN_D, now.stiffness)
+    put_of(found, j, IN_V, now.damping)
+    put_of(found, j, SIDE, now.side)
+    put_of(found, j, GROWTH, now.growth)
     put(used, j, get(used, j) + weight * (now.damping * rate))
 
 
@@ -114,25 +132,24 @@ def count(counted, table, d, F, found, last, sums):
     for j in range(counted.size):
         if not counted[j]:
             continue
-        s = SUMS * j
-        side = get(found, FOUND * j + SIDE)
+        side = of(found, j, SIDE)
         before = get(last, j)
         touching = side * side
-        put(sums, s + FRONT, get(sums, s + FRONT) + where_positive(side, one, none))
-        put(sums, s + APART, get(sums, s + APART) + (one - touching))
-        put(sums, s + BACK, get(sums, s + BACK) + where_positive(-side, one, none))
-        put(sums, s + LOSSES, get(sums, s + LOSSES) + (one - touching) * (before * before))
+        add_to(sums, j, FRONT, where_positive(side, one, none))
+        add_to(sums, j, APART, (one - touching))
+        add_to(sums, j, BACK, where_positive(-side, one, none))
+        add_to(sums, j, LOSSES, (one - touching) * (before * before))
         put(last, j, side)
         f = get(F, j)
         x = get(d, 2 * j)
-        put(sums, s + F_SUM, get(sums, s + F_SUM) + f)
-        put(sums, s + F_SQUARES, get(sums, s + F_SQUARES) + f * f)
-        put(sums, s + D_SUM, get(sums, s + D_SUM) + x)
-        put(sums, s + D_SQUARES, get(sums, s + D_SQUARES) + x * x)
-        put(sums, s + D_MIN, smaller(get(sums, s + D_MIN), x))
-        put(sums, s + D_MAX, larger(get(sums, s + D_MAX), x))
-        put(sums, s + F_MIN, smaller(get(sums, s + F_MIN), f))
-        put(sums, s + F_MAX, larger(get(sums, s + F_MAX), f))
-        x -= get(table, TABLE_ROWS * j + ERROR)
-        put(sums, s + X_MIN, smaller(get(sums, s + X_MIN), x))
-        put(sums, s + X_MAX, larger(get(sums, s + X_MAX), x))
+        add_to(sums, j, F_SUM, f)
+        add_to(sums, j, F_SQUARES, f * f)
+        add_to(sums, j, D_SUM, x)
+        add_to(sums, j, D_SQUARES, x * x)
+        put_of(sums, j, D_MIN, smaller(of(sums, j, D_MIN), x))
+        put_of(sums, j, D_MAX, larger(of(sums, j, D_MAX), x))
+        put_of(sums, j, F_MIN, smaller(of(sums, j, F_MIN), f))
+        put_of(sums, j, F_MAX, larger(of(sums, j, F_MAX), f))
+        x -= of(table, j, ERROR)
+        put_of(sums, j, X_MIN, smaller(of(sums, j, X_MIN), x))
+        put_of(sums, j, X_MAX, larger(of(sums, j, X_MAX), x))

@@ -1,4 +1,4 @@
-"""How local displacements act in the lane kernels: what a law answers, and what the kernels read. Needs no compiler."""
+"""How local displacements act in the kernels of a batch: what a law answers, and what the kernels read. Needs no compiler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Local forces that the lanes of a sweep take by laws of their own: rolling elements, friction, torques over speed."""
+"""Local forces that a sweep takes by laws of their own: rolling elements, friction, torques over speed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.solvers.lanes.arguments import ActingLaws
+from rotorgear.solvers.batch.arguments import ActingLaws
 from rotorgear.solvers.time.kernel_time import DISSIPATED, ENERGIES
 from rotorgear.solvers.time.local_forces import LocalForces, gather
 from rotorgear.solvers.time.local_system import LocalSystem, evaluated
@@ -41,7 +41,7 @@ def own_laws(forces: LocalForces, own: np.ndarray, turn: float) -> OwnLaws:
 
 
 def acting_laws(own: OwnLaws, parameters: np.ndarray, clock: np.ndarray) -> ActingLaws:
-    """The laws as the kernels take them, with the parameters and the clock of one system or of all lanes."""
+    """The laws as the kernels take them, with the parameters and the clock of one system or of a batch."""
     of = own.forces
     return ActingLaws(
         of.schedules,

@@ -1,4 +1,4 @@
-"""Compiled: tangents of the lanes of kernel.py, freed of rigid-body motions and made orthonormal once in a period.
+"""Compiled: tangents of a batch, freed of rigid-body motions and made orthonormal once in a period.
 
 Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.contact.vectors import LANES, fill, get, put
+from rotorgear.solvers.contact.vectors import BATCH, fill, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 
@@ -37,7 +37,7 @@ def look_along(state, carried, along):
 def keep_speed(state, carried, begun, length, along):
     """Give z and z' (2 n, w) what the drive gives at the end of a period, so that speeds along its motions are 0 on average.
 
-    `begun` is `along` at the beginning of the period, which has so many radians. Where a motion had a mean speed v in it, the
+    `begun` is `along` at the beginning of the period, whose length is in radians. Where a motion had a mean speed v in it, the
     next period begins slower by v than this one did, whatever pushes. An oscillation about the mean stays as it is.
     """
     look_along(state, carried, along)
@@ -72,7 +72,7 @@ def orthonormal(tangents, weighed, root, rigid, growth):
     """
     rows = tangents.shape[1]
     n = rows // 2
-    size = np.zeros(LANES)
+    size = np.zeros(BATCH)
     for a in range(tangents.shape[0]):
         for r in range(rigid.shape[0]):
             for part in range(2):
@@ -87,7 +87,7 @@ def orthonormal(tangents, weighed, root, rigid, growth):
             one = get(weighed, a * rows + i)
             total += one * one
         put(size, 0, total)
-        for w in range(LANES):
+        for w in range(BATCH):
             growth[a, w] += 0.5 * np.log(size[w])
             size[w] = 1.0 / np.sqrt(size[w])
         scale = get(size, 0)

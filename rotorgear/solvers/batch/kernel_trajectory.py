@@ -1,17 +1,17 @@
 """Compiled: one small system step by step through the method and the forces of kernel.py, recording as it goes.
 
-It serves few systems for a short time, so it has no lanes and no tangents; that it goes the same way is tested.
+It is for few systems and a short time, so it has no batch and no tangents; a test compares its steps with those of a batch.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.solvers.batch.arguments import PathWork
+from rotorgear.solvers.batch.columns import ALWAYS, ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
+from rotorgear.solvers.batch.kernel_laws import SPACE
+from rotorgear.solvers.batch.kernel_parts import CLEARANCE, DEPTH, FORCE, PER_DEPTH, C, K
 from rotorgear.solvers.contact.gap_contact import contact, momentum
-from rotorgear.solvers.lanes.arguments import PathWork
-from rotorgear.solvers.lanes.columns import ALWAYS, ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
-from rotorgear.solvers.lanes.kernel_laws import SPACE
-from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, DEPTH, FORCE, PER_DEPTH, C, K
 from rotorgear.solvers.time.compiled import compiled
 
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.solvers.lanes.arguments import ColumnValues, LaneMotion, LaneRecords, LaneSpan, LaneSystem
-from rotorgear.solvers.lanes.columns import ERROR, NEVER
-from rotorgear.solvers.lanes.own_laws import acting_laws
-from rotorgear.solvers.lanes.small_system import SmallSystem
+from rotorgear.solvers.batch.arguments import BatchMotion, BatchRecords, BatchSpan, BatchSystem, ColumnValues
+from rotorgear.solvers.batch.columns import ERROR, NEVER
+from rotorgear.solvers.batch.own_laws import acting_laws
+from rotorgear.solvers.batch.small_system import SmallSystem
 from rotorgear.solvers.time.arguments import SparseRows
 from rotorgear.solvers.time.statistics import STATISTICS
 
@@ -34,7 +34,7 @@ class Plan:
     warm: int = 40
 
     def stride(self, turns: int) -> int:
-        """Common periods of so many periods of the fastest excitation from one question whether to go on to the next."""
+        """Common periods, of `turns` periods of the fastest excitation each, between two questions whether to go on."""
         return max(1, _SLICE // (turns * self.steps))
 
     def questions(self, turns: int) -> int:
@@ -96,21 +96,21 @@ def run_block(
     plan: Plan,
     go_on: Callable[[], bool] = lambda: True,
 ) -> list[Orbit]:
-    """Run up to LANES systems of one kind side by side.
+    """Run up to BATCH systems of one kind side by side.
 
     Args:
         systems: of the same n, m, kinds of columns, rigid motions and common period.
         starts: one a system. tables: one a system, or one for all, (2 turns steps + 1, m, 4).
         plan: how long.
-        go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
+        go_on: asked now and then whether to go on; where it is false, the run ends by a KeyboardInterrupt.
     """
-    from rotorgear.solvers.contact.vectors import LANES
-    from rotorgear.solvers.lanes.kernel import lanes_loop
+    from rotorgear.solvers.batch.kernel import batch_loop
+    from rotorgear.solvers.contact.vectors import BATCH
 
     count = len(systems)
-    if not 0 < count <= LANES:
-        raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
-    filled = [*systems, *[systems[-1]] * (LANES - count)]
+    if not 0 < count <= BATCH:
+        raise ValueError(f"{count} systems in a block, expected 1 to {BATCH}")
+    filled = [*systems, *[systems[-1]] * (BATCH - count)]
     first = systems[0]
     c = first.columns
     m = c.kind.size
@@ -119,38 +119,38 @@ def run_block(
         c.kind, c.mode, jumps, c.counted, bool(np.any(jumps != NEVER)), _stacked([s.columns.values for s in filled])
     )
     system = _matrices(filled)
-    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
+    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (BATCH - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
     table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
     parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
     laws = acting_laws(first.own, parameters, _stacked([np.array([s.own.turn, s.w]) for s in filled]))
-    begins = [*starts, *[starts[-1]] * (LANES - count)]
-    motion = LaneMotion(
+    begins = [*starts, *[starts[-1]] * (BATCH - count)]
+    motion = BatchMotion(
         _stacked([np.concatenate([s.z, s.dz]) for s in begins]),
         _kept(filled, begins, wide, columns.values),
         _tangents(first, plan.tangents),
-        aligned((m, LANES)),
+        aligned((m, BATCH)),
     )
     sums = blank_sums(m)
-    extremes = aligned((2, first.W.shape[1], LANES))
+    extremes = aligned((2, first.W.shape[1], BATCH))
     extremes[0] = np.inf
     extremes[1] = -np.inf
 
     def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        growth = aligned((periods, len(followed), LANES))
-        section = aligned((periods, 2 * m, LANES))
+        growth = aligned((periods, len(followed), BATCH))
+        section = aligned((periods, 2 * m, BATCH))
         stride = plan.stride(first.turns)
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(
-                LaneSpan(first.turns, plan.steps, begun + p, counting),
+            batch_loop(
+                BatchSpan(first.turns, plan.steps, begun + p, counting),
                 system,
                 columns,
                 table,
                 laws,
                 motion._replace(tangents=followed),
-                LaneRecords(growth[p : p + stride], section[p : p + stride], sums, extremes),
+                BatchRecords(growth[p : p + stride], section[p : p + stride], sums, extremes),
             )
         return growth, section
 
@@ -164,7 +164,7 @@ def run_block(
 
 def _orbit(
     system: SmallSystem,
-    lane: int,
+    number: int,
     growth: np.ndarray,
     section: np.ndarray,
     sums: np.ndarray,
@@ -172,46 +172,46 @@ def _orbit(
     state: np.ndarray,
     plan: Plan,
 ) -> Orbit:
-    """One lane, with forces in N and velocities in m/s."""
-    from rotorgear.solvers.lanes.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
+    """One system of a batch, with forces in N and velocities in m/s."""
+    from rotorgear.solvers.batch.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
 
-    found = sums[:, :, lane].copy()
+    found = sums[:, :, number].copy()
     n = system.n
-    moved = section[:, :, lane].reshape(len(section), len(sums), 2).copy()
+    moved = section[:, :, number].reshape(len(section), len(sums), 2).copy()
     for row in (F_MIN, F_MAX, F_SUM):
         found[:, row] *= system.w**2
     found[:, F_SQUARES] *= system.w**4
     moved[:, :, 1] *= system.w
-    end = Start(state[:n, lane].copy(), state[n:, lane].copy())
+    end = Start(state[:n, number].copy(), state[n:, number].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
-    own = growth[..., lane].copy()
+    own = growth[..., number].copy()
     # Two displacements are watched of each contact.
     unknown = np.full((extremes.shape[1] // 2, len(STATISTICS)), np.nan)
-    ends = extremes[:, :, lane].T.copy()
+    ends = extremes[:, :, number].T.copy()
     return Orbit(moved, own, found, ends, end, finite, np.zeros(own.shape[1]), plan.settle, error=unknown)
 
 
 def blank_sums(m: int) -> np.ndarray:
     """Statistics (m, 14, w) before anything was counted."""
-    from rotorgear.solvers.contact.vectors import LANES
-    from rotorgear.solvers.lanes.kernel_parts import D_MAX, D_MIN, F_MAX, F_MIN, X_MAX, X_MIN
+    from rotorgear.solvers.batch.kernel_parts import D_MAX, D_MIN, F_MAX, F_MIN, X_MAX, X_MIN
+    from rotorgear.solvers.contact.vectors import BATCH
 
-    sums = aligned((m, 14, LANES))
+    sums = aligned((m, 14, BATCH))
     sums[:, [D_MIN, X_MIN, F_MIN]] = np.inf
     sums[:, [D_MAX, X_MAX, F_MAX]] = -np.inf
     return sums
 
 
 def _tangents(system: SmallSystem, count: int) -> np.ndarray:
-    """Random tangents (t, 2 n, w), the same for all lanes and runs."""
-    from rotorgear.solvers.contact.vectors import LANES
+    """Random tangents (t, 2 n, w), the same for all systems and runs."""
+    from rotorgear.solvers.contact.vectors import BATCH
 
     drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
-    return _stacked([drawn] * LANES)
+    return _stacked([drawn] * BATCH)
 
 
 def aligned(shape: tuple[int, ...]) -> np.ndarray:
-    """Zeros whose rows of lanes begin where vector registers read best."""
+    """Zeros whose rows begin where vector registers read best."""
     size = int(np.prod(shape))
     raw = np.zeros(size + _REGISTER // 8)
     at = (-raw.ctypes.data) % _REGISTER // 8
@@ -219,15 +219,15 @@ def aligned(shape: tuple[int, ...]) -> np.ndarray:
 
 
 def _stacked(values: Sequence[Any]) -> np.ndarray:
-    """Arrays of the lanes as one with the lanes as its last axis."""
+    """Arrays of the systems as one, with the systems as its last axis."""
     found = aligned((*np.shape(values[0]), len(values)))
     np.stack(values, axis=-1, out=found)
     return found
 
 
-def _matrices(systems: Sequence[SmallSystem]) -> LaneSystem:
+def _matrices(systems: Sequence[SmallSystem]) -> BatchSystem:
     """The systems' matrices side by side."""
-    return LaneSystem(
+    return BatchSystem(
         matrix=_sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
         # Displacement and velocity of a column lie side by side.
         across=_sparse(
@@ -236,7 +236,7 @@ def _matrices(systems: Sequence[SmallSystem]) -> LaneSystem:
                 for s in systems
             ]
         ),
-        pushes=_sparse([-s.B for s in systems]),
+        per_force=_sparse([-s.B for s in systems]),
         watched=_sparse([s.W.T for s in systems]),
         rigid=_stacked([s.rigid for s in systems]),
         carried=_stacked([s.carried for s in systems]),
@@ -245,7 +245,7 @@ def _matrices(systems: Sequence[SmallSystem]) -> LaneSystem:
 
 
 def _sparse(matrices: Sequence[np.ndarray]) -> SparseRows:
-    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes."""
+    """Row starts, columns and values by system (p, w) of what is not zero in all of them."""
     used = np.any([matrix != 0.0 for matrix in matrices], axis=0)
     first = np.concatenate([[0], np.cumsum(used.sum(axis=1))]).astype(np.int64)
     return SparseRows(first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices]))
@@ -255,7 +255,7 @@ def _kept(
     systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray], values: np.ndarray
 ) -> np.ndarray:
     """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_jumps.py."""
-    from rotorgear.solvers.lanes.kernel_jumps import KEPT, keep_start
+    from rotorgear.solvers.batch.kernel_jumps import KEPT, keep_start
 
     x = _stacked(
         [

@@ -1,6 +1,6 @@
 """What the compiled loops over small systems take and fill, by name, as solvers/time/arguments.py says it for the time loops.
 
-n degrees of freedom, m local displacements ("columns"), w = LANES systems side by side on the last axis. Loops read the fields
+n degrees of freedom, m local displacements ("columns"), w = BATCH systems side by side on the last axis. Loops read the fields
 into variables of their own before they begin: numba reads a field anew each time it is named.
 """
 
@@ -13,8 +13,8 @@ import numpy as np
 from rotorgear.solvers.time.arguments import SparseRows
 
 
-class LaneSpan(NamedTuple):
-    """How far the lanes run.
+class BatchSpan(NamedTuple):
+    """How far a batch runs.
 
     Attributes:
         turns: periods of the fastest excitation in a common one; steps: steps in one of those; begun: common periods before.
@@ -27,19 +27,20 @@ class LaneSpan(NamedTuple):
     counting: bool
 
 
-class LaneSystem(NamedTuple):
-    """Matrices of all lanes.
+class BatchSystem(NamedTuple):
+    """Matrices of all systems of a batch.
 
     Attributes:
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
-        across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m). watched: W^T by rows, (p, n).
+        across: d and d' of each column from (z, z'), (2 m, 2 n). watched: W^T by rows, (p, n).
+        per_force: acceleration by a force of each column, -B, (n, m).
         rigid: orthonormal motions without strain, (r, n, w); carried: those whose speed the drive keeps, (c, n, w).
         root: S with S^T S the mean stiffness, (n, n, w).
     """
 
     matrix: SparseRows
     across: SparseRows
-    pushes: SparseRows
+    per_force: SparseRows
     watched: SparseRows
     rigid: np.ndarray
     carried: np.ndarray
@@ -51,7 +52,7 @@ class ColumnValues(NamedTuple):
 
     Attributes:
         kind, mode, jumps, counted: (m,). jumping: whether the damping of any one jumps.
-        values: (m, 6) of one system, (m, 6, w) of lanes, in the order of `Columns.values`.
+        values: (m, 6) of one system, (m, 6, w) of a batch, in the order of `Columns.values`.
     """
 
     kind: np.ndarray
@@ -63,7 +64,7 @@ class ColumnValues(NamedTuple):
 
 
 class ActingLaws(NamedTuple):
-    """l laws that act by functions of their own, see kernel_laws.py; of lanes, `parameters` are (s, p) of s systems
+    """l laws that act by functions of their own, see kernel_laws.py; of a batch, `parameters` are (s, p) of s systems
     and `clock` is (2, w).
 
     Attributes:
@@ -82,8 +83,8 @@ class ActingLaws(NamedTuple):
     clock: np.ndarray
 
 
-class LaneMotion(NamedTuple):
-    """What the lanes carry from step to step.
+class BatchMotion(NamedTuple):
+    """What a batch carries from step to step.
 
     Attributes:
         state: z and z', (2 n, w). kept: (m, 4, w) of the end of the last step, see kernel_jumps.py.
@@ -96,7 +97,7 @@ class LaneMotion(NamedTuple):
     last: np.ndarray
 
 
-class LaneRecords(NamedTuple):
+class BatchRecords(NamedTuple):
     """What is found in p common periods: growth of tangents (p, t, w) and sections (p, 2 m, w).
 
     So far: sums (m, 14, w), and extremes, the least and largest of the watched displacements, (2, p, w).

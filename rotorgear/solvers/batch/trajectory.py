@@ -1,17 +1,17 @@
-"""The trajectory of one small system, recorded within its periods."""
+"""The trajectory of one small system, trajectory within its periods."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.lanes.arguments import ColumnValues, PathSpan, PathSystem
-from rotorgear.solvers.lanes.columns import NEVER
-from rotorgear.solvers.lanes.lanes import Start
-from rotorgear.solvers.lanes.own_laws import acting_laws
-from rotorgear.solvers.lanes.small_system import SmallSystem
+from rotorgear.solvers.batch.arguments import ColumnValues, PathSpan, PathSystem
+from rotorgear.solvers.batch.columns import NEVER
+from rotorgear.solvers.batch.own_laws import acting_laws
+from rotorgear.solvers.batch.run_block import Start
+from rotorgear.solvers.batch.small_system import SmallSystem
 
 
-def recorded(
+def trajectory(
     system: SmallSystem, start: Start, table: np.ndarray, steps: int, periods: int, every: int = 1, begun: int = 0
 ) -> np.ndarray:
     """Run on from a state over common periods, by the steps of `run_block`.
@@ -28,7 +28,7 @@ def recorded(
     Raises:
         ValueError: `every` does not divide the steps of a common period.
     """
-    from rotorgear.solvers.lanes.kernel_trajectory import trajectory
+    from rotorgear.solvers.batch.kernel_trajectory import trajectory
 
     length, rest = divmod(system.turns * steps, every)
     if rest:

@@ -2,8 +2,8 @@
 
     z'' = f - K z - D z' - B F(B^T z, B^T z', t),   M = 1,   time in radians of the fastest excitation
 
-Every array has the systems as its last axis of LANES entries, which move through vector registers together. What depends on
-time only (k(t), e(t), prescribed forces) stands in tables over the common period, for the times at and between steps.
+Every array has the systems as its last axis of BATCH entries, which move through vector registers together. What depends on
+time only (k(t), e(t), prescribed forces) is in tables over the common period, for the times at and between steps.
 Tangents T obey T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; once in a period of the fastest excitation
 they are freed of rigid-body motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents.
 """
@@ -12,14 +12,33 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.contact.vectors import LANES, copy_rows, fill, get, put, work
-from rotorgear.solvers.lanes.arguments import TangentWork
-from rotorgear.solvers.lanes.columns import STIFFNESS, TABLE_ROWS
-from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
-from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
-from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table, widen
-from rotorgear.solvers.lanes.kernel_switches import DONE, ENTERED, MIDDLE, correct, do, ended, enter
-from rotorgear.solvers.lanes.kernel_tangents import keep_speed, look_along, orthonormal
+from rotorgear.solvers.batch.arguments import TangentWork
+from rotorgear.solvers.batch.columns import STIFFNESS
+from rotorgear.solvers.batch.kernel_jumps import add_impulses, add_used_along, missing, missing_along
+from rotorgear.solvers.batch.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
+from rotorgear.solvers.batch.kernel_parts import (
+    FOUND,
+    IN_D,
+    IN_V,
+    contacts,
+    count,
+    of,
+    product,
+    put_of,
+    read_table,
+    widen,
+)
+from rotorgear.solvers.batch.kernel_switches import (
+    DONE,
+    MIDDLE,
+    STEP_BEGIN,
+    add_contacts,
+    correct,
+    keep_begin,
+    keep_end,
+)
+from rotorgear.solvers.batch.kernel_tangents import keep_speed, look_along, orthonormal
+from rotorgear.solvers.contact.vectors import BATCH, copy_rows, fill, get, put, work
 from rotorgear.solvers.time.compiled import compiled
 
 
@@ -94,11 +113,11 @@ def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, b
         for j in range(2 * m):
             put(d, j, slope_of(j, first, column, value, stage, at))
         for j in range(m):
-            along = get(found, FOUND * j + IN_D) * get(d, 2 * j) + get(found, FOUND * j + IN_V) * get(d, 2 * j + 1)
+            along = of(found, j, IN_D) * get(d, 2 * j) + of(found, j, IN_V) * get(d, 2 * j + 1)
             put(stage, at + 2 * n + j, along)
         if own:
             laws_along(laws, blocks, d, stage, at + 2 * n)
-        do(number, h, columns, found, d, work.done, DONE * m * k)
+        add_contacts(number, h, columns, found, d, work.done, DONE * m * k)
         if jumping:
             add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
         advance(number, h, matrix, stage, ahead, at, base, 2 * n * k, totals[k])
@@ -116,7 +135,7 @@ def end_tangents(system, columns, kept, moved, tangents, impulse, work):
     first = system.across.first
     column = system.across.column
     value = system.across.value
-    pushes = system.pushes
+    per_force = system.per_force
     jumps = columns.jumps
     values = columns.values
     d = work.d
@@ -130,23 +149,23 @@ def end_tangents(system, columns, kept, moved, tangents, impulse, work):
         for j in range(2 * m):
             put(d, j, slope_of(j, first, column, value, moved, k * rows))
         missing_along(jumps, values, kept, d, used, start, m * k, impulse)
-        push(pushes, impulse, moved, k * rows, tangents, 2 * n * k)
+        add_impulses(per_force, impulse, moved, k * rows, tangents, 2 * n * k)
 
 
 @compiled(inner=True)
-def switch_tangents(h, system, columns, entered, ends, moved, tangents, work):
+def switch_tangents(h, system, columns, step_begin, ends, moved, tangents, work):
     """Put all tangents right where a contact has switched in a step."""
     across = system.across
     d = work.d
     m = columns.kind.size
     for k in range(tangents.shape[0]):
         product(across, moved[k], d)
-        correct(h, columns, entered, ends, system.pushes, d, work.done, tangents[k], moved[k], DONE * m * k)
+        correct(h, columns, step_begin, ends, system.per_force, d, work.done, tangents[k], moved[k], DONE * m * k)
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(span, system, columns, table, laws, motion, records):
-    """Advance the motion of all lanes in place by common periods and record a section at the end of each.
+def batch_loop(span, system, columns, table, laws, motion, records):
+    """Advance the motion of all systems in place by common periods and record a section at the end of each.
 
     table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
     """
@@ -156,7 +175,7 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     counting = span.counting
     matrix = system.matrix
     across = system.across
-    pushes = system.pushes
+    per_force = system.per_force
     jumps = columns.jumps
     jumping = columns.jumping
     counted = columns.counted
@@ -181,24 +200,24 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     at_begin = work(2 * system.carried.shape[0])
     at_end = work(2 * system.carried.shape[0])
     h = 2.0 * np.pi / steps
-    now = work(4 * m).reshape(m, 4, LANES)
-    found = work(FOUND * m).reshape(m, FOUND, LANES)
+    now = work(4 * m).reshape(m, 4, BATCH)
+    found = work(FOUND * m).reshape(m, FOUND, BATCH)
     d = work(2 * m)
     total = work(2 * n)
     stage = work(rows)
     ahead = work(rows)
     stage[:] = 1.0
     ahead[:] = 1.0
-    moved = work(t * rows).reshape(t, rows, LANES)
-    moved_ahead = work(t * rows).reshape(t, rows, LANES)
-    weighed = work(t * 2 * n).reshape(t, 2 * n, LANES)
-    blocks = work(2 * laws.block_first[-1]).reshape(2, laws.block_first[-1], LANES)
+    moved = work(t * rows).reshape(t, rows, BATCH)
+    moved_ahead = work(t * rows).reshape(t, rows, BATCH)
+    weighed = work(t * 2 * n).reshape(t, 2 * n, BATCH)
+    blocks = work(2 * laws.block_first[-1]).reshape(2, laws.block_first[-1], BATCH)
     along = TangentWork(
-        d, blocks, work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * m), work(t * m), work(t * m * DONE)
+        d, blocks, work(t * 2 * n).reshape(t, 2 * n, BATCH), work(t * m), work(t * m), work(t * m * DONE)
     )
-    entered = work(m * ENTERED).reshape(m, ENTERED, LANES)
-    ends = work(m * 4).reshape(m, 4, LANES)
-    condition = np.zeros((LANES, laws.state_first[-1]))
+    step_begin = work(m * STEP_BEGIN).reshape(m, STEP_BEGIN, BATCH)
+    ends = work(m * 4).reshape(m, 4, BATCH)
+    condition = np.zeros((BATCH, laws.state_first[-1]))
     space = np.zeros(SPACE)
     used = work(m)
     impulse = work(m)
@@ -228,20 +247,20 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
                     if number == 0:
-                        enter(columns, now, d, found, entered)
+                        keep_begin(columns, now, d, found, step_begin)
                     elif number == 1:
                         for j in range(m):
-                            put(entered, ENTERED * j + MIDDLE, get(now, TABLE_ROWS * j + STIFFNESS))
+                            put_of(step_begin, j, MIDDLE, of(now, j, STIFFNESS))
                     tangent_stage(number, h, system, columns, laws, found, kept, moved, moved_ahead, tangents, along)
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if jumping or t:
                 product(across, stage, d)
-            if t and ended(columns, now, d, entered, ends):
-                switch_tangents(h, system, columns, entered, ends, moved, tangents, along)
+            if t and keep_end(columns, now, d, step_begin, ends):
+                switch_tangents(h, system, columns, step_begin, ends, moved, tangents, along)
                 product(across, stage, d)
             if jumping:
                 missing(jumps, values, now, d, used, kept, impulse)
-                push(pushes, impulse, stage, 0, state, 0)
+                add_impulses(per_force, impulse, stage, 0, state, 0)
                 if t:
                     end_tangents(system, columns, kept, moved, tangents, impulse, along)
             if t and (step + 1) % steps == 0:

@@ -1,0 +1,343 @@
+"""The inside of loaded teeth: stress in the fillets while a tooth passes through the mesh, and all fields at one position.
+
+The loaded contact gives the forces on the flanks at each position, the finite elements the stress for them. For the fillets all
+teeth are alike: tooth k at position u is where tooth 0 is at u + k, so that one mesh period shows a tooth on its whole way.
+
+Fields are told in the place where the teeth mesh. The pinion's axis is the z axis, the gear's lies on +y. The pinion pushes
+clockwise, and contact runs ahead at larger z; the other hand and the other flanks are the mirror image. With roll length xi of
+pair k in the middle of the face, the tooth is turned by xi/r_b - (half angle at the base circle) - a_w from +y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.teeth.request import Cycle, mesh_request, solve_helices
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.outline import root_section, tooth_outline
+from rotorgear.gears.loaded.contact_points import patch_loads
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
+from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.sector import clockwise
+from rotorgear.gears.tooth_fe.tooth_solution import TeethSolution, solve_teeth, tooth_inside
+from rotorgear.model.layout.mesh_layout import mirrored
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.root_stress import GearRootStress, RootStress
+from rotorgear.results.tooth_field import ContactField, ToothField, ToothFields
+
+POSITIONS = 24
+
+
+@recorded
+def root_stress(
+    model: Model,
+    mesh: str | None = None,
+    *,
+    torque: float | str | None = None,
+    preset: str | None = None,
+    body: str | None = None,
+    positions: int = POSITIONS,
+    progress: Progress = silent,
+) -> RootStress:
+    """Follow the stress in the root fillets of both gears of the first helix over the mesh cycle.
+
+    Args:
+        model: a checked model.
+        mesh: as in `mesh`.
+        torque: as in `mesh`.
+        preset: as in `mesh`.
+        body: as in `mesh`.
+        positions: number of positions in the mesh period, 4 to 256.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a mesh or load that can't be, or the preview of a helical pair, whose slices are no body.
+        ConvergenceError: the contact does not converge.
+        MissingExtraError: scikit-fem is not installed.
+    """
+    if not 4 <= positions <= 256:
+        raise AnalysisError(f"--positions: got {positions}, expected 4 to 256 for root stresses")
+    clock = Clock()
+    request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
+    assert request.teeth is not None
+    assert request.load is not None
+    # All teeth are taken alike: an error of one tooth would show in the fillets of all of them.
+    single = request.teeth.first_flank.single_teeth or request.teeth.second_flank.single_teeth
+    alike = replace(
+        request.teeth,
+        first_flank=request.teeth.first_flank.of_most_teeth,
+        second_flank=request.teeth.second_flank.of_most_teeth,
+    )
+    teeth = alike if request.senses[0] > 0 else mirrored(alike)
+    if in_space(teeth)[1]:
+        raise AnalysisError(
+            "The preview of a pair that changes along the face has no roots to show: take --preset default."
+        )
+    # Positions as for the curves of this helix: where teeth come and go, and where stiffness and pressure need them.
+    first = replace(request, senses=request.senses[:1])
+    found = solve_helices(first, alike, request.base_force, Cycle(positions), part_of(progress, 0.0, 0.2))
+    problem = found.problem
+    cycle = found.cycles[0]
+    clock.lap("teeth and contact")
+    names = tuple(gear.name for gear in request.mesh.gears)
+    # Seen from the other end of the face, z runs the other way.
+    end = request.senses[0]
+    gears = [
+        _root_stress_of(names[i], teeth, problem, cycle, i, end, part_of(progress, 0.2 + 0.4 * i, 0.6 + 0.4 * i))
+        for i in (0, 1)
+    ]
+    clock.lap("inside of the teeth")
+    progress(1.0, "done")
+    return RootStress(
+        title=model.title,
+        mesh=request.name,
+        preset=teeth.fe.preset,
+        pinion_torque_n_m=request.load.pinion_torque_n_m,
+        positions=positions,
+        gears=(gears[0], gears[1]),
+        seconds=clock.total(),
+        left_out=(
+            "a strength rating: factors of load, size, surface and material",
+            *(("errors of single teeth: all teeth are taken alike",) if single else ()),
+            *(("the second helix",) if request.helices > 1 else ()),
+        ),
+        warnings=tuple(dict.fromkeys(problem.warnings + cycle.warnings)),
+    )
+
+
+def _root_stress_of(
+    name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, gear: int, end: int, progress: Progress
+) -> GearRootStress:
+    g = (teeth.first, teeth.second)[gear]
+    key = gear_key(teeth, gear, space=in_space(teeth)[0])
+    section = root_section(tooth_outline(g))
+    side = 1 if gear == 0 else -1
+    loads_at = _tooth_loads(problem, cycle, gear)
+    # A plane model carries the force of a unit width; compliances are those of lengths in normal modules.
+    strength = 1.0 / ((problem.module if key.width else teeth.width) * problem.module)
+
+    inside = tooth_inside(key, part_of(progress, 0.0, 0.3))
+    progress = part_of(progress, 0.3, 1.0)
+
+    phase: list[float] = []
+    at_tangent: list[float] = []
+    largest: list[float] = []
+    places: list[tuple[float, float]] = []
+    for number, u in enumerate(cycle.position):
+        progress(number / len(cycle.position), f"{name}, position {number + 1} of {len(cycle.position)}")
+        solution = solve_teeth(key, loads_at(number), inside=inside)
+        pitch = solution.pitch
+        # Fillet nodes plane by plane; their angles about the axis from the middle of the tooth are those of the middle plane.
+        fillet = pitch.fillet.reshape(len(pitch.turn), -1)
+        middle = pitch.points[fillet[len(fillet) // 2]]
+        order = np.argsort(np.abs(np.arctan2(middle[:, 0], middle[:, 1])))
+        fillet = fillet[:, order]
+        angle = np.abs(np.arctan2(middle[order, 0], middle[order, 1]))
+        for tooth, displacement in zip(solution.teeth, solution.displacement, strict=True):
+            stress = strength * pitch.stress(displacement)[1][fillet]
+            phase.append(float(u) + side * int(tooth))
+            at_tangent.append(max(float(np.interp(section.angle, angle, row)) for row in stress))
+            plane, node = np.unravel_index(int(np.argmax(stress)), stress.shape)
+            point = pitch.points[fillet[plane, node]]
+            largest.append(float(stress[plane, node]))
+            z = float(point[2]) * problem.module if pitch.dimension == 3 else 0.0
+            # The gear's own face runs the other way than the pinion's.
+            places.append((2.0 * problem.module * float(np.hypot(point[0], point[1])), end * side * z))
+    order = np.argsort(phase)
+    tangent = int(np.argmax(at_tangent))
+    worst = int(np.argmax(largest))
+    return GearRootStress(
+        name=name,
+        phase=np.array(phase)[order],
+        at_tangent=np.array(at_tangent)[order],
+        largest=np.array(largest)[order],
+        tangent_diameter=2.0 * section.radius,
+        tangent_thickness=section.thickness,
+        worst_at_tangent=at_tangent[tangent],
+        worst_at_tangent_phase=phase[tangent],
+        worst=largest[worst],
+        worst_phase=phase[worst],
+        worst_diameter=places[worst][0],
+        worst_z=places[worst][1],
+        nominal=_nominal(teeth, problem, cycle, gear),
+    )
+
+
+def _tooth_loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> Callable[[int], dict[int, np.ndarray]]:
+    """Forces (N) along the outward normals at the flank nodes at a position of the cycle, by its number.
+
+    They are given for each tooth; teeth are counted clockwise in the gear's own frame.
+    """
+    slices = cycle.slices
+    place = problem.place(gear, slices.z)
+    spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, place, cycle.patch, problem.patch)
+    side = 1 if gear == 0 else -1
+
+    def at(number: int) -> dict[int, np.ndarray]:
+        here = (slices.position == number) & (cycle.force > 0.0)
+        loads = {}
+        for pair in np.unique(slices.pair[here]):
+            of_pair = here & (slices.pair == pair)
+            loads[side * int(pair)] = -np.asarray(spread.loads[of_pair].T @ cycle.force[of_pair])
+        return loads
+
+    return at
+
+
+def _nominal(teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, gear: int) -> float | None:
+    """Nominal stress (Pa) with the whole load at the outer point of single contact; None for helical and high contact ratios."""
+    line = problem.line
+    if line.base_helix_angle or not 1.0 <= line.contact_ratio < 2.0:
+        return None
+    # The pinion carries alone up to D, one pitch after the start; the gear from B on, one pitch before the end.
+    roll = line.start + line.base_pitch if gear == 0 else line.length - (line.end - line.base_pitch)
+    section = root_section(tooth_outline((teeth.first, teeth.second)[gear]))
+    return section.nominal_stress(cycle.load / teeth.width, roll)
+
+
+@recorded
+def tooth_fields(
+    model: Model,
+    mesh: str | None = None,
+    *,
+    torque: float | str | None = None,
+    preset: str | None = None,
+    body: str | None = None,
+    at: float = 0.0,
+    progress: Progress = silent,
+) -> ToothFields:
+    """Solve the inside of the teeth of the first helix of a mesh at one position.
+
+    Args:
+        model, mesh, torque, preset, body: as for `mesh`.
+        at: position in mesh periods.
+
+    Raises:
+        AnalysisError: a mesh or load that can't be, or the preview of a helical pair, whose slices are no body.
+    """
+    request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
+    assert request.teeth is not None
+    teeth = request.teeth if request.senses[0] > 0 else mirrored(request.teeth)
+    if in_space(teeth)[1]:
+        raise AnalysisError(
+            "The preview of a pair that changes along the face has no body to show: take --preset default."
+        )
+    if any(teeth.fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body)):
+        teeth = replace(teeth, fe=replace(teeth.fe, space=True))  # a web carries a part of the face only
+    problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
+    names = tuple(gear.name for gear in request.mesh.gears)
+    fields = [
+        _field(names[i], teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i)) for i in (0, 1)
+    ]
+    progress(1.0, "done")
+    return ToothFields(request.name, at, (fields[0], fields[1]), _contact(problem, cycle, at))
+
+
+def _field(
+    name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, at: float, gear: int, progress: Progress
+) -> ToothField:
+    gear_body = (teeth.first_body, teeth.second_body)[gear]
+    key = gear_key(teeth, gear, space=in_space(teeth)[0])
+    solution = solve_teeth(key, _tooth_loads(problem, cycle, gear)(0), progress)
+    module = problem.module
+    # A plane model carries the force of a unit width.
+    thickness = module if key.width else teeth.width
+    # Compliances are kept for a Young's modulus of 1.
+    stretch = 1.0 / (gear_body.youngs_modulus * thickness)
+    strength = 1.0 / (thickness * module)
+    stress = [solution.pitch.stress(u) for u in solution.displacement]
+    mises, largest = (strength * np.concatenate([part[i] for part in stress]) for i in (0, 1))
+    fillet = np.concatenate([part[1][solution.pitch.fillet] for part in stress])
+    points, moved = _placed(solution, problem, teeth, at, gear)
+    cells = _vtk_cells(solution, flipped=gear == 0 and bool(key.width))
+    n = len(solution.pitch.points)
+    return ToothField(
+        name,
+        module * points,
+        np.concatenate([cells + i * n for i in range(len(solution.teeth))]),
+        np.repeat(solution.teeth, n),
+        stretch * moved,
+        mises,
+        largest,
+        strength * float(fillet.max()),
+    )
+
+
+def _placed(
+    solution: TeethSolution, problem: ContactProblem, teeth: ToothPair, at: float, gear: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points in normal modules and displacements, both in space and in the place of the mesh."""
+    line = problem.line
+    g = (teeth.first, teeth.second)[gear]
+    outline = tooth_outline(g)
+    pitch = solution.pitch
+    first = line.pitch_point + at * line.base_pitch
+    roll = first if gear == 0 else line.length - first
+    start = roll / g.base_radius - outline.base_half_angle - line.pressure_angle
+    points = []
+    moved = []
+    for tooth, u in zip(solution.teeth, solution.displacement, strict=True):
+        R = clockwise(start + 2.0 * np.pi * tooth / g.teeth, pitch.dimension)
+        points.append(pitch.points @ R.T)
+        moved.append(u @ R.T)
+    x = np.concatenate(points)
+    u = np.concatenate(moved)
+    if gear == 1:  # the gear is the pinion's kind of body, seen through the middle of the face
+        x = -x
+        u = -u
+        x[:, 1] += line.centre_distance / problem.module
+    if pitch.dimension == 2:
+        x, u = (np.pad(values, ((0, 0), (0, 1))) for values in (x, u))
+    return x, u
+
+
+def _vtk_cells(solution: TeethSolution, *, flipped: bool) -> np.ndarray:
+    """Nodes of the elements of one pitch in VTK's order; `flipped`: of the mirror image."""
+    places = np.array(solution.pitch.basis.elem.doflocs, float)
+    wanted = _VTK_QUAD if places.shape[1] == 2 else _VTK_HEX
+    if flipped:
+        wanted = wanted * np.array([1, 1, -1]) + np.array([0, 0, 1])
+    order = [int(np.argmin(np.abs(places - place).sum(axis=1))) for place in wanted]
+    cells = solution.pitch.cells.reshape(-1, len(places))
+    return np.asarray(cells[:, order])
+
+
+def _contact(problem: ContactProblem, cycle: MeshCycle, at: float) -> ContactField:
+    """The loaded slices as pieces of contact lines on the plane of action."""
+    line = problem.line
+    slices = cycle.slices
+    loaded = cycle.force > 0.0
+    z = (slices.z @ slices.weight)[loaded, None] + 0.5 * slices.length[loaded, None] * np.array([-1.0, 1.0])
+    roll = line.pitch_point + (at + slices.pair[loaded, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
+    c = np.cos(line.pressure_angle)
+    s = np.sin(line.pressure_angle)
+    x = roll * c - line.base_radius[0] * s
+    y = roll * s + line.base_radius[0] * c
+    length = slices.length[loaded] / np.cos(line.base_helix_angle)
+    return ContactField(
+        np.stack([x, y, z], -1),
+        cycle.force[loaded] / length,
+        cycle.strip[loaded],
+        cycle.pressure[loaded],
+        slices.pair[loaded],
+    )
+
+
+_VTK_QUAD = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])
+_FACE = [[0, 0], [1, 0], [1, 1], [0, 1]]
+_EDGE = [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]]
+_VTK_HEX = np.array(
+    [[*p, 0] for p in _FACE]
+    + [[*p, 1] for p in _FACE]
+    + [[*p, 0] for p in _EDGE]
+    + [[*p, 1] for p in _EDGE]
+    + [[*p, 0.5] for p in _FACE]
+    + [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]],
+    float,
+)
