@@ -65,7 +65,6 @@ _NOT_TAKEN = (
         for analyses, why in (("static", _DAMPS), ("undamped", _UNDAMPED))
         for table, keys in (
             ("damping", "rayleigh_alpha rayleigh_beta modal_ratio"),
-            ("shafts", "internal_damping"),
             ("bearings", "damping pedestal.damping"),
             ("supports", "damping"),
             ("couplings", "damping"),
@@ -97,19 +96,45 @@ def left_out(system: System, analysis: Analysis, speed: float | None, *, undampe
     model = system.model
     undamped = undamped or speed is None
     kinds = {analysis, "undamped"} if undamped and analysis == "modes" else {analysis}
-    return (
+    absent = list(_without_motion(system))
+    notes = (
         *_dofs(system),
         *_matrices(system, analysis, speed, undamped=undamped),
+        *absent,
         *(note for row in _NOT_TAKEN if kinds & set(row[2].split()) for note in _given(model, row)),
         *_flanks(model, analysis),
         *_beside_laws(model, analysis),
-        *_mean_load(system, analysis, speed),
+        *_operating_point(system, analysis, speed),
         *(note for load in system.layout.external_loads for note in _of_load(system, load, analysis)),
         *_beta(system, analysis, speed),
         *(mesh_stiffness(system) if analysis in ("modes", "frf") else ()),
         *body_notes(system),
         *system.state.notes,
     )
+    # Of a part that is not there as a whole, nothing else need be said.
+    whole = {note.part for note in absent}
+    return tuple(n for n in notes if n in absent or not any(f"{n.part}.".startswith(f"{part}.") for part in whole))
+
+
+def _without_motion(system: System) -> Iterator[Note]:
+    """Parts that act only on motions that the model does not have."""
+    model = system.model
+    moves = np.array([model.has(motion) for motion in _MOTION])
+    if moves.all():
+        return
+    why = "it acts only on motions that the model does not have"
+    for address, spring in system.state.springs.items():
+        table, _, name = address.partition(".")
+        part = getattr(model, table)[name]
+        pushes = np.any(spring.stiffness, axis=0) | np.any(spring.damping, axis=0)
+        if not pushes[moves].any() and not getattr(part, "fixed", ()) and (pushes.any() or table == "bearings"):
+            yield Note(address, "", why)
+    if not model.has("bending"):
+        for name, unbalance in model.unbalances.items():
+            yield Note(f"unbalances.{name}", "", why, in_words(unbalance, "magnitude"))
+    gravity = model.operation.gravity if model.operation else None
+    if gravity and any(gravity) and not (np.array(gravity)[moves[:3]]).any():
+        yield Note("operation.gravity", "", why)
 
 
 def _given(model: Model, row: tuple[str, str, str, str]) -> Iterator[Note]:
@@ -153,6 +178,9 @@ def _dofs(system: System) -> Iterator[Note]:
 def _matrices(system: System, analysis: Analysis, speed: float | None, *, undamped: bool) -> Iterator[Note]:
     """Gyroscopic terms, and what damps beyond the keys of the file."""
     if analysis == "static":
+        for name, shaft in system.model.shafts.items():
+            if shaft.internal_damping and not (speed and system.model.has("bending")):
+                yield Note(f"shafts.{name}.internal_damping", "", _DAMPS, in_words(shaft, "internal_damping"))
         gravity = system.model.operation.gravity if system.model.operation else None
         if not (gravity and any(gravity)):
             yield Note("", "weight", "no gravity given under [operation]")
@@ -165,6 +193,11 @@ def _matrices(system: System, analysis: Analysis, speed: float | None, *, undamp
     elif not speed:
         yield Note("", "gyroscopic matrix", "standstill")
     if undamped:
+        # What damps inside of a turning shaft acts on the equilibrium too.
+        what = "damping of vibration" if is_about_equilibrium(system) else ""
+        for name, shaft in system.model.shafts.items():
+            if shaft.internal_damping:
+                yield Note(f"shafts.{name}.internal_damping", what, _UNDAMPED, in_words(shaft, "internal_damping"))
         for address, spring in system.state.springs.items():
             if address in system.state.tangents and np.any(spring.damping):
                 yield Note(address, "damping of the law", _UNDAMPED)
@@ -217,33 +250,69 @@ def _beside_laws(model: Model, analysis: Analysis) -> Iterator[Note]:
                 yield Note(f"{address}.parameters", "", f"the {key} given beside the law is taken")
 
 
-def _mean_load(system: System, analysis: Analysis, speed: float | None) -> Iterator[Note]:
-    """The operating point, where nothing of an analysis depends on it."""
+def _operating_point(system: System, analysis: Analysis, speed: float | None) -> Iterator[Note]:
+    """The speed, the torques and what else is constant, where nothing of an analysis depends on them."""
     model = system.model
     operation = model.operation
-    if operation is None:
+    if analysis == "time":
         return
-    turning = any(bearing.table or not bearing.is_linear for bearing in model.bearings.values())
-    turning = turning or bool(model.nonlinear_elements or system.layout.elastic_bodies)
-    if analysis == "static" and operation.speed and not turning:
-        why = "of the speed only its sense matters at rest, which chooses the flanks that work"
+    about = is_about_equilibrium(system)
+    if operation is not None and operation.speed and not _turns(system, analysis, speed):
+        still = analysis == "static" or speed
+        why = "nothing here depends on the speed but the flanks that work" if still else "the shafts stand still"
         yield Note("operation.speed", "", why, in_words(operation, "speed"))
-    if analysis not in ("modes", "frf"):
+    if analysis == "static" or about:
         return
-    state = system.state
-    if operation.speed and not speed and not is_about_equilibrium(system):
-        yield Note("operation.speed", "", "the shafts stand still", in_words(operation, "speed"))
-    if operation.gravity and any(operation.gravity) and not is_about_equilibrium(system):
-        yield Note("operation.gravity", "", "nothing here depends on the mean load", in_words(operation, "gravity"))
-    if state.curves or is_about_equilibrium(system):
+    determinate = not system.layout.assembly.loops and len(system.state.forces) == len(model.meshes)
+    if analysis != "response" or determinate:
+        why = "vibration about the mean state does not depend on it"
+        if operation is not None and operation.gravity and any(operation.gravity):
+            yield Note("operation.gravity", "", why, in_words(operation, "gravity"))
+        for name, mesh in model.meshes.items():
+            for key in ("index_error", "helix_index_error"):
+                if value := given_value(mesh, key):
+                    yield Note(f"meshes.{name}.{key}", "", why, value)
+        for load in system.layout.external_loads if analysis == "response" else ():
+            if load.constant_on_structure.any():
+                yield Note(load.address, "", why, _size(load))
+    if analysis == "response" or _load_matters(system):
         return
     only = "of the mean load only its sense matters here, which chooses the flanks that work"
     for key in ("power", "torque"):
-        if getattr(operation, key) is not None:
+        if operation is not None and getattr(operation, key) is not None:
             yield Note(f"operation.{key}", "", only, in_words(operation, key))
-        for name, load in model.loads.items():
-            if load.kind is not None and getattr(load, key) is not None:
-                yield Note(f"loads.{name}.{key}", "", only, in_words(load, key))
+        for name, torque in model.loads.items():
+            if torque.kind is not None and getattr(torque, key) is not None:
+                yield Note(f"loads.{name}.{key}", "", only, in_words(torque, key))
+
+
+def _turns(system: System, analysis: Analysis, speed: float | None) -> bool:
+    """Whether the numbers of an analysis depend on the speed of the model."""
+    model = system.model
+    # What damps inside of a bending shaft turns with it.
+    damped = model.has("bending") and any(shaft.internal_damping for shaft in model.shafts.values())
+    laws = any(not bearing.is_linear for bearing in model.bearings.values())
+    laws = laws or any(analysis == "static" or not element.is_given for element in model.nonlinear_elements.values())
+    given = (model.operation, *model.loads.values())
+    powered = any(part is not None and part.power for part in given)  # a torque is a power over the speed
+    if laws or is_about_equilibrium(system) or (powered and (analysis == "static" or _load_matters(system))):
+        return True
+    if analysis != "response" and not speed:
+        return False
+    tables = any(bearing.table for bearing in model.bearings.values())
+    if analysis == "static":
+        return tables or damped or bool(system.layout.elastic_bodies)
+    return analysis == "response" or tables or damped or bool(system.gyroscopic.nnz)
+
+
+def _load_matters(system: System) -> bool:
+    """Whether the stiffness of a mesh depends on its load."""
+    for name, helices in system.state.curves.items():
+        force = system.state.of_mesh(name)[0].normal_force
+        others = system.layout.mesh(name).helix_stiffness(1.01 * force or None)
+        if any(one.mean != other.mean for one, other in zip(helices, others, strict=True)):
+            return True
+    return False
 
 
 def is_about_equilibrium(system: System) -> bool:

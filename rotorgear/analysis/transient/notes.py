@@ -10,6 +10,7 @@ from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import in_words
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.note import Note, as_notes
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -55,6 +56,15 @@ def transient_left_out(local: LocalModel) -> tuple[Note, ...]:
         of_teeth = system.state.face_map(state) if along else system.state.contact_map(state)
         notes += map_errors([(state.contact.mesh, of_teeth)])
     return as_notes([*notes, *unlike_teeth_left_out(system)])
+
+
+def intact(result: TransientResult, local: LocalModel) -> Iterator[Note]:
+    """The backlash of each mesh whose teeth never part in a run: it plays no part then."""
+    losses = zip((part.part for part in local.parts if part.is_mesh), result.contact_losses, strict=True)
+    parted = {part for part, count in losses if count}
+    for name, mesh in local.system.model.meshes.items():
+        if mesh.backlash is not None and f"meshes.{name}" not in parted:
+            yield Note(f"meshes.{name}.backlash", "", "no teeth part in this run", in_words(mesh, "backlash"))
 
 
 def _along_face(address: str, mesh: Mesh, *, follows: bool) -> Iterator[Note]:

@@ -27,7 +27,7 @@ from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.histories import Histories, Stream
-from rotorgear.analysis.transient.notes import adrift, transient_left_out, transient_warnings
+from rotorgear.analysis.transient.notes import adrift, intact, transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import (
     Grid,
     Task,
@@ -253,7 +253,7 @@ def _result(
     notes = transient_warnings(result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy)
     if result.status == "success":
         notes += off_statics(found, task, errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
-    return replace(result, warnings=notes)
+    return replace(result, left_out=(*result.left_out, *intact(result, task.local)), warnings=notes)
 
 
 def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:

@@ -1,0 +1,51 @@
+"""What a model holds and the numbers of an analysis do not depend on is what the analysis says it left out, in both directions.
+
+"Used" knows nothing of the notes: each key is changed by a little, the analysis is run again, and its numbers are compared.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+import rotorgear as rg
+from rotorgear.note import as_notes
+from tests.unit.analysis.left_out.models_used import MODELS
+from tests.unit.analysis.left_out.used import LONG_VERBS, VERBS, used
+
+# Long: a motion of the whole gearbox for each of its keys.
+SLOW = {("split torque", "transient"), ("journal", "transient")}
+QUICK = ("full", "rotor")
+
+
+def cases() -> list[object]:
+    """All pairs of models and analyses; the slow ones are marked."""
+    found = []
+    for name in MODELS:
+        for verb in (*VERBS, *LONG_VERBS):
+            slow = (name, verb) in SLOW or (verb in LONG_VERBS and name not in QUICK)
+            found.append(pytest.param(name, verb, marks=pytest.mark.long if slow else ()))
+    return found
+
+
+def covers(part: str, key: str) -> bool:
+    """Whether a fact about an address is one about a key."""
+    return key == part or key.startswith((f"{part}.", f"{part}["))
+
+
+@pytest.mark.parametrize(("name", "verb"), cases())
+def test_what_is_not_used_is_left_out_and_what_is_left_out_is_not_used(name: str, verb: str) -> None:
+    try:
+        result, moves = used(MODELS[name](), verb)
+    except rg.AnalysisError as error:
+        pytest.skip(str(error))
+    facts = [note for note in as_notes(result.left_out) if note.part]
+    said = {key: [fact for fact in facts if covers(fact.part, key)] for key in moves}
+    # A fact that names a part of what a key does, such as the damping of vibration, leaves the rest in use.
+    denied = {key: [fact for fact in said[key] if not fact.what] for key, moved in moves.items() if moved}
+    assert {key: found for key, found in denied.items() if found} == {}
+    assert [key for key, moved in moves.items() if not moved and not said[key]] == []
+    assert all(fact.why or fact.what for fact in facts)
+
+
+def test_there_are_twenty_models() -> None:
+    assert len(MODELS) >= 20

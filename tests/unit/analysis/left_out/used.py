@@ -1,0 +1,156 @@
+"""Which keys of a model the numbers of an analysis depend on: each is changed by a little, and the analysis run again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+import rotorgear as rg
+from rotorgear.model.address import tables_of
+
+# Keys that say what a part does, beside those that say where it is and how large: those act in all analyses.
+KINDS = {
+    "operation": ("speed", "torque", "power", "gravity"),
+    "damping": ("rayleigh_alpha", "rayleigh_beta", "modal_ratio"),
+    "shafts": ("internal_damping",),
+    "gears": ("tip_relief", "flank.crowning", "upper_thickness_allowance", "ball_diameter", "body.damping_ratio"),
+    "meshes": (
+        "damping",
+        "damping_ratio",
+        "backlash",
+        "transmission_error",
+        "stiffness_variation",
+        "corner_impact",
+        "index_error",
+        "friction_coefficient",
+        "misalignment",
+        "application_factor",
+        "stiffness",
+        "regularisation_depth",
+    ),
+    "bearings": ("stiffness", "damping", "rolling", "journal", "pedestal.damping"),
+    "supports": ("stiffness", "damping"),
+    "couplings": ("damping",),
+    "nonlinear_elements": ("parameters", "stiffness", "damping"),
+    "loads": ("torque", "power", "force", "moment", "ripple", "speed_power", "step_to", "history"),
+    "unbalances": ("magnitude",),
+    "casings": ("damping_ratio",),
+    "scatter": ("sigma",),
+}
+STEP = 0.01
+# A number that moves by less is rounding.
+SAME = 1e-9
+
+
+def speed_of(model: rg.Model) -> float:
+    """The operating speed, or any."""
+    return (model.operation.speed if model.operation else None) or 100.0
+
+
+def _places(model: rg.Model) -> dict[str, Any]:
+    table = next(name for name in ("gears", "disks", "bearings") if getattr(model, name))
+    place = f"{table}.{next(iter(getattr(model, table)))}:{'y' if model.has('bending') else 'torsion'}"
+    return {"inputs": [place], "outputs": [place], "elements": 1}
+
+
+def _sorted(values: np.ndarray) -> np.ndarray:
+    return np.sort(values.real) + 1j * np.sort(values.imag)
+
+
+def _modal(model: rg.Model, speed: float | None) -> Any:
+    return rg.modal(model, modes=12, speed=speed, elements=1, error_estimate=False)
+
+
+def _response(model: rg.Model) -> Any:
+    return rg.response(model, speeds=[speed_of(model)], elements=1, method="direct")
+
+
+Verb = tuple[Callable[[rg.Model], Any], Callable[[Any], list[np.ndarray]]]
+VERBS: dict[str, Verb] = {
+    "modal": (lambda model: _modal(model, None), lambda found: [_sorted(found.eigenvalues)]),
+    "modal at speed": (lambda model: _modal(model, speed_of(model)), lambda found: [_sorted(found.eigenvalues)]),
+    "static": (
+        lambda model: rg.static(model, elements=1),
+        lambda found: [
+            found.displacement,
+            found.mesh_force,
+            *found.bearing_force.values(),
+            *found.support_force.values(),
+        ],
+    ),
+    "frf": (lambda model: rg.frf(model, [170.0, 317.0], **_places(model)), lambda found: [found.receptance]),
+    "response": (
+        _response,
+        lambda found: [found.mesh_force, found.mean_force, found.bearing_force, found.displacement, found.approach],
+    ),
+    "transient": (
+        lambda model: rg.transient(model, time=0.02, steps=60, elements=1, error_estimate=False, method="newmark"),
+        lambda found: [found.values, found.mesh_force],
+    ),
+}
+
+
+LONG_VERBS: dict[str, Verb] = {
+    "campbell": (
+        lambda model: rg.campbell(model, modes=8, points=3, elements=1, error_estimate=False),
+        lambda found: [_sorted(np.nan_to_num(found.eigenvalues[k])) for k in range(len(found.speeds))],
+    ),
+}
+
+
+def keys_of(model: rg.Model) -> Iterator[tuple[str, dict[str, float]]]:
+    """Yield each key that the file gives, with its numbers by their addresses."""
+    whole = model.model_dump(exclude_defaults=True)
+    known = tables_of(model)
+    for table, keys in KINDS.items():
+        given = whole.get(table) or {}
+        parts = (
+            {table: given} if table in ("operation", "damping") else {f"{table}.{name}": p for name, p in given.items()}
+        )
+        for address, part in parts.items():
+            for key in keys:
+                value: Any = part
+                for step in key.split("."):
+                    value = value.get(step) if isinstance(value, dict) else None
+                numbers = dict(_numbers(value, f"{address}.{key}"))
+                if numbers and known:
+                    yield f"{address}.{key}", numbers
+
+
+def _numbers(value: Any, address: str) -> Iterator[tuple[str, float]]:
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            yield from _numbers(entry, f"{address}.{key}")
+    elif isinstance(value, list | tuple):
+        for k, entry in enumerate(value):
+            yield from _numbers(entry, f"{address}[{k}]")
+    elif isinstance(value, float) and value and math.isfinite(value):
+        yield address, value
+
+
+def moved(one: list[np.ndarray], other: list[np.ndarray]) -> bool:
+    """Whether any number is another by more than rounding."""
+    for a, b in zip(one, other, strict=True):
+        if a.shape != b.shape or (a.size and np.abs(a - b).max() > SAME * np.abs(a).max()):
+            return True
+    return False
+
+
+def used(model: rg.Model, verb: str) -> tuple[Any, dict[str, bool]]:
+    """The result of a verb, and of each key of the model whether the numbers of that result depend on it."""
+    run, read = (VERBS | LONG_VERBS)[verb]
+    result = run(model)
+    numbers = read(result)
+    found = {}
+    for key, values in keys_of(model):
+        for factor in (1.0 + STEP, 1.0 - STEP):
+            try:
+                other = model.with_({address: factor * value for address, value in values.items()})
+            except rg.ModelError:
+                continue
+            found[key] = moved(numbers, read(run(other)))
+            break
+    return result, found
