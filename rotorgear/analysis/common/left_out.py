@@ -291,15 +291,21 @@ def _turns(system: System, analysis: Analysis, speed: float | None) -> bool:
     model = system.model
     # What damps inside of a bending shaft turns with it.
     damped = model.has("bending") and any(shaft.internal_damping for shaft in model.shafts.values())
-    laws = any(not bearing.is_linear for bearing in model.bearings.values())
-    laws = laws or any(analysis == "static" or not element.is_given for element in model.nonlinear_elements.values())
+    # A film carries by its speed; rolling elements do so whatever their speed is.
+    laws = any(bearing.has_film and not bearing.is_linear for bearing in model.bearings.values()) or any(
+        (analysis == "static" or not element.is_given) and element_law(element, 1.0).uses_velocity
+        for element in model.nonlinear_elements.values()
+    )
     given = (model.operation, *model.loads.values())
     powered = any(part is not None and part.power for part in given)  # a torque is a power over the speed
-    if laws or is_about_equilibrium(system) or (powered and (analysis == "static" or _load_matters(system))):
+    about = is_about_equilibrium(system)
+    if laws or (powered and (analysis == "static" or about or _load_matters(system))):
         return True
+    tables = any(bearing.table for bearing in model.bearings.values())
+    if about and analysis == "modes":  # at the operating speed, where modes are those at standstill
+        return tables or damped
     if analysis != "response" and not speed:
         return False
-    tables = any(bearing.table for bearing in model.bearings.values())
     if analysis == "static":
         return tables or damped or bool(system.layout.elastic_bodies)
     return analysis == "response" or tables or damped or bool(system.gyroscopic.nnz)

@@ -23,7 +23,6 @@ MESH = {
     "application_factor": 1.2,
 }
 PUSH = {"shaft": "two", "at": 0.03, "force": [0.0, -300.0, 0.0]}
-ON_ONE = {**PUSH, "shaft": "one"}
 UNBALANCE = {"u": {"shaft": "two", "at": 0.06, "magnitude": 1e-4}}
 BALLS = {"kind": "ball", "elements": 9, "element_diameter": 0.0115, "pitch_diameter": 0.0435, "clearance": 1e-5}
 JOURNAL = 'journal = { diameter = "60 mm", length = "30 mm", clearance = "60 um", viscosity = "0.02 Pa s" }'
@@ -80,7 +79,11 @@ MODELS: dict[str, Callable[[], rg.Model]] = {
     "tilting": lambda: full(meshes__pair__tilt=True, meshes__pair__misalignment="60 um", operation__gravity=None),
     "misaligned": lambda: full(meshes__pair__misalignment="2 um", meshes__pair__index_error="3 um"),
     "two descriptions": lambda: full(bearings__a__rolling=BALLS),
-    "balls": lambda: full(bearings__a={"shaft": "one", "at": "start", "rolling": BALLS}, loads={"push": ON_ONE}),
+    "balls": lambda: full(
+        bearings__c={"shaft": "two", "at": "start", "rolling": BALLS},
+        loads={"push": PUSH},
+        shafts__one__internal_damping=None,
+    ),
     "element": lambda: full(nonlinear_elements={"n": ELEMENT}),
     "element with a stiffness": lambda: full(nonlinear_elements={"n": {**ELEMENT, "stiffness": {"radial": 2e6}}}),
     "ripple": torques,

@@ -52,7 +52,7 @@ def speed_of(model: rg.Model) -> float:
 
 def _places(model: rg.Model) -> dict[str, Any]:
     table = next(name for name in ("gears", "disks", "bearings") if getattr(model, name))
-    place = f"{table}.{next(iter(getattr(model, table)))}:{'y' if model.has('bending') else 'torsion'}"
+    place = f"{table}.{next(reversed(getattr(model, table)))}:{'y' if model.has('bending') else 'torsion'}"
     return {"inputs": [place], "outputs": [place], "elements": 1}
 
 
