@@ -249,7 +249,7 @@ def in_words(value: float, dimension: str) -> str:
     """Write a value in SI as an engineer reads it: 4e-5 of a length is "40 um"."""
     for limit, times, unit in _READ_IN.get(dimension, ()):
         if abs(value) < limit:
-            return f"{value * times:.4g} {unit}"
+            return f"{value * times:.6g} {unit}"
     return f"{value:.4g} {DIMENSIONS[dimension].unit.replace('*', ' ')}".rstrip()
 
 

@@ -190,7 +190,7 @@ def _matrices(system: System, analysis: Analysis, speed: float | None, *, undamp
         return
     if not system.gyroscopic.nnz:
         yield Note("", "gyroscopic matrix", "nothing that turns can tilt")
-    elif not speed:
+    elif not speed and not _says_speed(system, analysis, speed):
         yield Note("", "gyroscopic matrix", "standstill")
     if undamped:
         # What damps inside of a turning shaft acts on the equilibrium too.
@@ -257,9 +257,10 @@ def _operating_point(system: System, analysis: Analysis, speed: float | None) ->
     if analysis == "time":
         return
     about = is_about_equilibrium(system)
-    if operation is not None and operation.speed and not _turns(system, analysis, speed):
-        still = analysis == "static" or speed
-        why = "nothing here depends on the speed but the flanks that work" if still else "the shafts stand still"
+    if operation is not None and _says_speed(system, analysis, speed):
+        why = "nothing here depends on the speed but the flanks that work"
+        if analysis != "static" and not speed:
+            why = "gyroscopic matrix: standstill" if system.gyroscopic.nnz else "the shafts stand still"
         yield Note("operation.speed", "", why, in_words(operation, "speed"))
     if analysis == "static" or about:
         return
@@ -284,6 +285,12 @@ def _operating_point(system: System, analysis: Analysis, speed: float | None) ->
         for name, torque in model.loads.items():
             if torque.kind is not None and getattr(torque, key) is not None:
                 yield Note(f"loads.{name}.{key}", "", only, in_words(torque, key))
+
+
+def _says_speed(system: System, analysis: Analysis, speed: float | None) -> bool:
+    """Whether the file gives a speed that the numbers of an analysis do not depend on."""
+    operation = system.model.operation
+    return bool(analysis != "time" and operation and operation.speed and not _turns(system, analysis, speed))
 
 
 def _turns(system: System, analysis: Analysis, speed: float | None) -> bool:
