@@ -310,7 +310,7 @@ def _turns(system: System, analysis: Analysis, speed: float | None) -> bool:
         return True
     tables = any(bearing.table for bearing in model.bearings.values())
     if about and analysis == "modes":  # at the operating speed, where modes are those at standstill
-        return tables or damped
+        return tables or damped or bool(speed and system.gyroscopic.nnz)
     if analysis != "response" and not speed:
         return False
     if analysis == "static":
