@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.campbell.crossings import Chain, Track, crossings, margins, roots, track
-from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
+from rotorgear.analysis.campbell.snapshot_basis import SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import (
     DEFAULT_SPEEDS,
@@ -29,6 +29,7 @@ from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
+from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.state_at import linear_system
@@ -119,11 +120,11 @@ def campbell(
         progress=progress,
     )
     clock.lap("mesh")
-    request = Request(modes, None if fmax is None else 2.0 * np.pi * fmax, tuple(only))
+    reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax)
     with single_thread(system.n):
-        found = SpeedModes(system, min(ends), max(ends), request, progress)
+        found = SpeedModes(system, min(ends), max(ends), reach, tuple(only), progress)
         clock.lap("basis")
-        diagram = _Diagram.of(found, asked, request, progress)
+        diagram = _Diagram.of(found, asked, progress)
         if not diagram.chains:
             raise AnalysisError("no mode oscillates in this range of speeds, so there is nothing to draw")
         clock.lap("modes over speed")
@@ -171,7 +172,7 @@ class _Diagram:
     tracks: list[Track]
 
     @classmethod
-    def of(cls, found: SpeedModes, asked: np.ndarray, request: Request, progress: Progress) -> _Diagram:
+    def of(cls, found: SpeedModes, asked: np.ndarray, progress: Progress) -> _Diagram:
         """Follow the modes of each group that are asked for at any speed of the track."""
         low = float(asked.min())
         high = float(asked.max())
@@ -186,7 +187,7 @@ class _Diagram:
             parts = found.at(speed)
             frequencies = [np.abs(found.damped(part.s)) for part in parts]
             together = np.sort(np.concatenate(frequencies))
-            count = request.asked(together)
+            count = found.reach.inside(together)
             # Equal frequencies of two groups count in both: rounding must not decide which of them is asked for.
             limit = together[count - 1] * (1.0 + 1e-12) if count else -1.0
             wanted.append([int(np.sum(group <= limit)) for group in frequencies])

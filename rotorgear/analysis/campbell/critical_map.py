@@ -77,7 +77,16 @@ def critical_map(
     top = highest_speed(model, stop)
     about = state_at(model, [top])
     radial = {name: np.diag(_middle(about, name))[:2] for name in model.bearings}
-    values = np.sort(np.asarray(stiffness if stiffness is not None else _default(radial), float))
+    if stiffness is None:
+        present = np.concatenate(list(radial.values()))
+        present = present[present > 0.0]
+        if not present.size:
+            raise AnalysisError("no bearing has a radial stiffness, so there is none to vary")
+        low = np.log10(present.min()) - _DECADES
+        high = np.log10(present.max()) + _DECADES
+        values = np.logspace(low, high, _POINTS)
+    else:
+        values = np.sort(np.asarray(stiffness, float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         raise AnalysisError("the support stiffness must be positive, in N/m")
     clock = Clock()
@@ -151,14 +160,3 @@ def _middle(about: State, bearing: str) -> np.ndarray:
     """Stiffness (6, 6) of a bearing; of a table that in the middle row."""
     stiffness = about.springs[f"bearings.{bearing}"].stiffness
     return stiffness[len(stiffness) // 2]
-
-
-def _default(stiffnesses: dict[str, np.ndarray]) -> np.ndarray:
-    """Stiffnesses in N/m from some decades below the softest bearing to some above the stiffest."""
-    present = np.concatenate(list(stiffnesses.values()))
-    present = present[present > 0.0]
-    if not present.size:
-        raise AnalysisError("no bearing has a radial stiffness, so there is none to vary")
-    low = np.log10(present.min()) - _DECADES
-    high = np.log10(present.max()) + _DECADES
-    return np.logspace(low, high, _POINTS)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
+from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.solve import Modes, Wanted, group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
@@ -30,20 +31,6 @@ _SPARE = 4
 _SPARE_SHARE = 0.25
 _BEYOND_LIMIT = 1.15
 _STILL = 1e-5
-
-
-@dataclass(frozen=True)
-class Request:
-    """What is asked for: so many oscillating modes, or all up to a limit of |s| in rad/s, or both; and which motions."""
-
-    modes: int | None
-    limit: float | None
-    only: tuple[str, ...] = ()
-
-    def asked(self, size: np.ndarray) -> int:
-        """How many of the ascending |s| (m,) are asked for."""
-        inside = len(size) if self.limit is None else int(np.sum(size <= self.limit * (1.0 + 1e-9)))
-        return inside if self.modes is None else min(inside, self.modes)
 
 
 @dataclass(frozen=True)
@@ -72,15 +59,25 @@ class SpeedModes:
     """Modes of a system at any speed from `low` to `high`, from a certified basis.
 
     Attributes:
+        reach: how many of the oscillating modes are asked for.
         snapshots: the true solutions in the basis; checks: (speed, largest relative error) of true solutions that are not.
 
     Raises:
         ConvergenceError: the basis doesn't reach the tolerance.
     """
 
-    def __init__(self, system: System, low: float, high: float, request: Request, progress: Progress = silent) -> None:
+    def __init__(
+        self,
+        system: System,
+        low: float,
+        high: float,
+        reach: Reach,
+        only: tuple[str, ...] = (),
+        progress: Progress = silent,
+    ) -> None:
         self.system = system
-        self.request = request
+        self.reach = reach
+        self._only = only
         self.family = SpeedFamily(system, low, high)
         self._conservative = self.family.is_conservative
         self.snapshots: list[Snapshot] = []
@@ -167,13 +164,13 @@ class SpeedModes:
 
     def _true(self, speed: float) -> Snapshot:
         """The modes at a speed by the sparse solver, with spare ones."""
-        wish = self.request
+        wish = self.reach
         spare = max(_SPARE, int(_SPARE_SHARE * (wish.modes or 0)))
         count = None if wish.modes is None else wish.modes + spare
         limit = None if wish.limit is None else wish.limit * _BEYOND_LIMIT
         ask = None if count is None else count + self._still
         while True:
-            found: Modes = solve(self.system, Wanted(speed, ask, limit, wish.only))
+            found: Modes = solve(self.system, Wanted(speed, ask, limit, self._only))
             s = found.eigenvalues
             moving = np.flatnonzero(~found.rigid & (s.imag > 1e-9 * np.abs(s)))
             if count is None or ask is None or len(moving) >= count or len(s) < ask:
@@ -218,7 +215,7 @@ class SpeedModes:
 
         parts = self.at(true.speed)
         found = self.damped(np.concatenate([part.s for part in parts])) if parts else np.zeros(0)
-        asked = true.s[: max(self.request.asked(np.abs(true.s)), 1)]
+        asked = true.s[: max(self.reach.inside(np.abs(true.s)), 1)]
         if len(found) < len(asked):
             return float("inf")
         if not len(asked):

@@ -52,14 +52,11 @@ def with_casing_modes(model: Model, fmax: float | None) -> tuple[Model, tuple[st
             short.append(
                 f"casings.{name}: its modes go to {most:.3g} Hz, and this analysis to {fmax:.4g} Hz; modes_to takes in more"
             )
-        further[f"casings.{name}.modes_to"] = _rounded_up(min(wanted, most))
+        # To two digits, so that analyses that ask for nearly the same find one body.
+        reach = min(wanted, most)
+        digit = 10.0 ** (math.floor(math.log10(reach)) - 1)
+        further[f"casings.{name}.modes_to"] = math.ceil(reach / digit) * digit
     return (model.with_(further) if further else model), tuple(short)
-
-
-def _rounded_up(frequency: float) -> float:
-    """To two digits, so that analyses that ask for nearly the same find one body."""
-    digit = 10.0 ** (math.floor(math.log10(frequency)) - 1)
-    return math.ceil(frequency / digit) * digit
 
 
 def reduction_errors(system: System, s: np.ndarray, x: np.ndarray) -> np.ndarray:

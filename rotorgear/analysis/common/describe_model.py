@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
@@ -44,10 +42,16 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     system = flow_system(model, Plan(elements or 1))
     speed = model.operation.speed if model.operation else None
     masses = _masses(system)
-    dampings = _mesh_dampings(system)
     casings = {name: float(system.layout.casing(name).body_mass) for name in model.casings}
     rpm = None if speed is None else speed * RPM_PER_RAD_S
     ratios = {name: system.train.ratio(name) for name in model.shafts}
+    places = [
+        PlaceRow(f"{table}.{name}", place.shaft, place.z)
+        for table in ("bearings", "supports", "couplings", "disks", "point_masses", "loads", "unbalances", "points")
+        for name in getattr(model, table)
+        for place in system.layout.places(f"{table}.{name}")
+    ]
+    shaft_order = list(model.shafts)
     return ModelDescription(
         title=model.title,
         reference_shaft=model.reference_shaft,
@@ -62,9 +66,22 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
             )
             for name, ratio in ratios.items()
         ),
-        gears=tuple(_gear(system, gear) for gear in system.layout.gears),
-        places=tuple(_places(system)),
-        meshes=tuple(_mesh(system, name, dampings.get(name, 0.0), speed) for name in model.meshes),
+        gears=tuple(
+            GearRow(
+                name=gear.name,
+                shaft=gear.shaft,
+                teeth=gear.part.teeth,
+                hand=gear.part.hand,
+                base_radius_m=gear.base_radius,
+                z_m=tuple(place.z for place in gear.places),
+                clocking_deg=math.degrees(system.layout.assembly.clocking.get(gear.name, 0.0)),
+                mass_kg=gear.body.mass,
+                polar_inertia_kg_m2=gear.body.polar_inertia,
+            )
+            for gear in system.layout.gears
+        ),
+        places=tuple(sorted(places, key=lambda row: (shaft_order.index(row.shaft), row.z_m))),
+        meshes=tuple(_mesh(system, name, speed) for name in model.meshes),
         torques=tuple(
             TorqueRow(
                 item.name,
@@ -100,42 +117,7 @@ def _masses(system: System) -> dict[str, tuple[float, float, float]]:
     return {name: (bare, bodies, polar) for name, (bare, bodies, polar) in found.items()}
 
 
-def _gear(system: System, gear: GearLayout) -> GearRow:
-    return GearRow(
-        name=gear.name,
-        shaft=gear.shaft,
-        teeth=gear.part.teeth,
-        hand=gear.part.hand,
-        base_radius_m=gear.base_radius,
-        z_m=tuple(place.z for place in gear.places),
-        clocking_deg=math.degrees(system.layout.assembly.clocking.get(gear.name, 0.0)),
-        mass_kg=gear.body.mass,
-        polar_inertia_kg_m2=gear.body.polar_inertia,
-    )
-
-
-def _places(system: System) -> Iterator[PlaceRow]:
-    """Where all parts but gears stand, by shaft from left to right."""
-    found = []
-    for table in ("bearings", "supports", "couplings", "disks", "point_masses", "loads", "unbalances", "points"):
-        for name in getattr(system.model, table):
-            places = system.layout.places(f"{table}.{name}")
-            found += [PlaceRow(f"{table}.{name}", place.shaft, place.z) for place in places]
-    order = {shaft: number for number, shaft in enumerate(system.model.shafts)}
-    yield from sorted(found, key=lambda row: (order[row.shaft], row.z_m))
-
-
-def _mesh_dampings(system: System) -> dict[str, float]:
-    """Damping of each mesh that has any, over its helices, in N s/m."""
-    found: dict[str, float] = {}
-    for group in system.groups:
-        table, _, name = group.part.partition(".")
-        if table == "meshes" and group.matrices.viscosity is not None:
-            found[name] = found.get(name, 0.0) + float(group.matrices.viscosity[0, 0, 0])
-    return found
-
-
-def _mesh(system: System, name: str, damping: float, speed: float | None) -> MeshRow:
+def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
     mesh = system.layout.mesh(name)
     pinion = mesh.pinion.part
     gear = mesh.gear.part
@@ -144,6 +126,7 @@ def _mesh(system: System, name: str, damping: float, speed: float | None) -> Mes
     phases = [system.state.phase(force.contact) for force in forces]
     line = mesh.centre_line
     pair = mesh.pair
+    viscosities = (group.matrices.viscosity for group in system.groups if group.part == f"meshes.{name}")
     return MeshRow(
         name=name,
         pinion=mesh.pinion.name,
@@ -163,5 +146,5 @@ def _mesh(system: System, name: str, damping: float, speed: float | None) -> Mes
         driver=(mesh.pinion if forces[0].pinion_drives else mesh.gear).name,
         flank_assumed=any(force.assumed for force in forces),
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
-        damping_n_s_per_m=damping,
+        damping_n_s_per_m=sum((float(C[0, 0, 0]) for C in viscosities if C is not None), 0.0),
     )

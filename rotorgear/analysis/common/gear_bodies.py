@@ -14,11 +14,6 @@ _NOTICED = 2e-3
 def body_notes(system: System) -> Iterator[str]:
     """Say what of casings and gear bodies was left out."""
     yield from casing_notes(system)
-    yield from _gear_body_notes(system)
-
-
-def _gear_body_notes(system: System) -> Iterator[str]:
-    """Say what of each gear body was left out."""
     for name, wheel in system.layout.elastic_bodies.items():
         address = f"gears.{name}.body"
         yield (

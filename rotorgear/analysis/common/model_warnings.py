@@ -18,18 +18,40 @@ _TOUCH = 1e-3
 
 def model_warnings(system: System) -> Iterator[str]:
     """Yield a sentence for everything that is worth a second look."""
-    for name, gear in system.model.gears.items():
+    model = system.model
+    for name, gear in model.gears.items():
         for sentence in check_gear(gear.geometry) if gear.geometry else ():
             yield f"gears.{name}: {sentence}"
     yield from _faces(system)
-    yield from _meshes(system)
+    for mesh in system.layout.meshes:
+        pinion = mesh.pinion.part
+        teeth = mesh.gear.part.teeth
+        yield from (f"meshes.{mesh.name}: {sentence}" for sentence in mesh_findings(mesh))
+        if pinion.lumped and pinion.teeth and teeth:
+            off = mesh.gear.base_radius / mesh.pinion.base_radius * pinion.teeth / teeth - 1.0
+            if abs(off) > 1e-6:
+                said = f"the base radii's ratio is {100 * off:+.3g} % off that of the teeth, which set the speeds"
+                yield f"meshes.{mesh.name}: {said}"
+        if system.state.applied and any(force.assumed for force in system.state.of_mesh(mesh.name)):
+            yield f"meshes.{mesh.name}: no torque flows through it; its driving flank is taken from the sense of rotation"
     yield from mesh_stiffness_warnings(system)
     yield from gear_body_warnings(system)
-    yield from _train(system)
+    train = system.train
+    for name in model.shafts:
+        if train.ratios[name] == 0:
+            by = f"nothing drives it from shaft '{train.reference}', so it stands still"
+            yield f"shafts.{name}: {by}; give speed_ratio if it turns"
+    if not system.state.applied and model.meshes:
+        yield "no torque is given: driving flanks follow from the sense of rotation, power flowing out from the input shaft"
+    for name, bearing in model.bearings.items():
+        if bearing.table and model.operation and model.operation.speed is not None:
+            turning = abs(train.ratio(bearing.shaft) * model.operation.speed)
+            if not bearing.table[0].speed <= turning <= bearing.table[-1].speed:
+                yield f"bearings.{name}: its table does not reach the operating speed"
     # A coupling ties its two points as if they were at one place: far apart, a shaft likely starts where it should not.
-    for name, coupling in system.model.couplings.items():
+    for name, coupling in model.couplings.items():
         first, second = (place.z for place in system.layout.places(f"couplings.{name}"))
-        length = max(system.model.shafts[coupling.from_shaft].length, system.model.shafts[coupling.to_shaft].length)
+        length = max(model.shafts[coupling.from_shaft].length, model.shafts[coupling.to_shaft].length)
         if length and abs(second - first) > 0.25 * length:
             gap = 1e3 * abs(second - first)
             yield f"couplings.{name}: its two points are {gap:.6g} mm apart along z; check the shafts' start"
@@ -53,33 +75,3 @@ def _faces(system: System) -> Iterator[str]:
             beyond = max(part.start - start, end - part.end)
             if part.sections and beyond > _TOUCH * (end - start):
                 yield f"gears.{name}: its face hangs over the end of shaft '{shaft}' by {millimetres(beyond)}; check its at"
-
-
-def _meshes(system: System) -> Iterator[str]:
-    for mesh in system.layout.meshes:
-        pinion = mesh.pinion.part
-        gear = mesh.gear.part
-        yield from (f"meshes.{mesh.name}: {sentence}" for sentence in mesh_findings(mesh))
-        if pinion.lumped and pinion.teeth and gear.teeth:
-            off = mesh.gear.base_radius / mesh.pinion.base_radius * pinion.teeth / gear.teeth - 1.0
-            if abs(off) > 1e-6:
-                said = f"the base radii's ratio is {100 * off:+.3g} % off that of the teeth, which set the speeds"
-                yield f"meshes.{mesh.name}: {said}"
-        if system.state.applied and any(force.assumed for force in system.state.of_mesh(mesh.name)):
-            yield f"meshes.{mesh.name}: no torque flows through it; its driving flank is taken from the sense of rotation"
-
-
-def _train(system: System) -> Iterator[str]:
-    model = system.model
-    train = system.train
-    for name in model.shafts:
-        if train.ratios[name] == 0:
-            by = f"nothing drives it from shaft '{train.reference}', so it stands still"
-            yield f"shafts.{name}: {by}; give speed_ratio if it turns"
-    if not system.state.applied and model.meshes:
-        yield "no torque is given: driving flanks follow from the sense of rotation, power flowing out from the input shaft"
-    for name, bearing in model.bearings.items():
-        if bearing.table and model.operation and model.operation.speed is not None:
-            turning = abs(train.ratio(bearing.shaft) * model.operation.speed)
-            if not bearing.table[0].speed <= turning <= bearing.table[-1].speed:
-                yield f"bearings.{name}: its table does not reach the operating speed"

@@ -59,7 +59,16 @@ class BasisShapes:
         if not batches:
             return self._portraits(coordinates, np.array([known]))
         back = np.argsort(np.concatenate(batches), kind="stable")
-        return _joined([self._portraits(coordinates[:, own], speeds[own]) for own in batches], back)
+        found = [self._portraits(coordinates[:, own], speeds[own]) for own in batches]
+
+        def join(tables: list[dict[Any, np.ndarray]]) -> dict[Any, np.ndarray]:
+            return {key: np.concatenate([table[key] for table in tables])[back] for key in tables[0]}
+
+        names = ("kinetic", "strain", "kinetic_by_motion", "strain_by_motion", "kinetic_by_shaft")
+        energies = Energies(*(join([getattr(part.energies, name) for part in found]) for name in names))
+        words = [word for part in found for word in part.words]
+        whirl = Whirl(join([part.whirl.net for part in found]), join([part.whirl.numbers for part in found]))
+        return Portraits(energies, tuple(words[k] for k in back), whirl)
 
     def descriptions(self, coordinates: np.ndarray, speeds: np.ndarray) -> tuple[str, ...]:
         """One line for each mode."""
@@ -91,17 +100,6 @@ class BasisShapes:
         shapes = self._at_nodes(coordinates)
         whirl = whirl_of(self.system, shapes, speed)
         return Portraits(energies, whirl_words(whirl, energies), whirl)
-
-
-def _joined(found: list[Portraits], order: np.ndarray) -> Portraits:
-    def join(tables: list[dict[Any, np.ndarray]]) -> dict[Any, np.ndarray]:
-        return {key: np.concatenate([table[key] for table in tables])[order] for key in tables[0]}
-
-    names = ("kinetic", "strain", "kinetic_by_motion", "strain_by_motion", "kinetic_by_shaft")
-    energies = Energies(*(join([getattr(part.energies, name) for part in found]) for name in names))
-    words = [word for part in found for word in part.words]
-    whirl = Whirl(join([part.whirl.net for part in found]), join([part.whirl.numbers for part in found]))
-    return Portraits(energies, tuple(words[k] for k in order), whirl)
 
 
 def whirl_numbers(words: tuple[str, ...]) -> np.ndarray:

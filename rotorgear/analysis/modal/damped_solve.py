@@ -73,7 +73,21 @@ def damped_group(problem: Problem, count: int | None, below: float | None) -> tu
         undamped = problem.lowest(None, None)
         basis = undamped.vectors[:, undamped.rigid_count :]
     else:
-        basis = _enriched(problem, undamped, noise, count, below)
+        # Elastic undamped modes and the damped ones of a first round, which takes the softest modes as rigid.
+        first = undamped.rigid_count
+        lost = int(np.count_nonzero(noise > _AS_RIGID))
+        rest = undamped.eigenvalues[first + lost :]
+        found = damped_modes(
+            problem.M,
+            problem.D,
+            problem.K,
+            count=None if count is None else count + lost,
+            below=below,
+            rigid_vectors=undamped.vectors[:, : first + lost],
+            frequency_scale=float(np.sqrt(rest[0])) if len(rest) else None,
+        )
+        V = found.vectors[:, ~found.rigid]
+        basis = np.hstack([undamped.vectors[:, first:], V.real, V.imag])
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
 
 
@@ -140,23 +154,6 @@ def _undamped(problem: Problem, count: int | None, below: float | None) -> Undam
         if found.rigid_count < len(found.eigenvalues) or found.complete:
             return found
         number = 4 * number + 3
-
-
-def _enriched(
-    problem: Problem, undamped: UndampedModes, noise: np.ndarray, count: int | None, below: float | None
-) -> np.ndarray:
-    """Elastic undamped modes and the damped ones of a first round, which takes the softest modes as rigid: (n, m)."""
-    first = undamped.rigid_count
-    lost = int(np.count_nonzero(noise > _AS_RIGID))
-    held = undamped.vectors[:, : first + lost]
-    rest = undamped.eigenvalues[first + lost :]
-    scale = float(np.sqrt(rest[0])) if len(rest) else None
-    more = None if count is None else count + lost
-    found = damped_modes(
-        problem.M, problem.D, problem.K, count=more, below=below, rigid_vectors=held, frequency_scale=scale
-    )
-    V = found.vectors[:, ~found.rigid]
-    return np.hstack([undamped.vectors[:, first:], V.real, V.imag])
 
 
 def _in_coordinates(

@@ -130,6 +130,8 @@ def _reach(problem: Problem, solved: Sequence[Modes], wanted: Wanted) -> float |
 
 
 def _solve_group(problem: Problem, wanted: Wanted) -> Modes:
+    """The modes of one group, of modal mass 1, with the modal damping ratio of the model."""
+    zeta = problem.system.model.damping.modal_ratio
     if problem.is_undamped:
         modes = problem.undamped(wanted.modes, wanted.limit)
         rigid = np.arange(len(modes.eigenvalues)) < modes.rigid_count
@@ -138,34 +140,31 @@ def _solve_group(problem: Problem, wanted: Wanted) -> Modes:
         method = f"undamped, {modes.method}, Sturm count {modes.sturm_count} of {modes.sturm_expected} below {highest:.6g} Hz"
         found = Modes(s, modes.vectors, rigid, modes.backward_error, method, modes.available)
     else:
-        found = _damped(problem, wanted)
-    zeta = problem.system.model.damping.modal_ratio
+        # Most models at standstill need none of these solvers.
+        from rotorgear.analysis.modal.damped_solve import damped_group
+
+        damped, coordinates = damped_group(problem, wanted.modes, wanted.limit)
+        worst = float(damped.backward_error.max(initial=0.0))
+        if worst > _LARGEST_RESIDUAL:
+            raise ConvergenceError(
+                f"a damped mode leaves a residual of {worst:.1e} relative to the matrices, so the modes can't be trusted; "
+                "ask for fewer modes, or look for stiffness or damping many decades apart",
+                damped,
+            )
+        s = np.where(damped.rigid, 0.0, damped.eigenvalues)
+        if problem.symmetric and not problem.damped:
+            s = 1j * np.abs(s)  # gyroscopic terms do no work: without damping every s is imaginary, but for rounding
+        norm = np.sqrt(np.real(np.einsum("nm,nm->m", damped.vectors.conj(), problem.M @ damped.vectors)))
+        vectors = damped.vectors / np.where(norm > 0.0, norm, 1.0)
+        kind = " ".join(
+            word for word, there in (("damped", problem.damped), ("gyroscopic", bool(wanted.speed))) if there
+        )
+        method = f"{kind or 'non-symmetric'} problem{coordinates}, {damped.method}"
+        available = len(s) if damped.complete else None
+        found = Modes(s, vectors, damped.rigid, damped.backward_error, method, available)
     if zeta and wanted.speed is not None and wanted.damped:
         return replace(found, eigenvalues=with_modal_damping(found.eigenvalues, zeta))
     return found
-
-
-def _damped(problem: Problem, wanted: Wanted) -> Modes:
-    """The modes with damping, gyroscopic moments or circulatory terms; vectors of modal mass 1."""
-    # Most models at standstill need none of these solvers.
-    from rotorgear.analysis.modal.damped_solve import damped_group
-
-    modes, coordinates = damped_group(problem, wanted.modes, wanted.limit)
-    worst = float(modes.backward_error.max(initial=0.0))
-    if worst > _LARGEST_RESIDUAL:
-        raise ConvergenceError(
-            f"a damped mode leaves a residual of {worst:.1e} relative to the matrices, so the modes can't be trusted; ask for "
-            "fewer modes, or look for stiffness or damping many decades apart",
-            modes,
-        )
-    s = np.where(modes.rigid, 0.0, modes.eigenvalues)
-    if problem.symmetric and not problem.damped:
-        s = 1j * np.abs(s)  # gyroscopic terms do no work: without damping every s is imaginary, but for rounding
-    norm = np.sqrt(np.real(np.einsum("nm,nm->m", modes.vectors.conj(), problem.M @ modes.vectors)))
-    vectors = modes.vectors / np.where(norm > 0.0, norm, 1.0)
-    kind = " ".join(word for word, there in (("damped", problem.damped), ("gyroscopic", bool(wanted.speed))) if there)
-    method = f"{kind or 'non-symmetric'} problem{coordinates}, {modes.method}"
-    return Modes(s, vectors, modes.rigid, modes.backward_error, method, len(s) if modes.complete else None)
 
 
 def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:

@@ -98,23 +98,22 @@ def frf(
     zeta = modal_damping + model.damping.modal_ratio
     state, first = about_mean(model, [turns or None], turns)
 
-    def solve(system: System, hz: np.ndarray, limit: float, progress: Progress) -> _Solved:
-        modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
-        plant = Plant(system, contact_lines(system), modes)
-        return _solved(plant, turns, hz, moving_rows(system, inputs), moving_rows(system, outputs), progress)
-
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
         plan = plan_up_to(model, at_speed(state, turns), MARGIN * float(hz[-1]), elements, aim)
         system = linear_system(model, [turns], plan, state=first.with_tangents(state))
         limit = damped_up_to(system, 2.0 * np.pi * float(hz[-1]))
-        found = solve(system, hz, limit, progress)
+        found = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress)
         receptance = found.receptance
         progress(0.96, "error estimate")
         estimate = 0.0
         if any(system.nodes.elements.values()):
-            at = _telling(receptance, found.bubble_change)
-            there = solve(system.with_plan(all_finer(system)), hz[at], limit, silent)
+            # A finer mesh is looked at where a response has its highest peak, and at the peaks of what the elements lack: a
+            # higher mode may have the larger error where the response itself is low.
+            highest = highest_peaks(np.abs(receptance).reshape(len(hz), -1), 1)
+            at = np.union1d(highest, highest_peaks(found.bubble_change, _CHECKED_ON_FINER))
+            finer = system.with_plan(all_finer(system))
+            there = _solved(finer, turns, hz[at], (inputs, outputs), (limit, zeta), silent)
             estimate = relative_change(there.receptance, receptance[at], np.abs(receptance).max(axis=0))
         if found.rounding > _ROUNDING:
             estimate = max(estimate, found.rounding)
@@ -183,20 +182,31 @@ class _Solved:
 
 
 def _solved(
-    plant: Plant, speed: float, hz: np.ndarray, inputs: np.ndarray, outputs: np.ndarray, progress: Progress
+    system: System,
+    speed: float,
+    hz: np.ndarray,
+    places: tuple[Sequence[str], Sequence[str]],
+    damping: tuple[float, float],
+    progress: Progress,
 ) -> _Solved:
-    """Solve each frequency, for forces at the rows `inputs` (i, n) and displacements at the rows `outputs` (o, n)."""
+    """Solve each frequency for forces at the first of the places and displacements at the second ones.
+
+    `damping`: frequency in rad/s up to which modes have a damping ratio beside the damping of the model, and that ratio.
+    """
+    limit, zeta = damping
+    modes = (*damped_modes(system, limit, speed), zeta) if zeta else None
+    dynamics = Plant(system, contact_lines(system), modes).dynamics(speed)
+    inputs, outputs = (moving_rows(system, names) for names in places)
     f = inputs.T
-    dynamics = plant.dynamics(speed)
-    bubbles = ForcedChanges.of(plant.system)
+    bubbles = ForcedChanges.of(system)
     rows = []
     changes = []
     worst = 0.0
     moved = np.zeros(len(inputs))
     largest = np.zeros(len(inputs))
-    size_K = abs(plant.system.stiffness(speed))
-    size_M = abs(plant.system.mass)
-    with single_thread(plant.system.n):
+    size_K = abs(system.stiffness(speed))
+    size_M = abs(system.mass)
+    with single_thread(system.n):
         for k, value in enumerate(hz):
             if k % 10 == 0:
                 progress(0.05 + 0.9 * k / len(hz), f"{value:.5g} Hz")
@@ -223,14 +233,3 @@ def relative_change(exact: np.ndarray, receptance: np.ndarray, largest: np.ndarr
     if largest is not None:
         size = np.maximum(size, largest)
     return float(np.max(np.abs(exact - receptance) / np.where(size > 0.0, size, 1.0)))
-
-
-def _telling(receptance: np.ndarray, bubble_change: np.ndarray) -> np.ndarray:
-    """Numbers of the frequencies where a finer mesh is looked at.
-
-    These are the highest peak of each response, and the peaks of what the elements lack: a higher mode may have the larger
-    error where the response itself is low.
-    """
-    flat = np.abs(receptance).reshape(len(receptance), -1)
-    highest = highest_peaks(flat, 1)
-    return np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))

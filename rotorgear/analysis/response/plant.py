@@ -109,14 +109,6 @@ def force_rows(
     return K, C
 
 
-@dataclass(frozen=True)
-class ModalDamping:
-    """Modes (n, m) of modal mass 1 and their 2 ζ ω (m,)."""
-
-    modes: np.ndarray
-    sizes: np.ndarray
-
-
 class SeatLoads:
     """Force, and moment about its point, on each seat that something stands in: rows of the matrices of those parts."""
 
@@ -156,9 +148,14 @@ class SeatLoads:
 
 
 class GroundLoads:
-    """Force, and moment about the origin of the model, of the ground on each held set and mount of casings from meshes."""
+    """Force, and moment about the origin of the model, of the ground on each held set and mount of casings from meshes.
 
-    def __init__(self, system: System, damped: ModalDamping | None) -> None:
+    Args:
+        system: the model.
+        damped: modes V (n, m) of modal mass 1, and the damping of them, M V with 2 ζ ω; None without any.
+    """
+
+    def __init__(self, system: System, damped: tuple[np.ndarray, LowRankDamping] | None) -> None:
         given = system.model.damping
         self._parts = []
         names: list[str] = []
@@ -173,15 +170,15 @@ class GroundLoads:
             C = C + given.rayleigh_beta * K + given.rayleigh_alpha * M
             self._parts.append((own, K, C, M))
         self.names = tuple(names)
-        self._modes = damped if self._parts else None
-        self._momentum = None if self._modes is None else np.asarray(system.mass @ self._modes.modes)
+        self._damped = damped
 
     def read(self, w: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Amplitudes (o, g, 6) for displacements q (n, o) at frequencies w (o,); all in SI."""
         found = [np.zeros((len(w), 0))]
         brake = None
-        if self._modes is not None and self._momentum is not None:
-            brake = self._modes.modes @ (self._modes.sizes[:, None] * (self._momentum.T @ q)) * (1j * w)
+        if self._parts and self._damped is not None:
+            modes, damping = self._damped
+            brake = modes @ (damping.sizes[:, None] * (damping.vectors.T @ q)) * (1j * w)
         for own, K, C, M in self._parts:
             u = own @ q
             accelerations = -(w**2) * u
@@ -209,8 +206,8 @@ class Plant:
         damped = None
         if damping is not None and damping[2] > 0.0 and damping[1].size:
             modes, w, zeta = damping
-            damped = ModalDamping(modes, 2.0 * zeta * w)
-            self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), damped.sizes)
+            self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), 2.0 * zeta * w)
+            damped = modes, self.low_rank
         self.has_tables = system.has_tables
         self.places = part_nodes(system)
         rows = [6 * node + dof for node in self.places.values() for dof in range(6)]

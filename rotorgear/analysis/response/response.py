@@ -30,7 +30,7 @@ from rotorgear.analysis.response.plant import READ, Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.response.second_order import peaks_of
 from rotorgear.analysis.static.lowest_speed import lowest_speed
-from rotorgear.analysis.static.mean_state import Setup, about_mean
+from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -103,12 +103,7 @@ def response(
     spread = np.unique(np.linspace(0, len(chosen) - 1, _TANGENTS).round().astype(int))
     state, first = about_mean(model, [float(value) for value in chosen[spread]], speed)
     orders, weak = orders_of(first)
-    orders, left = _within(orders, chosen, fmax)
-    fastest = float(np.max(np.abs(chosen)))
-    highest = max(order.frequency_at(fastest) for order in orders)
-    # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
-    top = max((order.frequency_at(fastest) for order in orders if not order.minor), default=highest)
-    left += _beyond_mesh(orders, top, fastest)
+    orders, highest, top, left = _within(orders, float(np.max(np.abs(chosen))), fmax)
     served, few = with_casing_modes(model, top / (2.0 * np.pi))
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
@@ -138,6 +133,9 @@ def response(
         name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in READ
     }
     largest = peaks_of(setup, plant, orders, chosen, run.readings)
+    joint = setup.joint
+    maps = zip(setup.lines.names, joint.maps, joint.face_maps, strict=True) if joint else ()
+    between_nodes = map_errors((name, one or along) for name, one, along in maps)
     progress(1.0, "done")
     return ResponseResult(
         model=model,
@@ -173,7 +171,7 @@ def response(
             *undamped_above(damped_up_to(system, highest), zeta),
             *weak,
             *setup.notes,
-            *_between_nodes(setup),
+            *between_nodes,
             *([begun] if begun else []),
             *left_out(system, "response", speed),
         ),
@@ -188,33 +186,16 @@ def response(
     )
 
 
-def _between_nodes(setup: Setup) -> list[str]:
-    """What the maps of loaded teeth leave out."""
-    if setup.joint is None:
-        return []
-    maps = zip(setup.lines.names, setup.joint.maps, setup.joint.face_maps, strict=True)
-    return list(map_errors((name, one or along) for name, one, along in maps))
+def _within(orders: list[Order], fastest: float, fmax: float | None) -> tuple[list[Order], float, float, list[str]]:
+    """The orders up to `fmax` in Hz at the highest speed, and sentences about the others.
 
-
-def _beyond_mesh(orders: list[Order], top: float, fastest: float) -> list[str]:
-    """A sentence on minor orders above the frequency (rad/s) that the mesh is made for."""
-    beyond = [order for order in orders if order.frequency_at(fastest) > (1.0 + 1e-9) * top]
-    if not beyond:
-        return []
-    return [
-        f"a finer mesh for {len(beyond)} small orders of loaded teeth above {top / (2.0 * np.pi):.5g} Hz, up to "
-        f"{beyond[-1].frequency_at(fastest) / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
-    ]
-
-
-def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tuple[list[Order], list[str]]:
-    """The orders up to a frequency at the highest speed, and sentences about the others."""
+    Between them the highest frequency in rad/s, and the highest that the mesh is made for.
+    """
     if not orders:
         raise AnalysisError(
             "nothing excites the model: give [unbalances], [loads] with an order, a frequency or a ripple, or a mesh its "
             "transmission_error or stiffness_variation"
         )
-    fastest = float(np.max(np.abs(speeds)))
     limit = np.inf if fmax is None else 2.0 * np.pi * fmax
     kept = [order for order in orders if order.frequency_at(fastest) <= limit]
     if not kept:
@@ -226,7 +207,17 @@ def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tupl
             part, _, multiple = order.name.rpartition(" ")
             above.setdefault(part, []).append(multiple)
     runs = {part: m[0] if len(m) == 1 else f"{m[0]} to {m[-1]}, {len(m)} orders" for part, m in above.items()}
-    return kept, [f"{part} {multiples}: above {fmax:g} Hz at the highest speed" for part, multiples in runs.items()]
+    left = [f"{part} {multiples}: above {fmax:g} Hz at the highest speed" for part, multiples in runs.items()]
+    highest = max(order.frequency_at(fastest) for order in kept)
+    # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
+    top = max((order.frequency_at(fastest) for order in kept if not order.minor), default=highest)
+    beyond = [order for order in kept if order.frequency_at(fastest) > (1.0 + 1e-9) * top]
+    if beyond:
+        left.append(
+            f"a finer mesh for {len(beyond)} small orders of loaded teeth above {top / (2.0 * np.pi):.5g} Hz, up to "
+            f"{beyond[-1].frequency_at(fastest) / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
+        )
+    return kept, highest, top, left
 
 
 def _speeds(

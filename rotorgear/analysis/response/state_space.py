@@ -283,27 +283,18 @@ def _joined(basis: np.ndarray, shapes: np.ndarray, M: sp.csc_array) -> np.ndarra
     return np.array(columns).T
 
 
-@dataclass(frozen=True)
-class _Samples:
-    """Frequencies in rad/s (f,) and the whole displacements there (f, n, i)."""
+def _differences(made: _Matrices, C: np.ndarray, w: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Largest difference of reduced and whole responses (f,) at w (f,) in rad/s, over the largest size of each response.
 
-    w: np.ndarray
-    q: np.ndarray
-
-    @classmethod
-    def of(cls, dynamics: Dynamics, B: np.ndarray, w: np.ndarray) -> _Samples:
-        """Solve at some frequencies."""
-        return cls(w, np.array([dynamics.solve(float(value), B) for value in w]))
-
-    def differences(self, made: _Matrices, C: np.ndarray) -> np.ndarray:
-        """Largest difference of reduced and whole responses at each frequency, over the largest size of each response, (f,)."""
-        whole = C @ self.q
-        reduced = np.array([made.receptance(float(value)) for value in self.w])
-        # A response that symmetry forbids is rounding of what moves there.
-        forbidden = _FORBIDDEN * np.max(abs(C) @ np.abs(self.q), axis=0)
-        size = np.maximum(np.abs(whole).max(axis=0), forbidden)
-        relative = np.abs(whole - reduced) / np.where(size > 0.0, size, 1.0)
-        return np.asarray(relative.reshape(len(self.w), -1).max(axis=1))
+    The whole displacements there are q (f, n, i).
+    """
+    whole = C @ q
+    reduced = np.array([made.receptance(float(value)) for value in w])
+    # A response that symmetry forbids is rounding of what moves there.
+    forbidden = _FORBIDDEN * np.max(abs(C) @ np.abs(q), axis=0)
+    size = np.maximum(np.abs(whole).max(axis=0), forbidden)
+    relative = np.abs(whole - reduced) / np.where(size > 0.0, size, 1.0)
+    return np.asarray(relative.reshape(len(w), -1).max(axis=1))
 
 
 def _reduced(
@@ -320,16 +311,17 @@ def _reduced(
     # Golden parts of the steps: no even grid, and half-way between the others.
     judged = limit * (np.arange(_BETWEEN) + 0.381966) / _BETWEEN
     peaks = _peaks(made, limit) if damped else np.zeros((0, 2))
-    learnt = _Samples.of(dynamics, B, np.unique([*even, *peaks[:, 0]]))
+    learnt = np.unique([*even, *peaks[:, 0]])
     flanks = np.array([w + k * half for w, half in peaks for k in (-1.5, -0.7, 0.3, 0.7, 1.5)])
     flanks = flanks[(flanks > _LOWEST * limit) & (flanks <= limit)]
-    held_out = _Samples.of(dynamics, B, np.unique([*judged, *flanks]))
+    held_out = np.unique([*judged, *flanks])
+    q_learnt, q_held_out = (np.array([dynamics.solve(float(w), B) for w in at]) for at in (learnt, held_out))
     while True:
-        error = 2.0 * float(held_out.differences(made, C).max())
-        worst = learnt.differences(made, C)
+        error = 2.0 * float(_differences(made, C, held_out, q_held_out).max())
+        worst = _differences(made, C, learnt, q_learnt)
         if error <= accuracy or not worst.max() > 0.1 * accuracy:
             return made, error
-        shapes = learnt.q[int(np.argmax(worst))]
+        shapes = q_learnt[int(np.argmax(worst))]
         larger = _joined(basis, np.hstack([shapes.real, shapes.imag]), dynamics.M)
         if larger.shape[1] == basis.shape[1]:
             return made, error

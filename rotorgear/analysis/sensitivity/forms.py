@@ -82,7 +82,12 @@ def forms_of(system: System, speed: float, V: NDArray[np.float64]) -> NDArray[np
     """Return all forms (a, r, r) over shapes V (n, r) of the free dofs at a reference speed in rad/s."""
     names = FormNames.of(system.model, speed)
     q = np.asarray(system.dofs.expand(V))
-    turned = _turned(q, len(system.nodes))
+    # J q: (y, -x) in place of (x, y) of every node, tilts the same; what bends inside an element sweeps nothing by itself.
+    turned = np.zeros_like(q)
+    for first in (0, 3):
+        x = np.arange(len(system.nodes)) * 6 + first
+        turned[x] = q[x + 1]
+        turned[x + 1] = -q[x]
     found = np.zeros((len(names), V.shape[1], V.shape[1]))
     for group in system.groups_at(speed):
         m = group.matrices
@@ -107,16 +112,6 @@ def forms_of(system: System, speed: float, V: NDArray[np.float64]) -> NDArray[np
                 swept = _summed(local[:, bends], own @ turned[group.dofs][:, bends])
                 found[names.swept(group.shaft)] += 0.5 * (swept - swept.T)
     return found
-
-
-def _turned(q: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
-    """J q: (y, -x) in place of (x, y) of every node, tilts the same; what bends inside an element sweeps nothing by itself."""
-    out = np.zeros_like(q)
-    for first in (0, 3):
-        x = np.arange(nodes) * 6 + first
-        out[x] = q[x + 1]
-        out[x + 1] = -q[x]
-    return out
 
 
 def _summed(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:

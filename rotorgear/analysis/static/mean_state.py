@@ -19,7 +19,7 @@ from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.static.about_equilibrium import along_faces
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.joint_state import JointState
-from rotorgear.analysis.static.solve import Equilibrated, equilibrate, without_torsion_to_ground
+from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded, without_torsion_to_ground
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import State
@@ -77,10 +77,7 @@ def mean_state(system: System, speed: float) -> Setup:
     found = along_faces(system.model, [speed], system.state)
     if found is not system.state:
         system = system.with_state(found.of_kind(system.state.kind))
-    index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
-    operation = system.model.operation
-    weight = bool(operation and operation.gravity and any(operation.gravity))
-    if not system.state.forces or not (system.state.applied or index or weight or system.layout.loaded_from_outside):
+    if not system.state.forces or not is_loaded(system):
         lines = contact_lines(system)
         meshes = system.model.meshes.items()
         notes = tuple(
@@ -97,22 +94,13 @@ def mean_state(system: System, speed: float) -> Setup:
             "a smaller index error"
         )
     settled = equilibrium.system.with_state(equilibrium.system.state.with_forces(equilibrium.force))
-    return Setup(
-        settled,
-        contact_lines(settled),
-        equilibrium.force,
-        (*about_mean_twist(equilibrium.notes), *_apart(joint), *unlike_teeth_left_out(settled)),
-        joint,
-    )
-
-
-def _apart(joint: JointState | None) -> tuple[Note, ...]:
-    """A sentence where the cycles of several mesh frequencies are taken one at a time."""
-    if joint is None or len(joint.cycles) < 2:
-        return ()
-    names = "; ".join(", ".join(cycle.meshes) for cycle in joint.cycles)
-    why = "each is taken for itself, with the loaded teeth of the others on the mean of their curves"
-    return (Note("", f"what the cycles of meshes {names} do to each other", why),)
+    notes = about_mean_twist(equilibrium.notes)
+    if joint is not None and len(joint.cycles) > 1:
+        names = "; ".join(", ".join(cycle.meshes) for cycle in joint.cycles)
+        why = "each is taken for itself, with the loaded teeth of the others on the mean of their curves"
+        notes = (*notes, Note("", f"what the cycles of meshes {names} do to each other", why))
+    notes = (*notes, *unlike_teeth_left_out(settled))
+    return Setup(settled, contact_lines(settled), equilibrium.force, notes, joint)
 
 
 def springs_about_mean(found: LocalModel, speed: float) -> LocalModel:

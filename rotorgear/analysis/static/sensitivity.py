@@ -9,8 +9,6 @@ for 100 % of it. Haftka and Gurdal, Elements of Structural Optimization, 3rd ed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated
@@ -18,18 +16,10 @@ from rotorgear.errors import AnalysisError
 from rotorgear.note import Note
 
 
-@dataclass(frozen=True)
-class Sensitivity:
-    """Names and units of k parameters and the derivative of the c contact forces, (k, c); `left_out` says what is missing."""
-
-    name: tuple[str, ...]
-    unit: tuple[str, ...]
-    force: np.ndarray
-    left_out: tuple[Note, ...] = ()
-
-
-def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
-    """Return the derivatives of all contact forces."""
+def sensitivities(
+    equilibrium: Equilibrated,
+) -> tuple[tuple[str, ...], tuple[str, ...], np.ndarray, tuple[Note, ...]]:
+    """Names and units of k parameters, the derivative of the c contact forces by them (k, c), and notes on what is missing."""
     lines = equilibrium.lines
     active = np.where(equilibrium.closed, lines.stiffness, 0.0)
     resists = np.where(equilibrium.closed, lines.tilt_stiffness, 0.0)
@@ -82,7 +72,7 @@ def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
     dq = np.array(columns).T if columns else np.zeros((len(equilibrium.q), 0))
     force = (active[:, None] * (lines.vectors.T @ dq)).T + np.array(directs)[kept]
     left = tuple(Note(name, "the derivative by it", "it would set the free motions going") for name in dropped)
-    return Sensitivity(tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left)
+    return tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left
 
 
 def _stiffness_terms(equilibrium: Equilibrated) -> dict[str, np.ndarray]:

@@ -167,7 +167,11 @@ def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawS
         q = solver.solve((f + system.dofs.transform.T @ (pushed + np.zeros_like(loads)))[:, None])[:, 0]
     except UnbalancedLoadError:
         raise _PushedMotionError(_mechanism(system, R, f)) from None
-    q = _placed(system, R, q)
+    if R.shape[1]:
+        # Of the free motions that leaves open, those that make the displacements of the reference shaft's first node smallest.
+        rows = 6 * int(system.nodes.on_shaft(system.model.reference_shaft)[0]) + np.arange(6)
+        here = system.dofs.expand(q)[rows]
+        q = np.asarray(q - R @ np.linalg.lstsq(system.dofs.expand(R)[rows], here, rcond=1e-9)[0])
     if parts:  # derivatives are about the state found
         K, R = _held(system, [*groups, *(law_group(law.part, law.stiffness) for law in laws)], speed)
         solver = StaticSolver(K, R)
@@ -262,6 +266,13 @@ def _laws_at_rest(
     return states
 
 
+def is_loaded(system: System) -> bool:
+    """Whether anything loads the model in statics: torques, forces from outside, weight or index errors."""
+    gravity = system.model.operation.gravity if system.model.operation else None
+    index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
+    return bool(system.state.applied or index or (gravity and any(gravity)) or system.layout.loaded_from_outside)
+
+
 def outer_loads(system: System) -> np.ndarray:
     """Torques, forces and moments from outside, and weight over all dofs, (a,)."""
     operation = system.model.operation
@@ -303,17 +314,6 @@ def without_torsion_to_ground(
         why = "the shaft turns, and the loads hold the torque"
         notes.append(Note(group.part, "torsional stiffness to ground", why))
     return kept, tuple(notes)
-
-
-def _placed(system: System, R: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Choose what is left open: the free motions that make the displacements of the reference shaft's first node smallest."""
-    if R.shape[1] == 0:
-        return q
-    node = int(system.nodes.on_shaft(system.model.reference_shaft)[0])
-    rows = 6 * node + np.arange(6)
-    move = system.dofs.expand(R)[rows]
-    here = system.dofs.expand(q)[rows]
-    return np.asarray(q - R @ np.linalg.lstsq(move, here, rcond=1e-9)[0])
 
 
 def _mechanism(system: System, R: np.ndarray, f: np.ndarray) -> str:

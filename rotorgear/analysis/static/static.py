@@ -23,9 +23,9 @@ from rotorgear.analysis.static.forces import (
     seat_forces,
     support_forces,
 )
-from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
+from rotorgear.analysis.static.sensitivity import sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
-from rotorgear.analysis.static.solve import Equilibrated, equilibrate, operating_points
+from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded, operating_points
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State
@@ -35,7 +35,7 @@ from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.laws import law_rows
 from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
 from rotorgear.system.plan import Plan
-from rotorgear.system.system import System, flow_system
+from rotorgear.system.system import flow_system
 
 # Enough for a smooth line of deflection; the forces do not depend on it.
 DEFAULT_ELEMENTS = 4
@@ -72,12 +72,20 @@ def static(
     given = speed_or_operating(speed, model)
     check_request(given, None, None, elements, accuracy)
     if tilt:
-        model = _with_tilt(model)
+        wide = [name for name in model.meshes if all(gear.part.width for gear in model.layout.mesh(name).gears)]
+        if not wide:
+            raise AnalysisError("no mesh has a face that could feel a tilt: give the widths of its gears")
+        model = model.with_({f"meshes.{name}.tilt": True for name in wide})
     count = elements or DEFAULT_ELEMENTS
     for _ in range(_HALVINGS):
         found = solved(model, Plan(count), given, progress)
         progress(0.5, "error estimate")
-        estimate = _estimate(found.equilibrium, given or 0.0)
+        # Change of all forces when every element is halved, relative to the largest.
+        finer = equilibrate(found.equilibrium.system.with_plan(Plan(2 * count)), given or 0.0)
+        there = forces_of(finer)
+        size = float(np.max(np.abs(there), initial=0.0))
+        change = float(np.max(np.abs(forces_of(found.equilibrium) - there), initial=0.0))
+        estimate = change / size if size else 0.0
         if accuracy is None or estimate <= accuracy:
             break
         count = 2 * count
@@ -85,8 +93,7 @@ def static(
         accuracy, estimate, "the forces no longer change with the elements, what is left is rounding; ask for less"
     )
     progress(0.8, "sensitivities")
-    change = sensitivities(found.equilibrium)
-    result = replace(_result(found, given, change, estimate), model=model)
+    result = replace(_result(found, given, estimate), model=model)
     if short:
         result = replace(result, status=short, warnings=(*result.warnings, short))
     progress(1.0, "done")
@@ -103,7 +110,12 @@ def solved(
     system = flow_system(model, plan, direction=direction_of(speed), kind="static")
     if beside is not None:
         system = system.with_state(replace(system.state, mapped_at=beside.shared_maps))
-    _check_loaded(system)
+    if system.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    if not is_loaded(system):
+        raise AnalysisError(
+            "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"
+        )
     progress(0.1, f"solving {system.n} dofs")
     found = equilibrate_along_faces(system, speed or 0.0, part_of(progress, 0.1, 0.4))
     if found.passes and decided_by_loads(found.equilibrium):
@@ -119,50 +131,25 @@ def forces_of(equilibrium: Equilibrated) -> np.ndarray:
     return np.concatenate([equilibrium.force, *held])
 
 
-def _with_tilt(model: Model) -> Model:
-    """The model with all its meshes feeling the tilt of their shafts."""
-    wide = {name for name in model.meshes if all(gear.part.width for gear in model.layout.mesh(name).gears)}
-    if not wide:
-        raise AnalysisError("no mesh has a face that could feel a tilt: give the widths of its gears")
-    return model.with_({f"meshes.{name}.tilt": True for name in wide})
-
-
-def _check_loaded(system: System) -> None:
-    model = system.model
-    if system.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    gravity = model.operation.gravity if model.operation else None
-    index = any(mesh.index_error or mesh.helix_index_error for mesh in model.meshes.values())
-    outside = system.layout.loaded_from_outside
-    if not system.state.applied and not (gravity and any(gravity)) and not index and not outside:
-        raise AnalysisError(
-            "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"
-        )
-
-
-def _estimate(equilibrium: Equilibrated, speed: float) -> float:
-    """Relative change of all forces when every element is halved."""
-    finer = equilibrium.system.with_plan(Plan(2 * equilibrium.system.plan.elements))
-    other = equilibrate(finer, speed)
-    here = forces_of(equilibrium)
-    there = forces_of(other)
-    size = float(np.max(np.abs(there), initial=0.0))
-    return float(np.max(np.abs(here - there), initial=0.0) / size) if size else 0.0
-
-
-def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimate: float) -> StaticResult:
+def _result(found: AlongFaces, speed: float | None, estimate: float) -> StaticResult:
     equilibrium = found.equilibrium
     system = equilibrium.system
     faces = _face_rows(found)
     states = equilibrium.lines.states
     q = system.dofs.expand(equilibrium.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
-    shares, share_change = share_rows(equilibrium, change.force)
+    parameters, units, derivatives, underivable = sensitivities(equilibrium)
+    shares, share_change = share_rows(equilibrium, derivatives)
     approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
     loops = system.layout.assembly.loops
     # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
     count = equilibrium.motions.shape[1]
     free = f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
+    what = "misalignment over the face by the shafts"
+    why = "the teeth do not feel it; set tilt = true"
+    unfelt = [
+        Note(f"meshes.{r.mesh}", what, why, f"{1e6 * r.shaft_misalignment_m:+.3g} um") for r in faces if not r.fed_back
+    ]
     return StaticResult(
         model=system.model,
         speed=speed,
@@ -183,9 +170,9 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         casing_seat_force=seat_forces(equilibrium),
         shares=shares,
         helix_share=helix_shares(equilibrium),
-        parameter=change.name,
-        parameter_unit=change.unit,
-        force_derivative=change.force,
+        parameter=parameters,
+        parameter_unit=units,
+        force_derivative=derivatives,
         share_derivative=share_change,
         mesh_phase=phases_in_pitches(system.state),
         assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
@@ -198,8 +185,8 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         faces=faces,
         laws=law_rows(operating_points(equilibrium.laws, speed or 0.0)),
         passes=found.passes,
-        left_out=(*left_out(system, "static", speed), *equilibrium.notes, *_unfelt(faces), *change.left_out),
-        warnings=(*system.nodes.merged, *_warnings(equilibrium), *_face_warnings(found, faces)),
+        left_out=(*left_out(system, "static", speed), *equilibrium.notes, *unfelt, *underivable),
+        warnings=(*system.nodes.merged, *_warnings(found, faces)),
         method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
     )
@@ -234,58 +221,47 @@ def _face_rows(found: AlongFaces) -> tuple[MeshFace, ...]:
     return tuple(rows)
 
 
-def _unfelt(faces: tuple[MeshFace, ...]) -> list[Note]:
-    what = "misalignment over the face by the shafts"
-    why = "the teeth do not feel it; set tilt = true"
-    return [
-        Note(f"meshes.{r.mesh}", what, why, f"{1e6 * r.shaft_misalignment_m:+.3g} um") for r in faces if not r.fed_back
-    ]
-
-
-def _face_warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[Note]:
-    """What the contacts say, and where shafts misalign teeth that don't feel it."""
-    notes = [
-        Note(f"meshes.{name}", note)
-        for name, face in zip(found.equilibrium.lines.names, found.faces, strict=True)
-        if face is not None
-        for note in face.warnings
-    ]
-    force = dict(zip(found.equilibrium.lines.names, found.equilibrium.force, strict=True))
-    stiffness = dict(zip(found.equilibrium.lines.names, found.equilibrium.lines.stiffness, strict=True))
-    for row in faces:
-        if row.fed_back:
-            continue
-        width = found.equilibrium.system.layout.mesh(row.mesh).width
-        factor = uniform_line(stiffness[row.mesh], width, force[row.mesh], row.misalignment_m).load_factor
-        if factor > _NOTICED:
-            what = "the shafts misalign the flanks over the face, which the teeth do not feel"
-            size = f"{1e6 * row.shaft_misalignment_m:+.3g} um, face load factor up to {factor:.2g}"
-            notes.append(Note(f"meshes.{row.mesh}", what, "set tilt = true", size))
-    return list(dict.fromkeys(notes))
-
-
 def phases_in_pitches(load: State) -> dict[str, float]:
     """Phase of each mesh in pitches, 0 to 1; NaN where teeth are missing."""
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
 
 
-def _warnings(equilibrium: Equilibrated) -> list[Note]:
+def _warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[Note]:
+    """What statics says of contacts, of loops, and of shafts that misalign teeth which don't feel it."""
+    equilibrium = found.equilibrium
+    lines = equilibrium.lines
+    layout = equilibrium.system.layout
     notes: list[Note] = []
     flow = {
         (force.contact.mesh, force.contact.helix): force.torque_sense
         for force in equilibrium.system.model.torque_flow(equilibrium.system.direction).forces
     }
-    for state, closed in zip(equilibrium.lines.states, equilibrium.closed, strict=True):
+    for state, closed in zip(lines.states, equilibrium.closed, strict=True):
         contact = state.contact
-        two = equilibrium.lines.names.count(contact.mesh) == 2
+        two = lines.names.count(contact.mesh) == 2
         which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if two else "")
         if not closed:
             notes.append(Note(which, "carries nothing", "its flanks stand apart under these loads and index errors"))
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
             notes.append(Note(which, "carries on the other flank than the torque flow in torsion says"))
-    open_loops = [loop for loop in equilibrium.system.layout.assembly.loops if not loop.gear and abs(loop.rest) > 1e-6]
     what = "closes a loop that can't be put together with the clockings given"
     why = "leave out the clocking of one of its gears and it closes the loop"
-    return notes + [
-        Note(f"meshes.{loop.mesh}", what, why, f"{loop.rest:+.4f} pitches are missing") for loop in open_loops
+    notes += [
+        Note(f"meshes.{loop.mesh}", what, why, f"{loop.rest:+.4f} pitches are missing")
+        for loop in layout.assembly.loops
+        if not loop.gear and abs(loop.rest) > 1e-6
     ]
+    for name, face in zip(lines.names, found.faces, strict=True):
+        notes += [Note(f"meshes.{name}", note) for note in face.warnings] if face is not None else []
+    force = dict(zip(lines.names, equilibrium.force, strict=True))
+    stiffness = dict(zip(lines.names, lines.stiffness, strict=True))
+    what = "the shafts misalign the flanks over the face, which the teeth do not feel"
+    for row in faces:
+        if row.fed_back:
+            continue
+        width = layout.mesh(row.mesh).width
+        factor = uniform_line(stiffness[row.mesh], width, force[row.mesh], row.misalignment_m).load_factor
+        if factor > _NOTICED:
+            size = f"{1e6 * row.shaft_misalignment_m:+.3g} um, face load factor up to {factor:.2g}"
+            notes.append(Note(f"meshes.{row.mesh}", what, "set tilt = true", size))
+    return list(dict.fromkeys(notes))
