@@ -76,7 +76,7 @@ def contact_lines(system: System) -> ContactLines:
         v[dofs, k] = strain[0, 0]
         turned[dofs, k] = _quarter_turn(strain[0, 0])
         rotation[dofs[:12], k] = rotation_vector(state)
-        gap[k] = state.gap(system.model.meshes[state.contact.mesh])
+        gap[k] = state.gap(system.layout.mesh(state.contact.mesh).part)
         v_t = face_strains(contact_geometry(state), face_of(system.layout, state))[1]
         tilt[dofs, k] = v_t
         tilted[dofs, k] = _quarter_turn(v_t)

@@ -205,7 +205,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart
         blows = []
         if teeth is not None:
             # A map begins where its flanks touch, a spring about a mean state does not.
-            gap = (replace(force, face=None) if along else force).gap(system.model.meshes[contact.mesh])
+            gap = (replace(force, face=None) if along else force).gap(system.layout.mesh(contact.mesh).part)
             touching = replace(spring, error_mean=gap)
             working = _loaded_teeth(touching, teeth, force, state.path_phase(contact) or 0.0)
             if spring.impact:

@@ -110,7 +110,30 @@ def solve(system: System, wanted: Wanted) -> Modes:
             remedy = "give the body there its inertia, or hold the motion with a support"
             raise AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}") from None
         raise AnalysisError(str(error)) from None
-    return _merged(system, chosen, solved, wanted.modes, (*group_notes(motions, groups, chosen), *still))
+    # Put the modes of all groups in one order: rigid first, then by |s|, and no more than were asked for.
+    notes = (*group_notes(motions, groups, chosen), *still)
+    s = np.concatenate([part.eigenvalues for part in solved])
+    rigid = np.concatenate([part.rigid for part in solved])
+    errors = np.concatenate([part.backward_error for part in solved])
+    owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(solved)])
+    column = np.concatenate([np.arange(len(part.eigenvalues)) for part in solved])
+    order = np.lexsort((np.abs(s), ~rigid))[: wanted.modes]
+    in_order = np.array_equal(order, np.arange(len(order)))
+    if len(solved) == 1 and len(chosen[0]) == system.n:
+        # Those of large models fill a good part of the memory: no copy without a reason.
+        vectors = solved[0].vectors[:, : len(order)] if in_order else solved[0].vectors[:, order]
+    else:
+        vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
+        for place, k in enumerate(order):
+            vectors[chosen[owner[k]], place] = solved[owner[k]].vectors[:, column[k]]
+    if np.sum(rigid[order]) > 1:
+        # Any combination of rigid motions is one: choose those that a person can read.
+        vectors[:, rigid[order]] = _sorted_rigid(system, np.real(vectors[:, rigid[order]]))
+    counts = [part.available for part in solved]
+    available = None if any(count is None for count in counts) else sum(count for count in counts if count is not None)
+    methods = list(dict.fromkeys(part.method for part in solved))
+    method = methods[0] if len(solved) == 1 else f"{len(solved)} groups of dofs; the largest: {methods[0]}"
+    return Modes(s[order], vectors, rigid[order], errors[order], method, available, notes)
 
 
 def _reach(problem: Problem, solved: Sequence[Modes], wanted: Wanted) -> float | None:
@@ -174,34 +197,6 @@ def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
     oscillates = (s.imag > 0.0) & (total < 1.0)
     turned = size * (-total + 1j * np.sqrt(np.clip(1.0 - total**2, 0.0, None)))
     return np.where(oscillates, turned, s)
-
-
-def _merged(
-    system: System, groups: Sequence[np.ndarray], solved: Sequence[Modes], most: int | None, notes: tuple[str, ...]
-) -> Modes:
-    """Put the modes of all groups in one order: rigid first, then by |s|, and no more than were asked for."""
-    s = np.concatenate([part.eigenvalues for part in solved])
-    rigid = np.concatenate([part.rigid for part in solved])
-    errors = np.concatenate([part.backward_error for part in solved])
-    owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(solved)])
-    column = np.concatenate([np.arange(len(part.eigenvalues)) for part in solved])
-    order = np.lexsort((np.abs(s), ~rigid))[:most]
-    in_order = np.array_equal(order, np.arange(len(order)))
-    if len(solved) == 1 and len(groups[0]) == system.n:
-        # Those of large models fill a good part of the memory: no copy without a reason.
-        vectors = solved[0].vectors[:, : len(order)] if in_order else solved[0].vectors[:, order]
-    else:
-        vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
-        for place, k in enumerate(order):
-            vectors[groups[owner[k]], place] = solved[owner[k]].vectors[:, column[k]]
-    if np.sum(rigid[order]) > 1:
-        # Any combination of rigid motions is one: choose those that a person can read.
-        vectors[:, rigid[order]] = _sorted_rigid(system, np.real(vectors[:, rigid[order]]))
-    counts = [part.available for part in solved]
-    available = None if any(count is None for count in counts) else sum(count for count in counts if count is not None)
-    methods = list(dict.fromkeys(part.method for part in solved))
-    method = methods[0] if len(solved) == 1 else f"{len(solved)} groups of dofs; the largest: {methods[0]}"
-    return Modes(s[order], vectors, rigid[order], errors[order], method, available, notes)
 
 
 def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.ndarray]) -> tuple[str, ...]:
