@@ -19,7 +19,6 @@ from rotorgear.analysis.campbell.speeds import (
     chosen_speeds,
     highest_speed,
     mesh_reach,
-    operating_speed,
     system_for_speeds,
 )
 from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, with_casing_modes
@@ -27,7 +26,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
-from rotorgear.analysis.common.request import check_request, check_whole, missed
+from rotorgear.analysis.common.request import check_request, check_whole, missed, operating_speed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import errors_of, total_error

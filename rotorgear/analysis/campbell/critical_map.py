@@ -24,9 +24,7 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.critical import CriticalMap
-from rotorgear.system.system import System
 
 # Decades below the softest and above the stiffest bearing of the model that the map covers.
 _DECADES = 2.0
@@ -105,15 +103,20 @@ def critical_map(
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
         system = stiffest.with_state(with_radial_stiffness(model, about, float(value), top))
-        rows.append(_with_whirl(system, line, top))
+        found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
+        found.sort(key=lambda root: root.speed)
+        _, _, speeds, seen = looks_of(system, found, top)
+        bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
+        words = [whirl_for(line, seen, n) if bending[n] >= _BENDS else "" for n in range(len(found))]
+        rows.append((speeds, whirl_numbers(tuple(words))))
     clock.lap("critical speeds")
     # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
     width = max(len(speeds) for speeds, _ in rows)
     speeds = np.full((len(rows), width), np.nan)
     whirl = np.zeros((len(rows), width), np.int8)
-    for k, (found, numbers) in enumerate(rows):
-        speeds[k, : len(found)] = found
-        whirl[k, : len(found)] = numbers
+    for k, (row, numbers) in enumerate(rows):
+        speeds[k, : len(row)] = row
+        whirl[k, : len(row)] = numbers
     return CriticalMap(
         model=model,
         line=line.name,
@@ -125,18 +128,6 @@ def critical_map(
         dofs=stiffest.n,
         seconds=clock.total(),
     )
-
-
-def _with_whirl(system: System, line: ExcitationOrder, top: float) -> tuple[np.ndarray, np.ndarray]:
-    """Critical speeds (c,) in rad/s, ascending in size, and the whirl of each for the exciting shaft as a number."""
-    found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
-    if not found:
-        return np.zeros(0), np.zeros(0, np.int8)
-    found.sort(key=lambda root: root.speed)
-    _, _, speeds, seen = looks_of(system, found, top)
-    bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
-    words = [whirl_for(line, seen, k) if bending[k] >= _BENDS else "" for k in range(len(found))]
-    return speeds, whirl_numbers(tuple(words))
 
 
 def with_radial_stiffness(model: Model, about: State, value: float, speed: float) -> State:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.excitation import excitation_orders
-from rotorgear.analysis.common.request import check_whole, speed_in_si
+from rotorgear.analysis.common.request import check_whole, operating_speed, speed_in_si
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.modal.mode_count import expected_modes
 from rotorgear.analysis.static.state_at import linear_system
@@ -26,11 +26,6 @@ _BEYOND = 1.25
 _ABOVE = 1.05
 _FEW = 15.0
 _MANY = 120.0
-
-
-def operating_speed(model: Model) -> float | None:
-    """Speed of the input shaft at the operating point in rad/s; None without one."""
-    return model.operation.speed if model.operation else None
 
 
 def highest_speed(model: Model, given: float | str | None = None) -> float:

@@ -13,7 +13,14 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
+from rotorgear.analysis.common.request import (
+    check_modal_damping,
+    check_request,
+    check_whole,
+    missed,
+    operating_speed,
+    speed_in_si,
+)
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.mesh import (
     MARGIN,
@@ -230,7 +237,7 @@ def _speeds(
     """Speeds in rad/s, in rising order of size, all of one sense, and a sentence where films have chosen the lowest."""
     begun = ""
     if given is None:
-        operating = model.operation.speed if model.operation else None
+        operating = operating_speed(model)
         if not operating and (start is None or stop is None):
             raise AnalysisError(
                 "no speeds: give start and stop (--from, --to), or [operation] a speed: the run-up then goes to a fifth above it"
@@ -259,7 +266,7 @@ def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, re
         if asked == 0.0 or np.sign(asked) != np.sign(speeds[0]):
             raise AnalysisError("the speed of the deflection shapes must have the sense of the run-up and not be 0")
         return asked
-    operating = model.operation.speed if model.operation else None
+    operating = operating_speed(model)
     if operating and np.sign(operating) == np.sign(speeds[0]) and abs(speeds[0]) <= abs(operating) <= abs(speeds[-1]):
         return operating
     largest = [float(np.abs(item.stacked).max(initial=0.0)) for item in readings]
