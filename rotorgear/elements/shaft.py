@@ -159,7 +159,18 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     determinant = a0 * a2 - a1**2
     plane = np.stack([np.stack([a2, -a1], -1), np.stack([-a1, a0], -1)], -2) / determinant[:, None, None]
     D[:, 2:4, 2:4] = D[:, 4:6, 4:6] = plane
-    B = _strains(data.length)
+
+    # Strains: stretch, twist, then change of slope and mean shear in the plane xz, where w = x and slope = theta_y, and in the
+    # plane yz, where w = y and slope = -theta_x.
+    B = np.zeros((len(data.length), 6, 12))
+    B[:, 0, [2, 8]] = (-1.0, 1.0)
+    B[:, 1, [5, 11]] = (-1.0, 1.0)
+    for row, w, t, sense in ((2, 0, 4, 1.0), (4, 1, 3, -1.0)):
+        B[:, row, t] = -sense
+        B[:, row, t + 6] = sense
+        B[:, row + 1, w] = -1.0
+        B[:, row + 1, w + 6] = 1.0
+        B[:, row + 1, t] = B[:, row + 1, t + 6] = -sense * 0.5 * data.length
 
     # Bending shapes of one plane from (w1, theta1, w2, theta2), each (e, g, 4). Its strains make m and V, those bend and shear
     # the element from its left end on; the motion of that end itself is rigid.
@@ -190,21 +201,6 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     fields[5][:, :, 5] = 1.0 - torsion
     fields[5][:, :, 11] = torsion
     return B, D, fields, W
-
-
-def _strains(L: np.ndarray) -> np.ndarray:
-    """B (e, 6, 12): stretch, twist, then change of slope and mean shear in the xz plane and in the yz plane."""
-    B = np.zeros((len(L), 6, 12))
-    B[:, 0, [2, 8]] = (-1.0, 1.0)
-    B[:, 1, [5, 11]] = (-1.0, 1.0)
-    # Plane xz: w = x, slope = theta_y. Plane yz: w = y, slope = -theta_x.
-    for row, (w, t, sign) in {2: (0, 4, 1.0), 4: (1, 3, -1.0)}.items():
-        B[:, row, t] = -sign
-        B[:, row, t + 6] = sign
-        B[:, row + 1, w] = -1.0
-        B[:, row + 1, w + 6] = 1.0
-        B[:, row + 1, t] = B[:, row + 1, t + 6] = -sign * 0.5 * L
-    return B
 
 
 def _consistent(data: ShaftElements, fields: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

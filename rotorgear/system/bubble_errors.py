@@ -93,7 +93,15 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
         x: their shapes in the free dofs (n, m), of any scale.
     """
     y = left_shapes(system, speed, s, x)
-    first, second = _frequency_form(system, speed, s, x, y)
+    # A change d of the quadratic form moves s by e s with second e^2 + first e = |d|, first = |s y^H (2 s M + D) x| and
+    # second = |s^2 y^H M x|; the square matters next to double roots.
+    inertia = system.mass @ x
+    product = 2.0 * s * inertia
+    D = system.velocity_terms(speed)
+    if D is not None:
+        product = product + D @ x
+    first = np.abs(s * np.sum(y.conj() * product, axis=0))
+    second = np.abs(s**2 * np.sum(y.conj() * inertia, axis=0))
     right = system.dofs.expand(x)
     left = system.dofs.expand(y)
     errors: dict[PieceKey, np.ndarray] = {}
@@ -103,26 +111,10 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
             of_piece = [k for k, element in enumerate(group.elements) if element.piece == piece]
             change = np.abs(moved[of_piece].sum(axis=0))
             finite = np.where(np.isfinite(change), change, 0.0)
-            # Root of second e^2 + first e = |d| in the form that loses no digits where the square matters little.
+            # The root in the form that loses no digits where the square matters little.
             share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
             errors[group.shaft, piece] = np.where(np.isfinite(change), share, np.inf)
     return errors
-
-
-def _frequency_form(
-    system: System, speed: float | None, s: np.ndarray, x: np.ndarray, y: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """|s y^H (2 s M + D) x| and |s^2 y^H M x|, each (m,).
-
-    A change d of the quadratic form moves s by e s with second e^2 + first e = |d|; the square matters next to double roots.
-    """
-    inertia = system.mass @ x
-    product = 2.0 * s * inertia
-    D = system.velocity_terms(speed)
-    if D is not None:
-        product = product + D @ x
-    first = np.abs(s * np.sum(y.conj() * product, axis=0))
-    return first, np.abs(s**2 * np.sum(y.conj() * inertia, axis=0))
 
 
 def _moved(
@@ -205,18 +197,16 @@ def left_shapes(system: System, speed: float | None, s: np.ndarray, x: np.ndarra
     unsure = np.ones(len(s), dtype=bool) if skew.nnz else np.abs(s.real) > _LIGHT * np.abs(s)
     D = system.velocity_terms(speed)
     y = x.astype(complex)
+    K = sp.csc_array(system.stiffness(at) + skew)
     for k in np.flatnonzero(unsure):
-        y[:, k] = _iterated(system.mass, D, sp.csc_array(system.stiffness(at) + skew), s[k] * (1.0 + _ASIDE), y[:, k])
+        z = s[k] * (1.0 + _ASIDE)
+        Q = z**2 * system.mass + K if D is None else z**2 * system.mass + z * D + K
+        try:
+            left = factor_general(sp.csc_array(Q.conj().T)).solve(y[:, k])
+        except ConvergenceError:
+            continue
+        y[:, k] = left / np.linalg.norm(left)
     return y
-
-
-def _iterated(M: sp.csc_array, D: sp.csc_array | None, K: sp.csc_array, s: complex, x: np.ndarray) -> np.ndarray:
-    Q = s**2 * M + K if D is None else s**2 * M + s * D + K
-    try:
-        y = factor_general(sp.csc_array(Q.conj().T)).solve(x)
-    except ConvergenceError:
-        return x
-    return np.asarray(y / np.linalg.norm(y))
 
 
 @dataclass(frozen=True)

@@ -137,7 +137,10 @@ def _tied(
             continue
         transfer = [rigid_transfer(np.array([0.0, 0.0, nodes.z[node] - nodes.z[first]])) for node in group]
         constraints = np.vstack([carried[held[node]] for carried, node in zip(transfer, group, strict=True)])
-        free = _null_space(constraints)
+        used = constraints != 0.0
+        # Constraints that each hold a single dof leave a plain selection of the others.
+        plain = np.all(used.sum(axis=1) == 1)
+        free = np.eye(6)[:, ~used.any(axis=0)] if plain else la.null_space(constraints)
         for carried, node in zip(transfer, group, strict=True):
             block = carried @ free
             r, c = np.nonzero(block)
@@ -180,12 +183,3 @@ def _with_feet(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:
         place = (np.repeat(rows, len(columns)), np.tile(columns, 6))
         parts.append(sp.csr_array(sp.coo_array((values.ravel(), place), shape=(size, size))))
     return DofMap(sp.csr_array(sum(parts[1:], parts[0]) @ T), dofs.column, False, dofs.held)
-
-
-def _null_space(constraints: np.ndarray) -> np.ndarray:
-    """Free motions (6, k) of a node under linear constraints (c, 6); plain selection where constraints hold single dofs."""
-    used = constraints != 0.0
-    if np.all(used.sum(axis=1) == 1):
-        free = ~used.any(axis=0)
-        return np.eye(6)[:, free]
-    return np.asarray(la.null_space(constraints))

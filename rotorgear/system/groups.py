@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import groupby
 from operator import attrgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,9 +28,6 @@ from rotorgear.model.layout.spring import matrix_rows
 from rotorgear.model.layout.state import MeshForce, State
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import CASING, Element, Nodes
-
-if TYPE_CHECKING:
-    from rotorgear.casings.wheel import ReducedWheel
 
 # Motion of the six dofs of a node.
 _NODE_MOTIONS = ("bending", "bending", "axial", "bending", "bending", "torsion")
@@ -138,14 +134,26 @@ def constant_groups(state: State, nodes: Nodes) -> list[ElementGroup]:
         else:
             matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
         found.append(ElementGroup(body.part, body.shaft, matrices, dofs, layout.train.ratio(body.shaft)))
-    found += [_gear_body(layout, nodes, name, wheel) for name, wheel in layout.elastic_bodies.items()]
+    for name, wheel in layout.elastic_bodies.items():
+        place = layout.place(f"gears.{name}")
+        own = nodes.of_body(name)
+        dofs = np.hstack([node_dofs(nodes.at(*place)), own[None]])
+        motions = tuple(nodes.internal[k - 6 * len(nodes)] for k in own)
+        ratio = layout.train.ratio(place.shaft)
+        found.append(ElementGroup(f"gears.{name}", place.shaft, gear_body(wheel), dofs, ratio, body_motions=motions))
     for force in state.forces:
         c = force.contact
         geometry = contact_geometry(force)
         face = face_of(layout, force) if force.face else None
         matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry), face)
         found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, mesh_dofs(layout, nodes, force)))
-    found += [_casing(layout, nodes, name) for name in model.casings]
+    for name in model.casings:
+        casing = layout.casing(name)
+        try:
+            matrices = elastic_body(casing.stiffness, casing.mass, casing.damping, casing.seat_motions)
+        except ValueError as error:
+            raise AnalysisError(f"casings.{name}: {error}") from None
+        found.append(ElementGroup(f"casings.{name}", "", matrices, nodes.of_casing(name)[None]))
     for table in ("bearings", "supports", "nonlinear_elements", "couplings"):
         for name, part in getattr(model, table).items():
             pedestal = part.pedestal if table == "bearings" else None
@@ -207,25 +215,6 @@ def relative_motion(layout: Layout, nodes: Nodes, address: str) -> tuple[np.ndar
     # A law knows relative displacements of two nodes, whatever lies between them.
     ground = node_dofs(nodes.of_pedestal(name) if pedestal is not None else nodes.at(*other[0]))[0]
     return np.concatenate([ground, dofs]), np.hstack([-np.eye(6), np.eye(6)])
-
-
-def _casing(layout: Layout, nodes: Nodes, name: str) -> ElementGroup:
-    body = layout.casing(name)
-    try:
-        matrices = elastic_body(body.stiffness, body.mass, body.damping, body.seat_motions)
-    except ValueError as error:
-        raise AnalysisError(f"casings.{name}: {error}") from None
-    return ElementGroup(f"casings.{name}", "", matrices, nodes.of_casing(name)[None])
-
-
-def _gear_body(layout: Layout, nodes: Nodes, name: str, wheel: ReducedWheel) -> ElementGroup:
-    place = layout.place(f"gears.{name}")
-    own = nodes.of_body(name)
-    dofs = np.hstack([node_dofs(nodes.at(*place)), own[None]])
-    motions = tuple(nodes.internal[k - 6 * len(nodes)] for k in own)
-    return ElementGroup(
-        f"gears.{name}", place.shaft, gear_body(wheel), dofs, layout.train.ratio(place.shaft), body_motions=motions
-    )
 
 
 def _shaft(layout: Layout, nodes: Nodes, name: str) -> Iterator[ElementGroup]:

@@ -89,7 +89,11 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     from rotorgear.solvers.time.local_forces import gather
 
     laws = {f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law}
-    mapped = _faces(system) if along_faces else {}
+    mapped: dict[int, FaceMap] = {}
+    if along_faces:
+        state = system.state.about_nominal_flanks
+        maps = [state.face_map(force) for force in state.forces]
+        mapped = {k: teeth for k, teeth in enumerate(maps) if teeth is not None}
     resisting = (
         _against_tilt(group, along=k in mapped)
         for k, group in enumerate(group for group in system.groups if group.part.startswith("meshes."))
@@ -157,13 +161,6 @@ def torque_load(system: System) -> np.ndarray:
             continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
     return f
-
-
-def _faces(system: System) -> dict[int, FaceMap]:
-    """Maps over the tilt of the flanks by number of the contact, where loaded teeth have one."""
-    state = system.state.about_nominal_flanks
-    found = {k: state.face_map(force) for k, force in enumerate(state.forces)}
-    return {k: teeth for k, teeth in found.items() if teeth is not None}
 
 
 def _against_tilt(group: ElementGroup, *, along: bool) -> ElementGroup | None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.plan import Plan
-
-if TYPE_CHECKING:
-    from rotorgear.casings.wheel import ReducedWheel
 
 MERGE_DISTANCE = 1e-9
 MOST_ELEMENTS = 200_000
@@ -187,7 +183,11 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
         nodes.internal += [CASING] * size
     for name, wheel in layout.elastic_bodies.items():
         nodes.bodies[name] = (len(nodes.internal), wheel.size)
-        nodes.internal += [_body_motion(wheel, k) for k in range(wheel.size)]
+        # Coordinates of a gear body go by the motion of shafts that they take part in.
+        twists = np.abs(wheel.rim_motion[5]) * wheel.rim_radius > np.abs(wheel.rim_motion[2])
+        for diameters, twist in zip(wheel.diameters, twists, strict=True):
+            uniform = "torsion" if twist else "axial"
+            nodes.internal.append(uniform if diameters == 0 else "bending" if diameters == 1 else GEAR_BODY)
     for mesh in layout.meshes:
         for contact in mesh.contacts:
             for gear in mesh.gears:
@@ -197,36 +197,19 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
     return nodes
 
 
-def _body_motion(wheel: ReducedWheel, k: int) -> str:
-    """What a coordinate of a gear body is called: by the motion of shafts that it takes part in."""
-    n = int(wheel.diameters[k])
-    if n == 0:
-        return "torsion" if abs(wheel.rim_motion[5, k]) * wheel.rim_radius > abs(wheel.rim_motion[2, k]) else "axial"
-    return "bending" if n == 1 else GEAR_BODY
-
-
-def _merged_places(model: Tables, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:
-    """Return the different places of a shaft in order, and sentences about those that were merged."""
+def _add_shaft(nodes: Nodes, model: Tables, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
     part = model.shafts[shaft]
     # A shaft without length has one place, whatever number stands for it.
     tolerance = MERGE_DISTANCE * part.length if part.sections else np.inf
     kept: list[tuple[float, str]] = []
-    notes = []
-    for z, what in sorted(wanted):
-        if kept and z - kept[-1][0] <= tolerance:
-            if z != kept[-1][0] and z - kept[-1][0] > 4.0 * np.finfo(float).eps * max(abs(z), part.length):
-                notes.append(
-                    f"shafts.{shaft}: {what} at {z:.9g} m taken to {kept[-1][1]} at {kept[-1][0]:.9g} m, one node"
-                )
-            continue
-        kept.append((z, what))
-    return [z for z, _ in kept], notes
-
-
-def _add_shaft(nodes: Nodes, model: Tables, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
-    part = model.shafts[shaft]
-    breaks, notes = _merged_places(model, shaft, wanted)
-    nodes.merged += notes
+    for place, what in sorted(wanted):
+        if not kept or place - kept[-1][0] > tolerance:
+            kept.append((place, what))
+        elif place - kept[-1][0] > 4.0 * np.finfo(float).eps * max(abs(place), part.length):
+            nodes.merged.append(
+                f"shafts.{shaft}: {what} at {place:.9g} m taken to {kept[-1][1]} at {kept[-1][0]:.9g} m, one node"
+            )
+    breaks = [place for place, _ in kept]
     ends = np.cumsum([part.start, *[section.length for section in part.sections]])
     z: list[float] = [breaks[0]]
     pieces: list[Element] = []

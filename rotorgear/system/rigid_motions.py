@@ -36,7 +36,20 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     """Return R (n, r), a basis of the motions of the free dofs that strain none of the element groups."""
     P = _candidates(system)
     T = sp.csc_array(system.dofs.transform)
-    strained = [part for group in groups if (part := _strained(group)) is not None]
+    # The elements of which some strain meets a stiffness.
+    strained = []
+    for group in groups:
+        B = group.matrices.strain
+        D = group.matrices.modulus
+        if B is None or D is None:
+            continue
+        Z = group.matrices.circulation
+        used = np.any(D != 0.0, axis=2) if Z is None else np.any((D != 0.0) | (Z != 0.0), axis=2)
+        e = len(group.dofs)
+        used = np.broadcast_to(used, (e, used.shape[1]))
+        some = used.any(axis=1)
+        if some.any():
+            strained.append(_Strained(np.broadcast_to(B, (e, *B.shape[1:]))[some], used[some], group.dofs[some]))
     label = _joined(P, T, strained)
     rows = _by_label(label)
     columns = _by_label(label[P.indices[P.indptr[:-1]]])
@@ -58,21 +71,6 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         whole[free] = R
         found.append(whole)
     return np.hstack(found)
-
-
-def _strained(group: ElementGroup) -> _Strained | None:
-    """The elements of a group of which some strain meets a stiffness."""
-    B = group.matrices.strain
-    D = group.matrices.modulus
-    if B is None or D is None:
-        return None
-    Z = group.matrices.circulation
-    used = np.any(D != 0.0, axis=2) if Z is None else np.any((D != 0.0) | (Z != 0.0), axis=2)
-    e = len(group.dofs)
-    B = np.broadcast_to(B, (e, *B.shape[1:]))
-    used = np.broadcast_to(used, (e, used.shape[1]))
-    some = used.any(axis=1)
-    return _Strained(B[some], used[some], group.dofs[some]) if some.any() else None
 
 
 def _joined(P: sp.csc_array, T: sp.csc_array, strained: list[_Strained]) -> np.ndarray:

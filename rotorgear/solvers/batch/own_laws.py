@@ -63,7 +63,15 @@ def steepest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> 
     """
     if not own.forces.laws:
         return []
-    found = [_tangents(local, q, own, period * i / _SAMPLES) for i in range(_SAMPLES)]
+    laws = local.forces
+    d = local.B.T @ q
+    still = np.zeros(local.m)
+    stiffness = _of_laws(own, laws.reference_stiffness)
+    damping = _of_laws(own, laws.reference_damping)
+    found = []
+    for i in range(_SAMPLES):
+        _, in_d, in_v, _ = evaluated(local, d, still, period * i / _SAMPLES)
+        found.append((_blocks(laws, own, in_d) - stiffness, _blocks(laws, own, in_v) - damping))
     most = {max(range(_SAMPLES), key=lambda i: float(np.abs(found[i][part]).sum())) for part in (0, 1)}
     return [found[i] for i in sorted(most)]
 
@@ -108,17 +116,6 @@ def _taken(local: LocalSystem, d: np.ndarray, own: OwnLaws, period: float) -> Ta
                 power += taken[number]
                 push[a : a + k] += F[a : a + k] / _TIMES
     return Taken(power, push, _blocks(laws, own, in_v) - _of_laws(own, laws.reference_damping))
-
-
-def _tangents(local: LocalSystem, q: np.ndarray, own: OwnLaws, t: float) -> tuple[np.ndarray, np.ndarray]:
-    """Tangents (m, m) of the laws at a time, without their reference."""
-    laws = local.forces
-    d = local.B.T @ q
-    _, in_d, in_v, _ = evaluated(local, d, np.zeros(local.m), t)
-    return (
-        _blocks(laws, own, in_d) - _of_laws(own, laws.reference_stiffness),
-        _blocks(laws, own, in_v) - _of_laws(own, laws.reference_damping),
-    )
 
 
 def _blocks(laws: LocalForces, own: OwnLaws, flat: np.ndarray) -> np.ndarray:

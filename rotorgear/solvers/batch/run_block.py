@@ -105,6 +105,7 @@ def run_block(
         go_on: asked now and then whether to go on; where it is false, the run ends by a KeyboardInterrupt.
     """
     from rotorgear.solvers.batch.kernel import batch_loop
+    from rotorgear.solvers.batch.kernel_jumps import KEPT, keep_start
     from rotorgear.solvers.contact.vectors import BATCH
 
     count = len(systems)
@@ -125,10 +126,18 @@ def run_block(
     parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
     laws = acting_laws(first.own, parameters, _stacked([np.array([s.own.turn, s.w]) for s in filled]))
     begins = [*starts, *[starts[-1]] * (BATCH - count)]
+    x = [
+        s.B.T @ begin.z - wide[i % len(wide)][0, :, ERROR]
+        for i, (s, begin) in enumerate(zip(filled, begins, strict=True))
+    ]
+    kept = aligned((m, KEPT, BATCH))
+    keep_start(columns.values, _stacked(x), kept)
+    # Random tangents, the same for all systems and runs.
+    tangents = np.random.default_rng(1).standard_normal((plan.tangents, 2 * first.n))
     motion = BatchMotion(
         _stacked([np.concatenate([s.z, s.dz]) for s in begins]),
-        _kept(filled, begins, wide, columns.values),
-        _tangents(first, plan.tangents),
+        kept,
+        _stacked([tangents] * BATCH),
         aligned((m, BATCH)),
     )
     sums = blank_sums(m)
@@ -202,14 +211,6 @@ def blank_sums(m: int) -> np.ndarray:
     return sums
 
 
-def _tangents(system: SmallSystem, count: int) -> np.ndarray:
-    """Random tangents (t, 2 n, w), the same for all systems and runs."""
-    from rotorgear.solvers.contact.vectors import BATCH
-
-    drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
-    return _stacked([drawn] * BATCH)
-
-
 def aligned(shape: tuple[int, ...]) -> np.ndarray:
     """Zeros whose rows begin where vector registers read best."""
     size = int(np.prod(shape))
@@ -249,20 +250,3 @@ def _sparse(matrices: Sequence[np.ndarray]) -> SparseRows:
     used = np.any([matrix != 0.0 for matrix in matrices], axis=0)
     first = np.concatenate([[0], np.cumsum(used.sum(axis=1))]).astype(np.int64)
     return SparseRows(first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices]))
-
-
-def _kept(
-    systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray], values: np.ndarray
-) -> np.ndarray:
-    """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_jumps.py."""
-    from rotorgear.solvers.batch.kernel_jumps import KEPT, keep_start
-
-    x = _stacked(
-        [
-            system.B.T @ start.z - tables[i % len(tables)][0, :, ERROR]
-            for i, (system, start) in enumerate(zip(systems, starts, strict=True))
-        ]
-    )
-    kept = aligned((len(x), KEPT, x.shape[1]))
-    keep_start(values, x, kept)
-    return kept

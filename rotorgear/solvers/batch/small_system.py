@@ -133,7 +133,10 @@ def small_system(
     carried = np.zeros((0, local.n))
     if len(rigid) and own.forces.laws:
         carried = _carried(rigid, damped, B, taken_at_rest(local, rest.q, own, turns * 2.0 * np.pi / w))
-    rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
+    # All |eigenvalues| of z'' = -K z - D z'.
+    zero = np.zeros((local.n, local.n))
+    matrices = [np.block([[zero, np.eye(local.n)], [-(k / w**2), -(c / w)]]) for k, c in linear]
+    rates = np.concatenate([np.abs(np.linalg.eigvals(A)) for A in matrices])
     followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
     return SmallSystem(
         _clean(K) / w**2,
@@ -178,12 +181,6 @@ def _carried(rigid: np.ndarray, D: np.ndarray, B: np.ndarray, taken: Taken) -> n
     push = along @ pushes
     felt = np.abs(push) > _FELT * np.linalg.norm(pushes)
     return np.asarray(along[felt & (push**2 > _SLOWER * np.maximum(drags, 0.0) * taken.power)])
-
-
-def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:
-    """All |eigenvalues| of z'' = -K z - D z'."""
-    A = np.block([[np.zeros_like(K), np.eye(len(K))], [-K, -D]])
-    return np.abs(np.linalg.eigvals(A))
 
 
 def refuse_large(n: int) -> None:

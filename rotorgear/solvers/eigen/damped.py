@@ -131,7 +131,29 @@ def solve(search: Search, rows: int | None, below: float | None, dense: bool = F
                 return pairs
             break
         wanted += max(8, wanted // 4)
-    return _dense(search, rows)
+
+    # LAPACK's `eig` of the inverse gives all finite eigenvalues, of which the first `rows` matter.
+    inverse = search.inverse
+    size = 2 * inverse.quadratic.n
+    if size > _LARGEST_DENSE:
+        raise ConvergenceError(
+            f"All eigenvalues of {size} states were needed, which is too many: the spectrum is too wide, or too much of it was"
+            " asked for. Ask for fewer modes."
+        )
+    known = np.hstack([inverse.zeros, infinite_states(inverse.quadratic)])
+    rest = np.linalg.qr(known, mode="complete")[0][:, known.shape[1] :] if known.shape[1] else np.eye(size)
+    # Off the states of zero and of infinite eigenvalues: these would spoil the others by their defective pairs.
+    T = rest.T @ inverse.apply(rest)
+    mu, X = np.linalg.eig(T)
+    finite = np.abs(mu) > size * EPS**2 * np.abs(mu).max(initial=0.0)
+    mu = mu[finite]
+    X = rest @ X[:, finite]
+    norm = float(np.linalg.norm(T, 1)) if T.size else 0.0
+    # Rounding goes with the largest mu, hence with the lowest eigenvalues; where it swamps the highest ones they are taken from
+    # the companion matrix itself, whose rounding goes with them. The two are equally good at the geometric mean.
+    if mu.size and EPS * norm > _TOO_BLURRED * np.abs(mu).min():
+        mu, X = _with_direct(inverse, mu, X)
+    return _selected(search, mu, X, known, norm, reach=np.inf, rows=rows)
 
 
 def _arnoldi(search: Search, wanted: int) -> Pairs:
@@ -177,33 +199,6 @@ def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
         # Residuals fall geometrically from about 1 at size = wanted: go to where the line meets the tolerance
         slope = np.log(min(worst, 0.1)) / max(krylov.size - wanted, 1)
         goal = krylov.size + int(np.clip(np.log(_CONVERGED / worst) / slope, 1, wanted))
-
-
-def _dense(search: Search, rows: int | None) -> Pairs:
-    """All finite eigenvalues, of which the first `rows` matter: `eig` of the inverse off the zero and infinite states.
-
-    Rounding goes with the largest mu, hence with the lowest eigenvalues; where it swamps the highest ones they are taken
-    from the companion matrix itself, whose rounding goes with them. The two are equally good at the geometric mean.
-    """
-    inverse = search.inverse
-    size = 2 * inverse.quadratic.n
-    if size > _LARGEST_DENSE:
-        raise ConvergenceError(
-            f"All eigenvalues of {size} states were needed, which is too many: the spectrum is too wide, or too much of it was"
-            " asked for. Ask for fewer modes."
-        )
-    known = np.hstack([inverse.zeros, infinite_states(inverse.quadratic)])
-    rest = np.linalg.qr(known, mode="complete")[0][:, known.shape[1] :] if known.shape[1] else np.eye(size)
-    # Off the states of zero and of infinite eigenvalues: these would spoil the others by their defective pairs.
-    T = rest.T @ inverse.apply(rest)
-    mu, X = np.linalg.eig(T)
-    finite = np.abs(mu) > size * EPS**2 * np.abs(mu).max(initial=0.0)
-    mu = mu[finite]
-    X = rest @ X[:, finite]
-    norm = float(np.linalg.norm(T, 1)) if T.size else 0.0
-    if mu.size and EPS * norm > _TOO_BLURRED * np.abs(mu).min():
-        mu, X = _with_direct(inverse, mu, X)
-    return _selected(search, mu, X, known, norm, reach=np.inf, rows=rows)
 
 
 def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

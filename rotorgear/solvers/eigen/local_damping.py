@@ -59,9 +59,18 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
         problem: the pencil and its undamped modes, some more than are asked for.
         count: number of modes, rigid-body motions included. below: highest |s| in rad/s. At least one of the two is given.
     """
-    places = _places(problem)
-    if places is None or problem.moves_rigid_bodies():
+    C, _ = problem.halves
+    touched = np.unique(C.indices)
+    if len(touched) > min(_MOST_PLACES, _MOST_OF * C.shape[0]) or problem.moves_rigid_bodies():
         return None
+    # Unit forces P (n, p) of the dampers, whose damping matrix is P c P^T.
+    scale = 1.0 / problem.weight[touched]
+    block = np.zeros((len(touched), len(touched)))
+    block[np.searchsorted(touched, C.indices), np.searchsorted(touched, columns_of(C))] = C.data
+    values, vectors = np.linalg.eigh(block * scale * scale[:, None])
+    real = np.abs(values) > _RANK * np.abs(values).max(initial=0.0)
+    P = np.zeros((C.shape[0], int(real.sum())))
+    P[touched] = vectors[:, real] / scale[:, None]
     most = len(problem.frequencies)
     rows = most if count is None else max(count - problem.rigid.shape[1], 0)
     limit = np.inf if below is None else below
@@ -69,10 +78,10 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
         # Undamped modes, static responses to dampers, and what the velocities of the first `rows` modes excite.
         space = UndampedBasis(problem)
         modes = problem.modes[:, :rows]
-        forced = problem.without_rigid(problem.factor.solve(np.hstack([places, problem.D @ modes])))
-        local = forced[:, : places.shape[1]]
+        forced = problem.without_rigid(problem.factor.solve(np.hstack([P, problem.D @ modes])))
+        local = forced[:, : P.shape[1]]
         space.add(local, np.maximum(space.sizes(local), np.finfo(float).tiny), 0.0)
-        space.add(forced[:, places.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
+        space.add(forced[:, P.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
                 return None
@@ -92,30 +101,18 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             s, v, e, unsure = _corrected(problem, found.s[:wanted], right, basis @ found.y[:, :wanted])
             if unsure <= _CONVERGED:
                 asked = min(rows, int(np.count_nonzero(np.abs(s) <= limit * (1.0 + EDGE))))
-                found_modes = counted_modes(
-                    problem, s[:asked], _polished(problem, s[:asked], v[:, :asked]), count, _BASIS
-                )
+                s = s[:asked]
+                v = v[:, :asked]
+                # One more correction A^-1 Q(s) v frees the vectors of what lies beyond the undamped modes X. Along X, where r of
+                # the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
+                more = problem.without_rigid(problem.factor.solve(problem.applied(s, v)))
+                v = v - more + problem.modes @ (problem.modes.T @ times(problem.M, more))
+                found_modes = counted_modes(problem, s, v, count, _BASIS)
                 if found_modes.backward_error.max(initial=0.0) <= _SOUND:
                     last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
                     return found_modes if _none_is_missing(problem, small, last) else None
             space.add(e, space.sizes(right), _COARSE)
     return None
-
-
-def _places(problem: NearUndamped) -> np.ndarray | None:
-    """Unit forces P (n, p) of the dampers, whose damping matrix is P c P^T; None where they are everywhere."""
-    C, _ = problem.halves
-    touched = np.unique(C.indices)
-    if len(touched) > min(_MOST_PLACES, _MOST_OF * C.shape[0]):
-        return None
-    scale = 1.0 / problem.weight[touched]
-    block = np.zeros((len(touched), len(touched)))
-    block[np.searchsorted(touched, C.indices), np.searchsorted(touched, columns_of(C))] = C.data
-    values, vectors = np.linalg.eigh(block * scale * scale[:, None])
-    real = np.abs(values) > _RANK * np.abs(values).max(initial=0.0)
-    P = np.zeros((C.shape[0], int(real.sum())))
-    P[touched] = vectors[:, real] / scale[:, None]
-    return P
 
 
 def _corrected(
@@ -160,15 +157,6 @@ def _corrected(
         v[:, close] = v[:, close] @ turn
     order = np.argsort(np.abs(values), kind="stable")
     return values[order], v[:, order], e, unsure
-
-
-def _polished(problem: NearUndamped, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Right vectors (n, m) that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
-
-    Along X, where r of the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
-    """
-    e = problem.without_rigid(problem.factor.solve(problem.applied(s, v)))
-    return np.asarray(v - e + problem.modes @ (problem.modes.T @ times(problem.M, e)))
 
 
 def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:

@@ -56,8 +56,14 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     a, rate_a = parted(a, slope)
     b, rate_b = parted(b, slope)
 
+    def product(one: Eigen, other: Eigen) -> np.ndarray:
+        """c_ij (m_a, m_b)."""
+        damping = one.y.conj().T @ (one.pencil.D @ other.q)
+        mass = one.y.conj().T @ (one.pencil.M @ other.q)
+        return np.asarray(damping + (one.s[:, None] + other.s) * mass)
+
     # Vectors of twins are anyone's: the MAC of a mode is summed over them, and no twin counts as the second best.
-    mac = _mac(a, b)
+    mac = product(a, b) * product(b, a).T
     twins_a = _twins(a.s, rate_a, length)
     twins_b = _twins(b.s, rate_b, length)
     mac = np.clip(np.abs(twins_a @ mac @ twins_b) / np.maximum(twins_a.sum(1)[:, None], 1.0), 0.0, 1.0)
@@ -102,17 +108,6 @@ def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
             y[:, equal] = y[:, equal] @ np.linalg.inv(W).conj().T
     rate = -np.einsum("ri,ri->i", y.conj(), slope.D @ q * at.s + slope.K @ q)
     return replace(at, q=q, y=y), rate
-
-
-def _mac(a: Eigen, b: Eigen) -> np.ndarray:
-    """c_ij(a, b) c_ji(b, a), (m_a, m_b)."""
-
-    def product(one: Eigen, other: Eigen) -> np.ndarray:
-        damping = one.y.conj().T @ (one.pencil.D @ other.q)
-        mass = one.y.conj().T @ (one.pencil.M @ other.q)
-        return np.asarray(damping + (one.s[:, None] + other.s) * mass)
-
-    return np.asarray(product(a, b) * product(b, a).T)
 
 
 def _twins(s: np.ndarray, rate: np.ndarray, length: float) -> np.ndarray:

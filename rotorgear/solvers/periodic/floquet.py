@@ -78,8 +78,15 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
         complete = False
     if not R.shape[1] or not _tied(plant, R):
         return ModalBasis(V, complete, highest, count)
-    unheld, held = _by_answers(plant, R)
-    return ModalBasis(np.hstack([unheld, held, V]), complete, highest, count, unheld.shape[1])
+    # First those of the motions R that no law answers with a force wherever they are, then the others.
+    m = plant.m
+    moved = np.vstack([np.zeros((1, m)), _FAR * np.eye(m), -_FAR * np.eye(m)])
+    F = answered(np.zeros(len(moved)), moved, np.zeros_like(moved), plant.forces, plant.speed).F
+    acts = np.any(F[0] != F, axis=1)[1:].reshape(2, m).any(axis=0)
+    _, sizes, right = np.linalg.svd(plant.B.T[acts] @ R)
+    held = int(np.count_nonzero(sizes > 1e-9 * np.linalg.norm(R)))
+    unheld = R @ right[held:].T
+    return ModalBasis(np.hstack([unheld, R @ right[:held].T, V]), complete, highest, count, unheld.shape[1])
 
 
 def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
@@ -98,17 +105,6 @@ def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
 
 def _sizes(V: np.ndarray, M: sp.csc_array) -> np.ndarray:
     return np.sqrt(np.maximum(np.einsum("ij,ij->j", V, M @ V), 1e-300))
-
-
-def _by_answers(plant: Plant, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The motions R (n, r) that no law answers with a force wherever they are, and the others."""
-    m = plant.m
-    moved = np.vstack([np.zeros((1, m)), _FAR * np.eye(m), -_FAR * np.eye(m)])
-    F = answered(np.zeros(len(moved)), moved, np.zeros_like(moved), plant.forces, plant.speed).F
-    acts = np.any(F[0] != F, axis=1)[1:].reshape(2, m).any(axis=0)
-    _, sizes, right = np.linalg.svd(plant.B.T[acts] @ R)
-    held = int(np.count_nonzero(sizes > 1e-9 * np.linalg.norm(R)))
-    return R @ right[held:].T, R @ right[:held].T
 
 
 def _tied(plant: Plant, R: np.ndarray) -> bool:
@@ -172,7 +168,14 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches
     s, X = la.eig(A)
     condition = np.linalg.cond(X, 1)
     if condition > 1e9:
-        return _dense_monodromy(A, forced, B, unit, _means(plant, fine, switches), h)
+        # Where eigenvectors lie too near to each other: the same by exponentials of whole matrices.
+        look = np.zeros((2 * m, 2 * r))
+        look[:m, :r] = B.T / unit
+        look[m:, r:] = B.T
+        total = np.eye(2 * r)
+        for tangent in _means(plant, fine, switches):
+            total = la.expm((A + forced @ (tangent @ look)) * h) @ total
+        return total
     Y = np.linalg.inv(X)
     kept = s.imag >= 0.0
     weight = np.where(s[kept].imag > 0.0, 2.0, 1.0)
@@ -250,18 +253,3 @@ def _means(plant: Plant, fine: Samples, switches: Switches) -> np.ndarray:
         np.add.at(ends, cells, missed * jump[:, flat])
         S[:, a, place + b] = ends.reshape(N, FINER, -1).mean(axis=1)
     return S
-
-
-def _dense_monodromy(
-    A: np.ndarray, forced: np.ndarray, B: np.ndarray, unit: np.ndarray, S: np.ndarray, h: float
-) -> np.ndarray:
-    """The same by exponentials of whole matrices, where eigenvectors lie too near to each other."""
-    r = len(unit)
-    m = B.shape[1]
-    rows = np.zeros((2 * m, 2 * r))
-    rows[:m, :r] = B.T / unit
-    rows[m:, r:] = B.T
-    total = np.eye(2 * r)
-    for k in range(len(S)):
-        total = la.expm((A + forced @ (S[k] @ rows)) * h) @ total
-    return np.asarray(total)

@@ -156,13 +156,18 @@ class HarmonicOrbits:
 
     def _modes(self, plant: Plant) -> ModalBasis:
         """The basis of the map over a period: that of the last plant where inertia and stiffness are the same."""
+        from rotorgear.solvers.time.local_system import acceleration
+
         if self._basis is None or self._basis_of is None or self._basis_of.K is not plant.K:
             contact = plant.forces.reference_stiffness
             root = np.sqrt(np.maximum(np.diag(contact), 0.0))
             R = plant.static.R * root * root[:, None]
             alive = np.linalg.eigvalsh(0.5 * (R + R.T)).max(initial=0.0)
             w = self.grid.frequency(plant.speed)
-            own = _contact_frequency(plant) if alive > 0.0 else 0.0
+            # The highest frequency at which a contact alone would vibrate on the inertia it meets.
+            k = np.diag(contact) if alive > 0.0 else np.zeros(plant.m)
+            squares = [k[j] * float(b @ acceleration(plant.M, b)) for j, b in enumerate(plant.B.T) if k[j] > 0.0]
+            own = float(np.sqrt(max(squares, default=0.0)))
             self._basis = basis_of(plant, max(_BASES * w, _CONTACTS * own))
             self._basis_of = plant
         return self._basis
@@ -265,12 +270,3 @@ def static_displacements(plant: Plant) -> np.ndarray:
 
     found = local_equilibrium(static.d, static.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
     return np.asarray(found.d if found.converged else static.d)
-
-
-def _contact_frequency(plant: Plant) -> float:
-    """Highest frequency at which a contact alone would vibrate on the inertia it meets, rad/s."""
-    from rotorgear.solvers.time.local_system import acceleration
-
-    k = np.diag(plant.forces.reference_stiffness)
-    squares = [k[j] * float(b @ acceleration(plant.M, b)) for j, b in enumerate(plant.B.T) if k[j] > 0.0]
-    return float(np.sqrt(max(squares, default=0.0)))

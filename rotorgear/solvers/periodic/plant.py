@@ -117,7 +117,10 @@ class Plants:
         old = self._last
         if old is None or not (_alike(old.K, K) and _alike(old.M, system.M) and _alike(self._places, system.B)):
             B = system.B.toarray()
-            free = old.free if old is not None and _unstrained(K, old.free) else free_motions(system.M, K)
+            # The motions of the last plant, unless they strain this one.
+            R = np.zeros((system.n, 0)) if old is None else old.free
+            kept = R.shape[1] and np.all(np.abs(K @ R) <= _FREE * (abs(K) @ np.abs(R)) + 1e-300)
+            free = R if kept else free_motions(system.M, K)
             plant = Plant(system.M, C, system.G, K, B, system.load, system.forces, speed, system.watched_vectors, free)
             self._places = system.B
         else:
@@ -139,7 +142,3 @@ def _alike(A: sp.csc_array, B: sp.csc_array) -> bool:
     if A is B:
         return True
     return A.nnz == B.nnz and np.array_equal(A.indices, B.indices) and np.array_equal(A.data, B.data)
-
-
-def _unstrained(K: sp.csc_array, R: np.ndarray) -> bool:
-    return bool(R.shape[1]) and bool(np.all(np.abs(K @ R) <= _FREE * (abs(K) @ np.abs(R)) + 1e-300))

@@ -18,6 +18,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.periodic.plant import Plant
+from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 
 # Systems up to this size are solved densely, and those whose damping is full to such a share, as modal damping makes it.
@@ -86,10 +87,11 @@ class Receptances:
                 X[i] = la.lapack.zgetrs(lu, pivots, B)[0]
                 Y[i] = la.lapack.zgetrs(lu, pivots, B, trans=1)[0]
         else:
-            K, D, M = _on_one_pattern(plant)
+            # On one pattern sums of matrices are sums of their values; the rows of a transpose are columns.
+            first, row, (k, d, mass) = on_one_pattern(plant.K.T, plant.D.T, plant.M.T)
             for i, frequency in enumerate(w):
-                data = K.data + (1j * frequency) * D.data - frequency**2 * M.data
-                factor = factor_general(sp.csc_array((data, K.indices, K.indptr), shape=K.shape))
+                data = k + (1j * frequency) * d - frequency**2 * mass
+                factor = factor_general(sp.csc_array((data, row, first), shape=plant.K.shape))
                 X[i] = factor.solve(B)
                 Y[i] = factor.solve(B, transposed=True)
         if not np.all(np.isfinite(X)):
@@ -135,8 +137,10 @@ class Receptances:
     def _projected(self, plant: Plant, leave: int, *, wide: bool) -> Projected:
         """The plant in both bases: anew where more than its speed and load has changed."""
         key = (leave, wide)
-        if key in self._small and _same_matrices(self._small[key][0], plant):
-            return self._small[key][1]
+        if key in self._small:
+            known, own = self._small[key]
+            if all(getattr(known, name) is getattr(plant, name) for name in ("K", "C", "M", "gyroscopic", "B")):
+                return own
         B = np.hstack([plant.B, plant.watched]) if wide else plant.B
         if key not in self._bases:
             s = B.shape[1]
@@ -175,26 +179,6 @@ def _orthonormal(V: np.ndarray) -> np.ndarray:
     return np.linalg.qr(V / np.linalg.norm(V, axis=1, keepdims=True))[0]
 
 
-def _same_matrices(a: Plant, b: Plant) -> bool:
-    return a.K is b.K and a.C is b.C and a.M is b.M and a.gyroscopic is b.gyroscopic and a.B is b.B
-
-
 _SINGULAR = (
     "a harmonic of the excitation meets an undamped resonance to the last digit: move the range, or give damping"
 )
-
-
-def _on_one_pattern(plant: Plant) -> tuple[sp.csc_array, sp.csc_array, sp.csc_array]:
-    """K, D and M with the places of each other's entries, so that their sums are sums of data."""
-    parts = [sp.coo_array(A) for A in (plant.K, plant.D, plant.M)]
-    n = plant.K.shape[0]
-    keys = [part.col.astype(np.int64) * n + part.row for part in parts]
-    all_keys = np.unique(np.concatenate(keys))
-    first = np.searchsorted(all_keys // n, np.arange(n + 1))
-    rows = all_keys % n
-    found = []
-    for part, key in zip(parts, keys, strict=True):
-        data = np.zeros(all_keys.size)
-        np.add.at(data, np.searchsorted(all_keys, key), part.data)
-        found.append(sp.csc_array((data, rows, first), shape=(n, n)))
-    return found[0], found[1], found[2]

@@ -102,7 +102,11 @@ def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified 
             tangent = node_at(share).tangent
             return float(tangent[-1] * np.sign(tangent @ normal))
         multipliers = certified(share).multipliers
-        return _doubling(multipliers) if kind == DOUBLING else _ring(multipliers)
+        if kind == DOUBLING:
+            return _doubling(multipliers)
+        # How far the complex pair nearest to the circle lies outside it.
+        sizes = np.abs(_pair(multipliers)) - 1.0
+        return float(sizes[np.argmax(sizes)]) if sizes.size else -1.0
 
     ends = (test(0.0), test(1.0))
     if not ends[0] * ends[1] < 0.0:
@@ -131,9 +135,3 @@ def _doubling(multipliers: np.ndarray) -> float:
 def _pair(multipliers: np.ndarray) -> np.ndarray:
     mu = multipliers[np.abs(multipliers) > 0.5]
     return np.asarray(mu[np.abs(mu.imag) > _REAL])
-
-
-def _ring(multipliers: np.ndarray) -> float:
-    """How far the complex pair nearest to the circle lies outside it."""
-    sizes = np.abs(_pair(multipliers)) - 1.0
-    return float(sizes[np.argmax(sizes)]) if sizes.size else -1.0

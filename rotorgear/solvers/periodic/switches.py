@@ -15,7 +15,6 @@ import numpy as np
 
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import Samples, arguments_of
-from rotorgear.solvers.time.local_forces import LocalForces
 
 _BISECTIONS = 40
 # Distance from a switch, as a share of the spacing, at which both sides are looked at.
@@ -78,7 +77,13 @@ def switches_of(c: np.ndarray, now: Samples, plant: Plant, w: float) -> Switches
     spacing = 2.0 * np.pi / len(now.t)
     m = forces.m
     blocks = now.Kd.shape[1]
-    piece, full = _pieces(now, forces)
+    # Which smooth piece each law is on at the instants (r, l), told as `law_at` tells it, by the full damping (l,) of each.
+    first = forces.block_first[:-1]
+    damping = np.add.reduceat(now.Kv, first, axis=1)
+    largest = damping.max(axis=0)
+    full = np.where(largest > 0.0, (1.0 - _ROUNDING) * largest, np.inf)
+    holds = np.add.reduceat((now.Kd != 0.0) | (now.Kv != 0.0), first, axis=1)
+    piece = 4.0 * now.side + holds.astype(bool) + 2.0 * (damping >= full)
     cells, laws = np.nonzero(piece != np.roll(piece, -1, axis=0))
     if not cells.size or cells.size > _MOST:
         nothing = np.zeros((0, m))
@@ -113,13 +118,3 @@ def _jumps(beside: np.ndarray, own: np.ndarray, step: float) -> tuple[np.ndarray
     jump = (2.0 * after - later) - (2.0 * before - earlier)
     rate = ((later - after) - (before - earlier)) / step
     return np.where(own, -jump, 0.0), np.where(own, -rate, 0.0)
-
-
-def _pieces(now: Samples, forces: LocalForces) -> tuple[np.ndarray, np.ndarray]:
-    """Which smooth piece each law is on at the instants (r, l), told as `law_at` tells it, and the full damping (l,) of each."""
-    first = forces.block_first[:-1]
-    damping = np.add.reduceat(now.Kv, first, axis=1)
-    largest = damping.max(axis=0)
-    full = np.where(largest > 0.0, (1.0 - _ROUNDING) * largest, np.inf)
-    holds = np.add.reduceat((now.Kd != 0.0) | (now.Kv != 0.0), first, axis=1)
-    return 4.0 * now.side + holds.astype(bool) + 2.0 * (damping >= full), full

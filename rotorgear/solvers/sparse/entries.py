@@ -92,6 +92,20 @@ def row_products(A: sp.csr_array, X: np.ndarray) -> Iterator[tuple[slice, np.nda
         yield rows, part @ X
 
 
+def on_one_pattern(*matrices: sp.csc_array | sp.csr_array) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Row starts and columns of the union of some square sparse matrices, and the values of each in it, row by row."""
+    n = matrices[0].shape[0]
+    entries = [A.tocoo() for A in matrices]
+    keys = [one.row.astype(np.int64) * n + one.col for one in entries]
+    union = np.unique(np.concatenate(keys))
+    first = np.searchsorted(union, n * np.arange(n + 1, dtype=np.int64))
+    values = [
+        np.bincount(np.searchsorted(union, key), one.data, minlength=union.size)
+        for key, one in zip(keys, entries, strict=True)
+    ]
+    return first.astype(np.int32), (union % n).astype(np.int32), values
+
+
 def columns_of(A: sp.csc_array | sp.csr_array) -> np.ndarray:
     """The column of each entry."""
     return A.indices if A.format == "csr" else np.repeat(np.arange(A.shape[1]), np.diff(A.indptr))

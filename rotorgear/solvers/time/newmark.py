@@ -11,12 +11,12 @@ Hilber, Hughes and Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283; Chung and 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.solvers.time.arguments import (
@@ -125,12 +125,27 @@ class NewmarkStepper:
         condensed = (1.0 - af) * (B.T @ P)
         rotation = system.rotation
         observed = system.observed_rows
-        first, column, (K, D_nz, M) = _one_pattern(system.K, D, system.M)
+        first, column, (K, D_nz, M) = on_one_pattern(system.K, D, system.M)
+        # SuperLU's factors without their diagonals.
+        lu = factor._lu
+        L = sp.csc_array(sp.tril(lu.L, -1))
+        U = sp.csc_array(sp.triu(lu.U, 1))
+        triangles = Triangles(
+            Lp=L.indptr.astype(np.int32),
+            Li=L.indices.astype(np.int32),
+            Lx=L.data.copy(),
+            Up=U.indptr.astype(np.int32),
+            Ui=U.indices.astype(np.int32),
+            Ux=U.data.copy(),
+            diagonal=1.0 / lu.U.diagonal(),
+            row_place=lu.perm_r.astype(np.int32),
+            column_place=lu.perm_c.astype(np.int32),
+        )
         self._weights = Weights(float(am), float(af), float(beta), float(gamma))
         self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
         self._structure = Structure(first, column, K, D_nz, M, np.ascontiguousarray(system.load, dtype=float))
         self._step = NewmarkStep(
-            S=_triangles(factor._lu),
+            S=triangles,
             Bt=_rows(system.B.T),
             Wt=_rows(system.watched_vectors.T),
             P=np.ascontiguousarray(P),
@@ -178,34 +193,3 @@ def _rows(A: sp.csc_array | np.ndarray) -> SparseRows:
     """A matrix by rows."""
     rows = sp.csr_array(A)
     return SparseRows(rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data.astype(float))
-
-
-def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Row starts and columns of the union of some sparse matrices, and the values of each in it."""
-    n = matrices[0].shape[0]
-    entries = [A.tocoo() for A in matrices]
-    keys = [one.row.astype(np.int64) * n + one.col for one in entries]
-    union = np.unique(np.concatenate(keys))
-    first = np.searchsorted(union, n * np.arange(n + 1, dtype=np.int64))
-    values = [
-        np.bincount(np.searchsorted(union, key), one.data, minlength=union.size)
-        for key, one in zip(keys, entries, strict=True)
-    ]
-    return first.astype(np.int32), (union % n).astype(np.int32), values
-
-
-def _triangles(lu: Any) -> Triangles:
-    """SuperLU's factors without their diagonals."""
-    L = sp.csc_array(sp.tril(lu.L, -1))
-    U = sp.csc_array(sp.triu(lu.U, 1))
-    return Triangles(
-        Lp=L.indptr.astype(np.int32),
-        Li=L.indices.astype(np.int32),
-        Lx=L.data.copy(),
-        Up=U.indptr.astype(np.int32),
-        Ui=U.indices.astype(np.int32),
-        Ux=U.data.copy(),
-        diagonal=1.0 / lu.U.diagonal(),
-        row_place=lu.perm_r.astype(np.int32),
-        column_place=lu.perm_c.astype(np.int32),
-    )
