@@ -72,11 +72,11 @@ def distinct_elements(
     turn[2:4, 4:6] = -np.eye(2)
     turn[4:6, 2:4] = np.eye(2)
     if order > 1 and not lumped:
-        bubbles = shaft_bubbles(kinds, order, points)
-        fields = np.concatenate([fields, bubbles.fields], axis=3)
-        strain = _block(strain, bubbles.strain)
-        modulus = _block(modulus, np.eye(bubbles.strain.shape[1])[None])  # their stiffness is R^T R already
-        turn = _block(turn[None], bubbles.turn[None])[0]
+        of_bubbles, R, turn_of_bubbles = shaft_bubbles(kinds, order, points)
+        fields = np.concatenate([fields, of_bubbles], axis=3)
+        strain = _block(strain, R)
+        modulus = _block(modulus, np.eye(R.shape[1])[None])  # their stiffness is R^T R already
+        turn = _block(turn[None], turn_of_bubbles[None])[0]
     mass, gyroscopic = _lumped(kinds, points) if lumped else _consistent(kinds, fields, weights)
 
     # Damping in the rotating material, eta d(strain)/dt there: seen from rest, C = eta K and a circulation -W eta B^T D P B.
@@ -99,7 +99,7 @@ def inner_fields(data: ShaftElements, order: int) -> tuple[np.ndarray, np.ndarra
     points = point_count(data, order)
     fields = _statics(data, points)[2]
     if order > 1:
-        fields = np.concatenate([fields, shaft_bubbles(data, order, points).fields], axis=3)
+        fields = np.concatenate([fields, shaft_bubbles(data, order, points)[0]], axis=3)
     return gauss(points)[0], fields
 
 

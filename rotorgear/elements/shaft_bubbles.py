@@ -8,29 +8,10 @@ joins them. Without shear deformation the slope is the derivative of the deflect
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.polynomial import legendre
 
 from rotorgear.elements.shaft_section import ShaftElements, cowper, gauss, section
-
-
-@dataclass(frozen=True)
-class Bubbles:
-    """Bubbles of e elements.
-
-    Attributes:
-        fields: x y z theta_x theta_y theta_z at g points, (6, e, g, b).
-        strain: R (e, b, b), the strain-displacement matrix with D = 1: stiffness K = R^T R.
-        motions: motion of each.
-        turn: (b, b), turns displacements and slopes by +90 degrees about z, and the strains likewise.
-    """
-
-    fields: np.ndarray
-    strain: np.ndarray
-    motions: tuple[str, ...]
-    turn: np.ndarray
 
 
 def bubble_motions(order: int, shear: bool) -> tuple[str, ...]:
@@ -58,8 +39,13 @@ def bubble_places(order: int, richer: int, shear: bool) -> np.ndarray:
     return np.array([rich[name] for name in names(order)], dtype=int)
 
 
-def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
-    """Return the bubbles of elements of one order >= 2 at a number of Gauss points."""
+def shaft_bubbles(data: ShaftElements, order: int, points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Bubbles of e elements of one order >= 2 at g Gauss points.
+
+    Returns:
+        Their fields x y z theta_x theta_y theta_z (6, e, g, b); R (e, b, b), the strain-displacement matrix with D = 1, so that
+        the stiffness is R^T R; and (b, b), which turns displacements and slopes by +90 degrees about z, and the strains likewise.
+    """
     # NaN stands for Cowper's coefficient, which is finite; an infinite one switches shear deformation off.
     shear = bool(np.all(np.isfinite(data.shear_coefficient) | np.isnan(data.shear_coefficient)))
     at, weights, _ = gauss(points)
@@ -112,7 +98,7 @@ def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
     turn = np.zeros((count, count))
     turn[xz, yz] = -np.eye(b)
     turn[yz, xz] = np.eye(b)
-    return Bubbles(fields, strain, bubble_motions(order, shear), turn)
+    return fields, strain, turn
 
 
 def _plane(

@@ -5,13 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.model.layout.external_loads import ExternalLoad
+from rotorgear.model.parts.load import Load
 from rotorgear.system.system import System
 
 
-def torque_loads(system: System) -> np.ndarray:
-    """Applied torques at their places, (a,)."""
+def varying_load(system: System, name: str) -> Load | None:
+    """The load behind an applied torque, where it varies."""
+    table, _, own = name.partition(".")
+    load = system.model.loads.get(own) if table == "loads" else None
+    return load if load is not None and load.varies else None
+
+
+def torque_loads(system: System, *, steady: bool = False) -> np.ndarray:
+    """Applied torques at their places, (a,); where `steady`, those alone that never change."""
     f = np.zeros(system.dofs.transform.shape[0])
+    # A history acts as a law with its whole value, the moment about z in the balance of torques included.
+    histories = {load.address for load in system.layout.external_loads if load.history}
     for item in system.state.applied:
+        if steady and (item.name in histories or varying_load(system, item.name) is not None):
+            continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
     return f
 

@@ -22,7 +22,7 @@ from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
 from rotorgear.system.groups import ElementGroup, contact_geometry, face_of, mesh_damping, mesh_dofs
-from rotorgear.system.loads import external_load, weight_loads
+from rotorgear.system.loads import external_load, torque_loads, weight_loads
 from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
@@ -33,7 +33,6 @@ from rotorgear.system.local_parts import (
     friction_part,
     load_parts,
     unbalance_parts,
-    varying_load,
     without_linear_part,
 )
 from rotorgear.system.system import System
@@ -94,20 +93,25 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         state = system.state.about_nominal_flanks
         maps = [state.face_map(force) for force in state.forces]
         mapped = {k: teeth for k, teeth in enumerate(maps) if teeth is not None}
-    resisting = (
-        _against_tilt(group, along=k in mapped)
-        for k, group in enumerate(group for group in system.groups if group.part.startswith("meshes."))
-    )
-    groups = (
-        *(
-            replace(group, matrices=replace(group.matrices, modulus=None, circulation=None))
-            if group.part in laws
-            else group
-            for group in system.groups_at(speed)
-            if not group.part.startswith(("meshes.", "nonlinear_elements."))
-        ),
-        *(group for group in resisting if group is not None),
-    )
+    groups = [
+        replace(group, matrices=replace(group.matrices, modulus=None, circulation=None))
+        if group.part in laws
+        else group
+        for group in system.groups_at(speed)
+        if not group.part.startswith(("meshes.", "nonlinear_elements."))
+    ]
+    for k, group in enumerate(group for group in system.groups if group.part.startswith("meshes.")):
+        m = group.matrices
+        if m.strain is None or m.modulus is None or m.strain.shape[1] != 2:
+            continue
+        # What resists a tilt, without the spring along the flank normal, whose force is a law of its own. Where that law is one
+        # of the tilt as well, the damper alone is left.
+        tilt = ElementMatrices(
+            strain=m.strain[:, 1:],
+            modulus=None if k in mapped else m.modulus[:, 1:, 1:],
+            viscosity=None if m.viscosity is None else m.viscosity[:, 1:, 1:],
+        )
+        groups.append(replace(group, matrices=tilt))
     K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
     C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
     damping = system.model.damping
@@ -123,7 +127,7 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     T = system.dofs.transform
     columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
     operation = system.model.operation
-    steady = torque_load(system) + external_load(system, histories=False)
+    steady = torque_loads(system, steady=True) + external_load(system, histories=False)
     if operation and operation.gravity:
         steady = steady + weight_loads(system, operation.gravity)
     lines = contact_lines(system)
@@ -148,32 +152,7 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         watched=T.T
         @ np.column_stack([np.zeros((T.shape[0], 0)), *(p.rotation for p in parts if p.rotation is not None)]),
     )
-    return LocalModel(system, local, parts, groups)
-
-
-def torque_load(system: System) -> np.ndarray:
-    """Torques of the operating point that never change, on all dofs, (a,)."""
-    f = np.zeros(system.dofs.transform.shape[0])
-    # A history acts as a law with its whole value, the moment about z in the balance of torques included.
-    histories = {load.address for load in system.layout.external_loads if load.history}
-    for item in system.state.applied:
-        if varying_load(system, item.name) is not None or item.name in histories:
-            continue
-        f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
-    return f
-
-
-def _against_tilt(group: ElementGroup, *, along: bool) -> ElementGroup | None:
-    """What of a mesh resists a tilt, without the spring along its flank normal, whose force is a law of its own; None without it.
-
-    Where the law is one of the tilt as well (`along`), the damper alone is left.
-    """
-    m = group.matrices
-    if m.strain is None or m.modulus is None or m.strain.shape[1] != 2:
-        return None
-    viscosity = None if m.viscosity is None else m.viscosity[:, 1:, 1:]
-    modulus = None if along else m.modulus[:, 1:, 1:]
-    return replace(group, matrices=ElementMatrices(strain=m.strain[:, 1:], modulus=modulus, viscosity=viscosity))
+    return LocalModel(system, local, parts, tuple(groups))
 
 
 def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart]:

@@ -16,12 +16,12 @@ from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.model.parts.load import COMPONENTS, Load
+from rotorgear.model.parts.load import COMPONENTS
 from rotorgear.model.parts.supports import element_law
 from rotorgear.quantity import ZERO_CELSIUS
 from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.system.groups import node_dofs, relative_motion
-from rotorgear.system.loads import wrench_load
+from rotorgear.system.loads import varying_load, wrench_load
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -252,10 +252,3 @@ def external_parts(system: System) -> Iterator[LocalPart]:
             yield LocalPart(
                 load.address, f"{name} {component}", table, wrench_load(system, load, np.eye(6)[k])[:, None]
             )
-
-
-def varying_load(system: System, name: str) -> Load | None:
-    """The load behind an applied torque, where it varies."""
-    table, _, own = name.partition(".")
-    load = system.model.loads.get(own) if table == "loads" else None
-    return load if load is not None and load.varies else None

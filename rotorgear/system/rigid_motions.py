@@ -50,7 +50,21 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         some = used.any(axis=1)
         if some.any():
             strained.append(_Strained(np.broadcast_to(B, (e, *B.shape[1:]))[some], used[some], group.dofs[some]))
-    label = _joined(P, T, strained)
+
+    # A number for each of all dofs (a,), the same for those that a candidate, a free dof or an element joins.
+    dofs = [P.indices, T.indices]
+    count = P.shape[1] + T.shape[1]
+    joint = [np.repeat(np.arange(count), np.concatenate([np.diff(P.indptr), np.diff(T.indptr)]))]
+    for part in strained:
+        e, d = part.dofs.shape
+        dofs.append(part.dofs.ravel())
+        joint.append(count + np.repeat(np.arange(e), d))
+        count += e
+    ends = (np.concatenate(dofs), P.shape[0] + np.concatenate(joint))
+    size = P.shape[0] + count
+    graph = sp.coo_array((np.ones(len(ends[0]), dtype=np.int8), ends), shape=(size, size))
+    label = connected_components(graph, directed=False)[1][: P.shape[0]]
+
     rows = _by_label(label)
     columns = _by_label(label[P.indices[P.indptr[:-1]]])
     unknowns = _by_label(label[T.indices[T.indptr[:-1]]])
@@ -73,33 +87,11 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     return np.hstack(found)
 
 
-def _joined(P: sp.csc_array, T: sp.csc_array, strained: list[_Strained]) -> np.ndarray:
-    """A number for each of all dofs (a,), the same for those that a candidate, a free dof or an element joins."""
-    dofs = [P.indices, T.indices]
-    joint = [np.repeat(np.arange(P.shape[1]), np.diff(P.indptr))]
-    joint.append(P.shape[1] + np.repeat(np.arange(T.shape[1]), np.diff(T.indptr)))
-    count = P.shape[1] + T.shape[1]
-    for part in strained:
-        e, d = part.dofs.shape
-        dofs.append(part.dofs.ravel())
-        joint.append(count + np.repeat(np.arange(e), d))
-        count += e
-    first = np.concatenate(dofs)
-    second = P.shape[0] + np.concatenate(joint)
-    size = P.shape[0] + count
-    graph = sp.coo_array((np.ones(len(first), dtype=np.int8), (first, second)), shape=(size, size))
-    return np.asarray(connected_components(graph, directed=False)[1][: P.shape[0]])
-
-
 def _by_label(label: np.ndarray) -> dict[int, np.ndarray]:
     """The places of each number among `label` (k,), ascending."""
     order = np.argsort(label, kind="stable")
     values, first = np.unique(label[order], return_index=True)
-    return (
-        {int(value): part for value, part in zip(values, np.split(order, first[1:]), strict=True)}
-        if len(values)
-        else {}
-    )
+    return dict(zip(values.tolist(), np.split(order, first[1:]), strict=False))  # no places have one empty part
 
 
 def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[_Strained]) -> np.ndarray:

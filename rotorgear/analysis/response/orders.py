@@ -36,9 +36,8 @@ from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.model.parts.load import COMPONENTS, LoadHistory
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.system.contacts import ContactLines
-from rotorgear.system.loads import wrench_load
+from rotorgear.system.loads import varying_load, wrench_load
 from rotorgear.system.local import cycle_pieces
-from rotorgear.system.local_parts import varying_load
 from rotorgear.system.system import System
 
 # What has one frequency: "shaft" or "mesh", the multiple of its frequency, and the ratio to the reference speed.

@@ -92,29 +92,24 @@ class Taken:
 
 def taken_at_rest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> Taken:
     """What laws such as friction take about the displacements q (n,); `period` is the common one in s."""
-    d = local.B.T @ q
-    for pressed in (0.0, _PRESSED, -_PRESSED):
-        found = _taken(local, d + pressed, own, period)
-        if found.power > 0.0:
-            break
-    return found
-
-
-def _taken(local: LocalSystem, d: np.ndarray, own: OwnLaws, period: float) -> Taken:
     laws = local.forces
+    d = local.B.T @ q
     still = np.zeros(local.m)
     numbers = np.searchsorted(laws.first, own.place[0])
-    power = 0.0
-    push = np.zeros(local.m)
-    in_v = np.zeros(laws.block_first[-1])
-    for i in range(_TIMES):
-        F, _, tangent, energy = evaluated(local, d, still, period * i / _TIMES)
-        in_v += tangent / _TIMES
-        taken = energy.reshape(-1, ENERGIES)[:, DISSIPATED] / _TIMES
-        for number, (a, k) in zip(numbers, own.place.T, strict=True):
-            if taken[number] > 0.0:
-                power += taken[number]
-                push[a : a + k] += F[a : a + k] / _TIMES
+    for pressed in (0.0, _PRESSED, -_PRESSED):
+        power = 0.0
+        push = np.zeros(local.m)
+        in_v = np.zeros(laws.block_first[-1])
+        for i in range(_TIMES):
+            F, _, tangent, energy = evaluated(local, d + pressed, still, period * i / _TIMES)
+            in_v += tangent / _TIMES
+            taken = energy.reshape(-1, ENERGIES)[:, DISSIPATED] / _TIMES
+            for number, (a, k) in zip(numbers, own.place.T, strict=True):
+                if taken[number] > 0.0:
+                    power += taken[number]
+                    push[a : a + k] += F[a : a + k] / _TIMES
+        if power > 0.0:
+            break
     return Taken(power, push, _blocks(laws, own, in_v) - _of_laws(own, laws.reference_damping))
 
 

@@ -139,43 +139,31 @@ larger = intrinsic(_extreme(">"))
 smaller = intrinsic(_extreme("<"))
 
 
-def _register(function: Callable[..., Any], name: str) -> None:
-    """Make an operator known for lanes, and for lanes with numbers on either side."""
-    pairs = [(lanes, lanes), (lanes, types.float64), (types.float64, lanes)]
+def _register(function: Callable[..., Any], name: str, taken: tuple[tuple[Any, ...], ...], **options: Any) -> None:
+    """Make an operator known for some types that it takes, by the instruction of this name."""
 
     class Known(ConcreteTemplate):
         key = function
-        cases = [signature(lanes, *pair) for pair in pairs]  # noqa: RUF012
+        cases = [signature(lanes, *kinds) for kinds in taken]  # noqa: RUF012
 
     infer_global(function)(Known)
 
     def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
-        return getattr(builder, name)(*_wide(builder, made, args), flags=_FLAGS)
+        return getattr(builder, name)(*_wide(builder, made, args), **options)
 
-    for pair in pairs:
-        lower_builtin(function, *pair)(build)
+    for kinds in taken:
+        lower_builtin(function, *kinds)(build)
 
 
+_WITH_NUMBERS = ((lanes, lanes), (lanes, types.float64), (types.float64, lanes))
 for _name, _functions in {
     "fadd": (operator.add, operator.iadd),
     "fsub": (operator.sub, operator.isub),
     "fmul": (operator.mul, operator.imul),
 }.items():
     for _function in _functions:
-        _register(_function, _name)
-
-
-class _Negative(ConcreteTemplate):
-    key = operator.neg
-    cases = [signature(lanes, lanes)]  # noqa: RUF012
-
-
-infer_global(operator.neg)(_Negative)
-
-
-@lower_builtin(operator.neg, lanes)
-def _negative(context: Any, builder: Any, made: Any, args: Any) -> Any:
-    return builder.fneg(args[0])
+        _register(_function, _name, _WITH_NUMBERS, flags=_FLAGS)
+_register(operator.neg, "fneg", ((lanes,),))
 
 
 def formula(function: Callable[..., Any]) -> Any:

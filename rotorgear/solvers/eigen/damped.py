@@ -230,21 +230,6 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
     )
 
 
-def _real_twins(mu: np.ndarray, X: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
-    """Two equal real roots that rounding has made a conjugate pair as two real ones again, whose vectors are its two parts.
-
-    `size` as in `_selected`. Where both parts of the vector are one direction, the double root has one vector and stays a pair.
-    """
-    distance = 1.0 / mu
-    rounding = EPS * np.abs(distance) ** 2 * size
-    pair = (mu.imag != 0.0) & (np.abs(distance.imag) <= _TWINS * rounding)
-    if not pair.any():
-        return mu, X
-    pair &= np.linalg.norm(X.imag, axis=0) > _ONE_DIRECTION * np.linalg.norm(X, axis=0)
-    X = np.where(pair, np.where(mu.imag < 0.0, X.real, X.imag), X)
-    return np.where(pair, mu.real, mu), X
-
-
 def _selected(
     search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, size: float, reach: float, rows: int | None = None
 ) -> Pairs:
@@ -254,7 +239,14 @@ def _selected(
     """
     quadratic = search.inverse.quadratic
     sigma = search.inverse.sigma
-    mu, X = _real_twins(mu, X, size)
+    # Two equal real roots that rounding has made a conjugate pair are two real ones again, whose vectors are its two parts. Where
+    # both parts are one direction, the double root has one vector and stays a pair.
+    distance = 1.0 / mu
+    twins = (mu.imag != 0.0) & (np.abs(distance.imag) <= _TWINS * EPS * np.abs(distance) ** 2 * size)
+    if twins.any():
+        twins &= np.linalg.norm(X.imag, axis=0) > _ONE_DIRECTION * np.linalg.norm(X, axis=0)
+        X = np.where(twins, np.where(mu.imag < 0.0, X.real, X.imag), X)
+        mu = np.where(twins, mu.real, mu)
     one = mu.imag <= 0.0  # Im lambda >= 0, since mu = 1 / (lambda - sigma)
     mu = mu[one].astype(complex)
     V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]

@@ -84,7 +84,14 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     second = np.minimum(others.min(axis=1), other_rows.min(axis=1))
     doubt = np.zeros(len(a.s), bool)
     doubt[rows] = (cost[rows, columns] > AMBIGUOUS * second) | (mismatch[rows, columns] > MISMATCH)
-    doubt |= _veering(a, b, (rate_a, rate_b), slope, partner, narrowest)
+    # Modes change places with others that act on them: too coarse a step to tell a veering from a crossing.
+    linked = np.flatnonzero(partner >= 0)
+    before = a.s[linked].imag
+    after = b.s[partner[linked]].imag
+    swapped = (before[:, None] - before) * (after[:, None] - after) < 0.0
+    for i, j in linked[np.argwhere(np.triu(swapped))]:
+        if max(_width(a, rate_a, slope, i, j), _width(b, rate_b, slope, partner[i], partner[j])) > narrowest:
+            doubt[[i, j]] = True
     poor = np.zeros(len(a.s), bool)
     poor[rows] = (1.0 - mac[rows, columns]) > _WORST
     partner[poor] = -1
@@ -115,24 +122,6 @@ def _twins(s: np.ndarray, rate: np.ndarray, length: float) -> np.ndarray:
     size = np.abs(s)[:, None] + np.abs(s)
     same = np.abs(s[:, None] - s) <= _SAME * size
     return np.asarray((same & (np.abs(rate[:, None] - rate) * abs(length) <= _SAME * size)).astype(float))
-
-
-def _veering(
-    a: Eigen, b: Eigen, rates: tuple[np.ndarray, np.ndarray], slope: Pencil, partner: np.ndarray, narrowest: float
-) -> np.ndarray:
-    """Which modes change places with one that acts on them: too coarse a step to tell a veering from a crossing."""
-    linked = np.flatnonzero(partner >= 0)
-    before = a.s[linked].imag
-    after = b.s[partner[linked]].imag
-    swapped = (before[:, None] - before) * (after[:, None] - after) < 0.0
-    doubt = np.zeros(len(a.s), bool)
-    for i, j in np.argwhere(np.triu(swapped)):
-        one = linked[i]
-        two = linked[j]
-        width = max(_width(a, rates[0], slope, one, two), _width(b, rates[1], slope, partner[one], partner[two]))
-        if width > narrowest:
-            doubt[[one, two]] = True
-    return doubt
 
 
 def _width(at: Eigen, rate: np.ndarray, slope: Pencil, i: int, j: int) -> float:

@@ -53,37 +53,26 @@ class Plant:
         return self.C if self.gyroscopic is None else sp.csc_array(self.C + self.speed * self.gyroscopic)
 
     @cached_property
-    def elastic(self) -> Elastic:
-        """What follows from stiffness and places of the laws alone."""
+    def elastic(self) -> tuple[SupportedSolver, np.ndarray]:
+        """The factors of K, and static displacements X (n, m) of unit local forces."""
         solver = SupportedSolver(
             self.K,
             in_comparable_units(self.free, self.K, self.M),
             left_null_space(self.K, self.M, self.free),
         )
-        return Elastic(self.M, self.free, solver, _static(self.M, self.free, solver, self.B))
+        return solver, self._static(solver, self.B)
 
     @cached_property
     def static(self) -> StaticSolution:
         """What follows from stiffness and load."""
-        own = self.elastic
-        q = _static(own.M, own.free, own.solver, self.load)
-        return StaticSolution(own.X, q, self.B.T @ own.X, self.B.T @ q)
+        solver, X = self.elastic
+        q = self._static(solver, self.load)
+        return StaticSolution(X, q, self.B.T @ X, self.B.T @ q)
 
-
-def _static(M: sp.csc_array, free: np.ndarray, solver: SupportedSolver, f: np.ndarray) -> np.ndarray:
-    """Static displacements of forces f without the motions `free`."""
-    q = solver.solve(f - M @ (free @ (free.T @ f)))
-    return np.asarray(q - free @ (free.T @ (M @ q)))
-
-
-@dataclass(frozen=True)
-class Elastic:
-    """The factors of K, and static displacements X (n, m) of unit local forces."""
-
-    M: sp.csc_array
-    free: np.ndarray
-    solver: SupportedSolver
-    X: np.ndarray
+    def _static(self, solver: SupportedSolver, f: np.ndarray) -> np.ndarray:
+        """Static displacements of forces f without the motions `free`."""
+        q = solver.solve(f - self.M @ (self.free @ (self.free.T @ f)))
+        return np.asarray(q - self.free @ (self.free.T @ (self.M @ q)))
 
 
 @dataclass(frozen=True)

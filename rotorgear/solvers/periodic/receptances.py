@@ -10,8 +10,6 @@ Interpolatory Methods for Model Reduction (SIAM 2020).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
@@ -31,18 +29,6 @@ _ENOUGH = 1e-10
 _REACH = 0.25
 
 
-@dataclass(frozen=True)
-class Projected:
-    """Y^T A V of K, C, M and G (H, p, p), B^T V (H, m, p) and Y^T B (H, p, m)."""
-
-    K: np.ndarray
-    C: np.ndarray
-    M: np.ndarray
-    G: np.ndarray | None
-    seen: np.ndarray
-    pushed: np.ndarray
-
-
 class Receptances:
     """Receptances of harmonics h w, h = 0 ... H, with w = order |speed|."""
 
@@ -53,7 +39,7 @@ class Receptances:
         self._places: list[float] = []
         # By the solutions left out and whether watched places are in it.
         self._bases: dict[tuple[int, bool], tuple[np.ndarray, np.ndarray]] = {}
-        self._small: dict[tuple[int, bool], tuple[Plant, Projected]] = {}
+        self._small: dict[tuple[int, bool], tuple[Plant, list[np.ndarray], np.ndarray | None]] = {}
         self.exact_solutions = 0
         # Those of half the frequencies, where a motion of twice the period asked for them.
         self.twice: Receptances | None = None
@@ -127,44 +113,36 @@ class Receptances:
         return self._between(plant, 0, wide=True)[:, plant.m :, : plant.m]
 
     def _between(self, plant: Plant, leave: int, *, wide: bool) -> np.ndarray:
-        own = self._projected(plant, leave, wide=wide)
-        w = self.frequencies(plant)[:, None, None]
-        inner = own.K + 1j * w * own.C - w**2 * own.M
-        if own.G is not None:
-            inner = inner + 1j * w * plant.speed * own.G
-        return np.asarray(own.seen @ np.linalg.solve(inner, own.pushed))
-
-    def _projected(self, plant: Plant, leave: int, *, wide: bool) -> Projected:
-        """The plant in both bases: anew where more than its speed and load has changed."""
+        """B^T V (Y^T Z V)^-1 Y^T B, h from 1 on; the projections are made anew where more than speed and load has changed."""
         key = (leave, wide)
-        if key in self._small:
-            known, own = self._small[key]
-            if all(getattr(known, name) is getattr(plant, name) for name in ("K", "C", "M", "gyroscopic", "B")):
-                return own
-        B = np.hstack([plant.B, plant.watched]) if wide else plant.B
-        if key not in self._bases:
-            s = B.shape[1]
-            # Columns of one size, orthonormal: two values next to each other give nearly the same ones.
-            V, Y = (np.concatenate([pair[side][:, :, :s] for pair in self._known[leave:]], axis=2) for side in (0, 1))
-            self._bases[key] = (_orthonormal(V), _orthonormal(Y).transpose(0, 2, 1))
-        V, left = self._bases[key]
-        h, n, p = V.shape
-        flat = V.transpose(1, 0, 2).reshape(n, h * p)
+        known = self._small.get(key)
+        kept = ("K", "C", "M", "gyroscopic", "B")
+        if known is None or any(getattr(known[0], name) is not getattr(plant, name) for name in kept):
+            B = np.hstack([plant.B, plant.watched]) if wide else plant.B
+            if key not in self._bases:
+                s = B.shape[1]
+                # Columns of one size, orthonormal: two values next to each other give nearly the same ones.
+                V, Y = (
+                    np.concatenate([pair[side][:, :, :s] for pair in self._known[leave:]], axis=2) for side in (0, 1)
+                )
+                self._bases[key] = (_orthonormal(V), _orthonormal(Y).transpose(0, 2, 1))
+            V, left = self._bases[key]
+            h, n, p = V.shape
+            flat = V.transpose(1, 0, 2).reshape(n, h * p)
 
-        def seen_by_both(A: sp.csc_array) -> np.ndarray:
-            moved = (A.toarray() if _full(A) else A) @ flat
-            return np.asarray(left @ moved.reshape(n, h, p).transpose(1, 0, 2))
+            def seen_by_both(A: sp.csc_array) -> np.ndarray:
+                moved = (A.toarray() if _full(A) else A) @ flat
+                return np.asarray(left @ moved.reshape(n, h, p).transpose(1, 0, 2))
 
-        own = Projected(
-            seen_by_both(plant.K),
-            seen_by_both(plant.C),
-            seen_by_both(plant.M),
-            None if plant.gyroscopic is None else seen_by_both(plant.gyroscopic),
-            B.T @ V,
-            left @ B,
-        )
-        self._small[key] = (plant, own)
-        return own
+            both = [*map(seen_by_both, (plant.K, plant.C, plant.M)), B.T @ V, left @ B]
+            known = (plant, both, None if plant.gyroscopic is None else seen_by_both(plant.gyroscopic))
+            self._small[key] = known
+        _, (K, C, M, seen, pushed), G = known
+        w = self.frequencies(plant)[:, None, None]
+        inner = K + 1j * w * C - w**2 * M
+        if G is not None:
+            inner = inner + 1j * w * plant.speed * G
+        return np.asarray(seen @ np.linalg.solve(inner, pushed))
 
     def with_static(self, plant: Plant, R: np.ndarray) -> np.ndarray:
         """R of h = 0 ... H from those from 1 on."""
