@@ -20,6 +20,7 @@ from rotorgear.solvers.periodic.balance import pairs
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import Samples, answered
 from rotorgear.solvers.periodic.switches import Switches
+from rotorgear.solvers.time.exponential import phi_functions
 
 # Instants whose tangents make the mean of a step.
 FINER = 4
@@ -183,7 +184,7 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches
     Y = Y[kept]
     shapes = X[:, kept] * weight
     e = np.exp(s * h)[:, None]
-    first, second = _phis(s * h)
+    first, second = phi_functions(s * h)
     gain = Y @ forced
     Q0 = (h * (first - second))[:, None] * gain
     Q1 = (h * second)[:, None] * gain
@@ -214,23 +215,6 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches
 
 def _parts(z: np.ndarray) -> np.ndarray:
     return np.vstack([z.real, z.imag])
-
-
-def _phis(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """phi_1 = (e^x - 1)/x and phi_2 = (e^x - 1 - x)/x^2, by their series where x is small."""
-    small = np.abs(x) < 0.3
-    safe = np.where(small, 1.0, x)
-    first = np.zeros_like(x)
-    second = np.zeros_like(x)
-    term = np.ones_like(x)
-    for k in range(1, 16):
-        first = first + term
-        second = second + term / (k + 1.0)
-        term = term * x / (k + 1.0)
-    return (
-        np.where(small, first, np.expm1(safe) / safe),
-        np.where(small, second, (np.expm1(safe) - safe) / safe**2),
-    )
 
 
 def _means(plant: Plant, fine: Samples, switches: Switches) -> np.ndarray:

@@ -111,7 +111,7 @@ class ExponentialStepper:
         m = system.m
         s = modes.s
         e = np.exp(modes.s * h)
-        first = _phi(modes.s * h)
+        first, _ = phi_functions(modes.s * h)
         gain = modes.gains @ (modes.basis.T @ B)
         self._Q = (h * first)[:, None] * gain
         push = modes.gains @ (modes.basis.T @ system.load)
@@ -283,13 +283,18 @@ def _parts(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray(A.real), np.ascontiguousarray(A.imag)
 
 
-def _phi(x: np.ndarray) -> np.ndarray:
-    """phi_1 = (e^x - 1)/x, by its series where x is small."""
+def phi_functions(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """phi_1 = (e^x - 1)/x and phi_2 = (e^x - 1 - x)/x^2, by their series where x is small."""
     small = np.abs(x) < 0.3
     safe = np.where(small, 1.0, x)
-    series = np.zeros_like(x)
+    first = np.zeros_like(x)
+    second = np.zeros_like(x)
     term = np.ones_like(x)
     for k in range(1, 16):
-        series = series + term
+        first = first + term
+        second = second + term / (k + 1.0)
         term = term * x / (k + 1.0)
-    return np.where(small, series, np.expm1(safe) / safe)
+    return (
+        np.where(small, first, np.expm1(safe) / safe),
+        np.where(small, second, (np.expm1(safe) - safe) / safe**2),
+    )
