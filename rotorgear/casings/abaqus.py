@@ -160,16 +160,12 @@ def _faces_at(
             )
             if not corners:
                 raise ValueError(f"a *SURFACE has the face {label} of {kind} elements")
-            yield chosen[:, _with_edges(kind, corners[0])]
-
-
-def _with_edges(kind: str, corners: tuple[int, ...]) -> list[int]:
-    """The nodes of a face of an element with these corners: those on its edges too."""
-    if kind in ("tetra", "hexahedron"):
-        return list(corners)
-    shape = element(kind)
-    same = [sorted(face) == sorted(corners) for face in shape.faces]
-    return [int(node) for node in shape.face_nodes[same.index(True)]]
+            nodes = list(corners[0])
+            if kind not in ("tetra", "hexahedron"):  # nodes on the edges of the face too
+                shape = element(kind)
+                same = [sorted(face) == sorted(nodes) for face in shape.faces]
+                nodes = shape.face_nodes[same.index(True)].tolist()
+            yield chosen[:, nodes]
 
 
 def _keywords(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:

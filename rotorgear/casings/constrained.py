@@ -110,7 +110,15 @@ class ElasticBody:
         if rigid.shape[1]:
             # Six dofs that hold the body best: the pivots of its rigid motions.
             self._pins = la.qr((rigid / np.linalg.norm(rigid, axis=0)).T, mode="r", pivoting=True)[1][: rigid.shape[1]]
-            K = _pinned(K, self._pins)
+            # K with some dofs held: their rows and columns are those of the unit matrix, scaled like K.
+            K = sp.csr_array(K, copy=True)
+            keep = np.ones(K.shape[0])
+            keep[self._pins] = 0.0
+            rows = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+            K.data *= keep[rows] * keep[K.indices]
+            diagonal = K.diagonal()
+            diagonal[self._pins] = diagonal.max()
+            K.setdiag(diagonal)
         self.factor = factor_positive(K, 3, what, progress)
 
     def flexibility(self, forces: np.ndarray) -> np.ndarray:
@@ -119,19 +127,6 @@ class ElasticBody:
             forces = forces.copy()
             forces[self._pins] = 0.0
         return self.factor.solve(forces)
-
-
-def _pinned(K: Any, pins: np.ndarray) -> Any:
-    """K with some dofs held: their rows and columns are those of the unit matrix, scaled like K."""
-    K = sp.csr_array(K, copy=True)
-    keep = np.ones(K.shape[0])
-    keep[pins] = 0.0
-    rows = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
-    K.data *= keep[rows] * keep[K.indices]
-    diagonal = K.diagonal()
-    diagonal[pins] = diagonal.max()
-    K.setdiag(diagonal)
-    return K
 
 
 class Constrained:

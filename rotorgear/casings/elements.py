@@ -86,12 +86,6 @@ def _matched(nodes: np.ndarray, finite: Any) -> np.ndarray:
     return np.asarray(np.argmin(distance, axis=1))
 
 
-def _face(corners: np.ndarray, on_edges: bool, middle: bool, finite: Any) -> Reference:
-    edges = [0.5 * (corners[i] + corners[(i + 1) % len(corners)]) for i in range(len(corners)) if on_edges]
-    nodes = np.array([*corners, *edges, *([corners.mean(axis=0)] if middle else [])])
-    return Reference(nodes, finite, _matched(nodes, finite))
-
-
 @cache
 def element(kind: str) -> Element:
     """The element of a kind: tetra10, hexahedron20 or hexahedron27; tetra and hexahedron for comparison only.
@@ -130,6 +124,10 @@ def element(kind: str) -> Element:
     }[kind]
     finite = inside()
     rim_corners = np.array([[0, 0], [1, 0], [0, 1]] if tet else [[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    middles = 0.5 * (rim_corners + np.roll(rim_corners, -1, axis=0)) if edges else rim_corners[:0]
+    centre = rim_corners.mean(axis=0, keepdims=True) if kind == "hexahedron27" else rim_corners[:0]
+    rim_nodes = np.vstack([rim_corners, middles, centre])
+    finite_face = on_face()
     return Element(
         nodes=places,
         skfem=finite,
@@ -139,7 +137,7 @@ def element(kind: str) -> Element:
         edges=edges,
         faces=faces,
         face_nodes=np.array(face_nodes),
-        face=_face(rim_corners, bool(edges), kind == "hexahedron27", on_face()),
+        face=Reference(rim_nodes, finite_face, _matched(rim_nodes, finite_face)),
     )
 
 

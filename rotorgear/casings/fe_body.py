@@ -194,7 +194,13 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     whole = merged(meshes, f"{address}.mesh")
     joined = join(_split(whole, settings) if settings.splits else whole, settings.joins, address)
     mesh = joined.mesh
-    _believable_size(mesh, address)
+    size = np.ptp(mesh.points, axis=0)
+    if not _LEAST_SIZE <= size.max() <= _LARGEST_SIZE:
+        box = " x ".join(millimetres(side) for side in size)
+        raise AnalysisError(
+            f"{address}.unit: the mesh measures {box} in this unit. Files of meshes carry no unit: say the one it was "
+            f"drawn in, such as unit = '{'mm' if size.max() > _LARGEST_SIZE else 'm'}'."
+        )
     _one_body(joined, settings)
     seats = tuple(
         by_set(mesh, place, f"{address}.seats.{name}")
@@ -215,7 +221,16 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     _apart(body)
     for patch in (*seats, *mounts):
         patch.weights(mesh.points)
-    _believable_mass(body)
+    mass = body.mass_properties[0]
+    if settings.mass is not None and abs(mass / settings.mass - 1.0) > settings.mass_tolerance:
+        ratio = mass / settings.mass
+        units = {1e9: "the mesh is in mm", 1e-9: "the mesh is in m", 1e6: "the mesh is in cm", 1e3: "the mesh is in dm"}
+        units[0.0254**-3] = "the mesh is in inches"
+        hint = next((f": {text}?" for factor, text in units.items() if 0.7 < ratio / factor < 1.4), "")
+        raise AnalysisError(
+            f"{address}.mass: the mesh has {mass:.6g} kg, and {settings.mass:.6g} kg are stated{hint or '.'} Check unit and "
+            "density, or give mass_tolerance."
+        )
     springs = body.springs()[0]
     no_mechanism(settings, mesh, held, springs)
     no_hinges(settings, joined, held, springs)
@@ -236,16 +251,6 @@ def _split(mesh: SolidMesh, settings: CasingSettings) -> SolidMesh:
         mesh = split(mesh)
     note = f"Every element was split in eight, {settings.splits} time{'s'[: settings.splits != 1]}."
     return replace(mesh, notes=(*mesh.notes, note))
-
-
-def _believable_size(mesh: SolidMesh, address: str) -> None:
-    size = np.ptp(mesh.points, axis=0)
-    if not _LEAST_SIZE <= size.max() <= _LARGEST_SIZE:
-        box = " x ".join(millimetres(side) for side in size)
-        raise AnalysisError(
-            f"{address}.unit: the mesh measures {box} in this unit. Files of meshes carry no unit: say the one it was "
-            f"drawn in, such as unit = '{'mm' if size.max() > _LARGEST_SIZE else 'm'}'."
-        )
 
 
 def _one_body(joined: Joined, settings: CasingSettings) -> None:
@@ -306,18 +311,3 @@ def _apart(body: FiniteElementBody) -> None:
                 raise AnalysisError(
                     f"{address}: the seat shares nodes with the seat {other_name}: give each its own face."
                 )
-
-
-def _believable_mass(body: FiniteElementBody) -> None:
-    settings = body.settings
-    mass = body.mass_properties[0]
-    if settings.mass is None or abs(mass / settings.mass - 1.0) <= settings.mass_tolerance:
-        return
-    ratio = mass / settings.mass
-    units = {1e9: "the mesh is in mm", 1e-9: "the mesh is in m", 1e6: "the mesh is in cm", 1e3: "the mesh is in dm"}
-    units[0.0254**-3] = "the mesh is in inches"
-    hint = next((f": {text}?" for factor, text in units.items() if 0.7 < ratio / factor < 1.4), "")
-    raise AnalysisError(
-        f"{settings.address}.mass: the mesh has {mass:.6g} kg, and {settings.mass:.6g} kg are stated{hint or '.'} Check unit and "
-        "density, or give mass_tolerance."
-    )

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping
+from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping, rigid_coordinates
 from rotorgear.errors import AnalysisError
 
 _KNOWN = (
@@ -103,7 +103,7 @@ def read_matrices(
     for key, columns in (("weight", 3), ("rigid", 6)):
         if key in arrays and arrays[key].shape != (n, columns):
             raise AnalysisError(f"{address}: {key} is {arrays[key].shape} in '{path.name}', expected ({n}, {columns})")
-    rigid = arrays.get("rigid", _rigid_motions(n, points))
+    rigid = arrays.get("rigid", rigid_coordinates(n, points))
     strained = rigid.T @ stiffness @ rigid
     parts = np.einsum("nm,n,nm->m", rigid, np.abs(np.diagonal(stiffness)), rigid)
     held = bool(np.any(np.abs(np.diagonal(strained)) > _STRAINED * parts))
@@ -129,15 +129,6 @@ def read_matrices(
         surface=_surface(arrays, n, path, address),
         held=held,
     )
-
-
-def _rigid_motions(n: int, points: np.ndarray) -> np.ndarray:
-    """Coordinates (n, 6) of unit displacements and of rotations about the origin, in which all but the seats rest."""
-    motions = np.zeros((n, 6))
-    for k, (x, y, z) in enumerate(points):
-        motions[6 * k : 6 * k + 6] = np.eye(6)
-        motions[6 * k : 6 * k + 3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-    return motions
 
 
 def _inertia(M: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:

@@ -149,7 +149,11 @@ def _system(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np.ndarray) 
     m = number.shape[1]
     places, weights = shape.quadrature(_DEGREE[shape.corners])
     values, gradients = shape.shapes(places)
-    own_values, own_gradients = _missing(shape, places)
+    # Values (m, q) and gradients (m, 3, q) of the functions of the next order, in the order of `_functions`.
+    products = _of_tetrahedron(shape, places) if shape.corners == 4 else _of_hexahedron(shape, places)
+    multiplied = [_product(factors) for factors in products]
+    own_values = np.array([value for value, _ in multiplied])
+    own_gradients = np.array([gradient for _, gradient in multiplied])
     lame, shear = fe.settings.material.lame
     density = fe.settings.material.density
     moved = shapes.reshape(len(mesh.points), 3, k)
@@ -223,13 +227,6 @@ def _functions(fe: FiniteElementBody) -> tuple[np.ndarray, np.ndarray, np.ndarra
     all_numbers = np.hstack(numbers)
     others = np.ones((len(mesh.cells), all_numbers.shape[1] - sign.shape[1]))
     return all_numbers, np.hstack([sign, others]), np.concatenate(free)
-
-
-def _missing(shape: Element, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values (m, q) and gradients (m, 3, q) of the functions of the next order on the reference cell, as `_functions`."""
-    products = _of_tetrahedron(shape, places) if shape.corners == 4 else _of_hexahedron(shape, places)
-    multiplied = [_product(factors) for factors in products]
-    return np.array([value for value, _ in multiplied]), np.array([gradient for _, gradient in multiplied])
 
 
 def _of_tetrahedron(shape: Element, places: np.ndarray) -> list[list[_Factor]]:

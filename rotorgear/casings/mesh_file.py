@@ -134,25 +134,19 @@ def _sets(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSe
         for name, parts in members.items():
             nodes = np.unique(np.concatenate([part.nodes for part in parts]))
             sets.setdefault(name, NamedSet(nodes, [face for part in parts for face in part.faces]))
-    for name, one in _marked(found, blocks).items():
-        sets.setdefault(name, one)
-    return {name: one for name, one in sets.items() if name}
-
-
-def _marked(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSet]:
-    """Sets that a format without sets (VTK) keeps as whole numbers of points or cells.
-
-    Data of zeros and ones mark the members of one set; data of -1 for none and 0, 1, ... for sets are named after them all,
-    joined by "-", as meshio writes its sets where a format has none.
-    """
-    sets: dict[str, NamedSet] = {}
+    # Sets that a format without sets (VTK) keeps as whole numbers of points or cells. Data of zeros and ones mark the members of
+    # one set; data of -1 for none and 0, 1, ... for sets are named after them all, joined by "-", as meshio writes its sets where
+    # a format has none.
+    marked: dict[str, NamedSet] = {}
     for name, values in found.point_data.items():
-        for one, members in _members({"": np.asarray(values)}, name):
-            sets[one] = NamedSet(np.flatnonzero(members[""]))
-    for name, per_block in found.cell_data.items():
-        for one, members in _members({k: np.asarray(values) for k, values in enumerate(per_block)}, name):
-            sets[one] = set_of([(blocks[k][0], blocks[k][1][chosen]) for k, chosen in members.items()])
-    return sets
+        for one, chosen_nodes in _members({"": np.asarray(values)}, name):
+            marked[one] = NamedSet(np.flatnonzero(chosen_nodes[""]))
+    for name, of_blocks in found.cell_data.items():
+        for one, chosen_cells in _members({k: np.asarray(values) for k, values in enumerate(of_blocks)}, name):
+            marked[one] = set_of([(blocks[k][0], blocks[k][1][those]) for k, those in chosen_cells.items()])
+    for name, one_set in marked.items():
+        sets.setdefault(name, one_set)
+    return {name: one for name, one in sets.items() if name}
 
 
 def _members(data: dict[Any, np.ndarray], name: str) -> Iterator[tuple[str, dict[Any, np.ndarray]]]:

@@ -30,6 +30,20 @@ def rigid_motions(points: np.ndarray, about: np.ndarray | None = None) -> np.nda
     return np.asarray(motions.transpose(2, 0, 1).reshape(-1, 6))
 
 
+def rigid_coordinates(size: int, seat_points: np.ndarray) -> np.ndarray:
+    """Coordinates (n, 6) of rigid motions of the model: those of the seats; the inside follows statically.
+
+    Args:
+        size: number n of coordinates, six of each seat first.
+        seat_points: (s, 3) in m.
+    """
+    coordinates = np.zeros((size, 6))
+    for number, point in enumerate(seat_points):
+        coordinates[6 * number : 6 * number + 3] = rigid_motions(point[None, :])
+        coordinates[6 * number + 3 : 6 * number + 6, 3:] = np.eye(3)
+    return coordinates
+
+
 @dataclass(frozen=True)
 class Surface:
     """The outer faces of a body in triangles, and how they move.

@@ -22,14 +22,14 @@ The whole mesh has modes too, nothing reduced: free, and held as the model file 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
 
 from rotorgear.casings.constrained import Constrained, ElasticBody, lowest_modes, modes_up_to
 from rotorgear.casings.fe_body import FiniteElementBody, FreeSpace
-from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping, rigid_motions
+from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping, rigid_coordinates, rigid_motions
 from rotorgear.progress import Progress, part_of, silent
 
 
@@ -178,7 +178,8 @@ def reduce_in_basis(
     squares, turn = la.eigh(symmetric(K_internal), symmetric(M_internal))
     internal = internal @ turn
     static_stiffness = static.T @ fe.stiffness_times(static) + _spring_part(static, static, springs, flexibility)
-    K = _clean(static_stiffness, squares)
+    # As theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal.
+    K = la.block_diag(symmetric(static_stiffness), np.diag(squares))
     basis = np.hstack([static, internal])
     del fixed, residual, mass_fixed, mass_static, static, internal
     mass_basis = fe.matrices.times_mass(basis)
@@ -195,19 +196,26 @@ def reduce_in_basis(
     seconds["residual shapes"] = time.perf_counter() - started
 
     body_mass, centre, inertia = fe.mass_properties
-    ground = _ground(fe, space, system, basis)
+    ground_force, ground_damping, ground_mass, ground_weight = _ground(fe, space, system, basis)
     damping = modal_damping(M, K, fe.settings.damping_ratio) if fe.settings.damping_ratio else np.zeros_like(M)
-    ground = replace(ground, damping=ground.damping + ground.mass @ la.solve(M, damping, assume_a="pos"))
-    damping = damping + _mount_damping(fe, basis)
+    ground_damping = ground_damping + ground_mass @ la.solve(M, damping, assume_a="pos")
+    # Dampers of the mounts in the coordinates of the basis.
+    motions = fe.mean_weights(fe.mounts).T @ basis
+    C = np.zeros((basis.shape[1], basis.shape[1]))
+    for at, mount in enumerate(fe.settings.mounts):
+        moved = motions[6 * at : 6 * at + 6]
+        C += moved.T @ np.array(mount.damping) @ moved
+    damping = damping + C
     progress(1.0, f"{name}: reduced to {len(M)} coordinates")
+    seat_points = np.array([patch.point for patch in fe.seats]).reshape(-1, 3)
     reduced = ReducedBody(
         name=fe.settings.name,
         seats=tuple(seat for seat, _ in fe.settings.seats),
-        seat_points=np.array([patch.point for patch in fe.seats]).reshape(-1, 3),
+        seat_points=seat_points,
         mass=M,
         stiffness=K,
         damping=damping,
-        rigid=None if len(fe.held) or len(flexibility) else _rigid_coordinates(fe, len(M)),
+        rigid=None if len(fe.held) or len(flexibility) else rigid_coordinates(len(M), seat_points),
         inertia_force=basis.T @ fe.matrices.times_mass(R),
         body_mass=body_mass,
         centre=centre,
@@ -217,10 +225,10 @@ def reduce_in_basis(
         error=error,
         surface=surface_of(fe, basis),
         ground_sets=(*fe.settings.held, *(mount.set for mount in fe.settings.mounts)),
-        ground_force=ground.force,
-        ground_damping=ground.damping,
-        ground_mass=ground.mass,
-        ground_weight=ground.weight,
+        ground_force=ground_force,
+        ground_damping=ground_damping,
+        ground_mass=ground_mass,
+        ground_weight=ground_weight,
         held=bool(len(fe.held) or len(flexibility)),
         notes=fe.mesh.notes,
         seconds=seconds,
@@ -241,15 +249,6 @@ def _static_shapes(fe: FiniteElementBody, space: FreeSpace, system: Constrained,
     return np.asarray(space.shapes @ system.solve(forces, -(springs.T @ moved)) + moved)
 
 
-def _rigid_coordinates(fe: FiniteElementBody, size: int) -> np.ndarray:
-    """Coordinates (n, 6) of rigid motions: those of the seats; the inside follows statically."""
-    coordinates = np.zeros((size, 6))
-    for number, patch in enumerate(fe.seats):
-        coordinates[6 * number : 6 * number + 3] = rigid_motions(patch.point[None, :])
-        coordinates[6 * number + 3 : 6 * number + 6, 3:] = np.eye(3)
-    return coordinates
-
-
 def _spring_part(left: np.ndarray, right: np.ndarray, springs: np.ndarray, flexibility: np.ndarray) -> np.ndarray:
     """Stiffness of the mounts between shapes."""
     return np.asarray((left.T @ springs) @ ((springs.T @ right) / flexibility[:, None]))
@@ -268,33 +267,10 @@ def symmetric(matrix: np.ndarray) -> np.ndarray:
     return np.asarray(0.5 * (matrix + matrix.T))
 
 
-def _clean(static: np.ndarray, squares: np.ndarray) -> np.ndarray:
-    """K as theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal."""
-    return np.asarray(la.block_diag(symmetric(static), np.diag(squares)))
-
-
-def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:
-    """Dampers of the mounts in the coordinates of the basis."""
-    motions = fe.mean_weights(fe.mounts).T @ basis
-    C = np.zeros((basis.shape[1], basis.shape[1]))
-    for number, mount in enumerate(fe.settings.mounts):
-        part = motions[6 * number : 6 * number + 6]
-        C += part.T @ np.array(mount.damping) @ part
-    return C
-
-
-@dataclass(frozen=True)
-class _Ground:
-    """Wrenches of the ground: for unit coordinates, velocities and accelerations (6 g, n), and for gravity (6 g, 3)."""
-
-    force: np.ndarray
-    damping: np.ndarray
-    mass: np.ndarray
-    weight: np.ndarray
-
-
-def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis: np.ndarray) -> _Ground:
+def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis: np.ndarray) -> list[np.ndarray]:
     """Wrenches of the ground about the origin, at held sets, then at mounts; of damping those of mounts only.
+
+    For unit coordinates, velocities and accelerations (6 g, n), and for gravity (6 g, 3).
 
     By the principle of virtual work f = Ψᵀ (M a + C v + K u - M g), with the static shapes Ψ of the body for unit motions of the
     ground at one place, the seats at rest. Ψᵀ K Φ has no part of the modes of the inside, so that statics is exact however few
@@ -307,7 +283,7 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
     dampers = la.block_diag(np.zeros((0, 0)), *(np.array(mount.damping) for mount in fe.settings.mounts))
     count = basis.shape[1]
     nothing = np.zeros((0, count))
-    found = [_Ground(nothing, nothing, nothing, np.zeros((0, 3)))]
+    found = [(nothing, nothing, nothing, np.zeros((0, 3)))]
 
     def add(moved: np.ndarray, own: np.ndarray) -> None:
         """Of held nodes that are moved (3p, 6), and of mounts (mounts,) whose far ends are."""
@@ -318,11 +294,11 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
         mass_shapes = fe.matrices.times_mass(shapes)
         stroke = mounts.T @ shapes - np.repeat(own, 6)[:, None] * (mounts.T @ R)
         found.append(
-            _Ground(
-                force=(fe.stiffness_times(shapes) + springs @ stretched).T @ basis,
-                damping=stroke.T @ dampers @ (mounts.T @ basis),
-                mass=mass_shapes.T @ basis,
-                weight=-mass_shapes.T @ R[:, :3],
+            (
+                (fe.stiffness_times(shapes) + springs @ stretched).T @ basis,
+                stroke.T @ dampers @ (mounts.T @ basis),
+                mass_shapes.T @ basis,
+                -mass_shapes.T @ R[:, :3],
             )
         )
 
@@ -335,7 +311,7 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
         add(moved, np.zeros(len(fe.mounts), dtype=bool))
     for number in range(len(fe.mounts)):
         add(np.zeros_like(R), np.arange(len(fe.mounts)) == number)
-    return _Ground(**{key.name: np.vstack([getattr(one, key.name) for one in found]) for key in fields(_Ground)})
+    return [np.vstack(parts) for parts in zip(*found, strict=True)]
 
 
 def surface_of(fe: FiniteElementBody, basis: np.ndarray) -> Surface:

@@ -58,7 +58,7 @@ class SolidMesh:
     def boundary(self) -> np.ndarray:
         """Nodes (f, m) of the outer faces, counter-clockwise seen from outside: corners first."""
         if not self._faces:
-            self._faces.append(_boundary(self.cells, self.element))
+            self._faces.append(boundary_faces(self.cells, self.element))
         return self._faces[0]
 
     def parts(self) -> np.ndarray:
@@ -84,17 +84,41 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
     kind = _only_kind(found, address)
     notes = list(found.notes)
     cells = found.cells[kind]
-    _no_shells_of_their_own(found, cells, address)
+    # Cells that are no solids may only mark faces of the solids: a wall of shells would be lost.
+    on_solids = np.zeros(len(found.points), dtype=bool)
+    on_solids[cells] = True
+    for other, faces in found.cells.items():
+        if other not in SOLIDS and other != "vertex":
+            loose = int(np.count_nonzero(~on_solids[faces].all(axis=1)))
+            if loose:
+                raise AnalysisError(
+                    f"{address}: {loose} of {len(faces)} {other} cells are not on the solids: shells and beams are not computed. "
+                    "Mesh these walls as solids, or leave them out of the file."
+                )
     used = np.unique(cells)
     place = np.full(len(found.points), -1, dtype=np.int64)
     place[used] = np.arange(len(used))
     points = unit * found.points[used]
     cells = place[cells]
-    sets = {name: _renumbered(one, place) for name, one in found.sets.items()}
+    sets = {}
+    for name, one in found.sets.items():
+        nodes = place[one.nodes]
+        on_them = [place[face] for face in one.faces]
+        sets[name] = NamedSet(nodes[nodes >= 0], [face[(face >= 0).all(axis=1)] for face in on_them])
     raised = QUADRATIC[kind] != kind
     shape = element(QUADRATIC[kind])
     if raised:
-        points, cells, sets = _raised(points, cells, sets, shape)
+        # A new node in the middle of every edge; a set of nodes gets those between two of its nodes.
+        edges = np.sort(cells[:, np.array(shape.edges)], axis=2)
+        keys, inverse = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+        middle = points[keys].mean(axis=1)
+        cells = np.hstack([cells, len(points) + inverse.reshape(len(cells), -1)])
+        for one in sets.values():
+            member = np.zeros(len(points), dtype=bool)
+            member[one.nodes] = True
+            new = len(points) + np.flatnonzero(member[keys].all(axis=1))
+            one.nodes = np.concatenate([one.nodes, new])
+        points = np.vstack([points, middle])
         word = "tetrahedra" if kind == "tetra" else "hexahedra"
         notes.append(
             f"{len(cells)} linear {word} were raised to quadratic ones with straight edges: linear ones are far too stiff. "
@@ -134,43 +158,6 @@ def _only_kind(found: FileMesh, address: str) -> str:
             "body with one kind."
         )
     return kinds[0]
-
-
-def _no_shells_of_their_own(found: FileMesh, solids: np.ndarray, address: str) -> None:
-    """Cells that are no solids may only mark faces of the solids: a wall of shells would be lost."""
-    inside = np.zeros(len(found.points), dtype=bool)
-    inside[solids] = True
-    for kind, cells in found.cells.items():
-        if kind not in SOLIDS and kind != "vertex":
-            loose = int(np.count_nonzero(~inside[cells].all(axis=1)))
-            if loose:
-                raise AnalysisError(
-                    f"{address}: {loose} of {len(cells)} {kind} cells are not on the solids: shells and beams are not computed. "
-                    "Mesh these walls as solids, or leave them out of the file."
-                )
-
-
-def _renumbered(one: NamedSet, place: np.ndarray) -> NamedSet:
-    nodes = place[one.nodes]
-    faces = [place[face] for face in one.faces]
-    return NamedSet(nodes[nodes >= 0], [face[(face >= 0).all(axis=1)] for face in faces])
-
-
-def _raised(
-    points: np.ndarray, cells: np.ndarray, sets: dict[str, NamedSet], shape: Element
-) -> tuple[np.ndarray, np.ndarray, dict[str, NamedSet]]:
-    """Linear elements with a new node in the middle of every edge; a set of nodes gets those between two of its nodes."""
-    edges = np.sort(cells[:, np.array(shape.edges)], axis=2)
-    keys, inverse = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
-    middle = points[keys].mean(axis=1)
-    quadratic = np.hstack([cells, len(points) + inverse.reshape(len(cells), -1)])
-    new_sets = {}
-    for name, one in sets.items():
-        member = np.zeros(len(points), dtype=bool)
-        member[one.nodes] = True
-        new = len(points) + np.flatnonzero(member[keys].all(axis=1))
-        new_sets[name] = NamedSet(np.concatenate([one.nodes, new]), one.faces)
-    return np.vstack([points, middle]), quadratic, new_sets
 
 
 def _straight(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
@@ -316,8 +303,8 @@ def _elements(numbers: np.ndarray) -> str:
     return f"element {listed}" if len(numbers) == 1 else f"elements {listed}{more}"
 
 
-def _boundary(cells: np.ndarray, shape: Element) -> np.ndarray:
-    """Faces that belong to one element only."""
+def boundary_faces(cells: np.ndarray, shape: Element) -> np.ndarray:
+    """Nodes (f, m) of the faces that belong to one element only: corners, those on edges, the middle where it has a node."""
     faces = cells[:, shape.face_nodes].reshape(-1, shape.face_nodes.shape[1])
     corners = np.sort(faces[:, : len(shape.faces[0])], axis=1)
     _, first, counts = np.unique(corners, axis=0, return_index=True, return_counts=True)

@@ -14,7 +14,7 @@ import numpy as np
 
 from rotorgear.casings.elements import Element, element
 from rotorgear.casings.file_mesh import NamedSet
-from rotorgear.casings.solid_mesh import SolidMesh
+from rotorgear.casings.solid_mesh import SolidMesh, boundary_faces
 
 # Four tetrahedra at the corners; the octahedron between them is cut along one of its diagonals, around which the other four
 # nodes stand in a ring. Nodes in VTK's order.
@@ -31,13 +31,28 @@ def split(mesh: SolidMesh) -> SolidMesh:
     # Corners of the parts may stand on all nodes of a tetrahedron, and on the 27 places of a brick.
     whole = shape if shape.corners == 4 else element("hexahedron27")
     vertices, points = _with_middles(mesh, whole)
-    parts = _tetrahedra(mesh) if shape.corners == 4 else np.broadcast_to(_eighths(whole), (len(vertices), 8, 8))
+    # Corners (e, 8, k) of the eighths among the nodes of their element; those of a brick are its corners and the middles between.
+    if shape.corners == 4:
+        parts = _tetrahedra(mesh)
+    else:
+        middles = 0.5 * (whole.nodes[:8, None] + whole.nodes[None, :8])
+        eighths = np.argmin(np.linalg.norm(middles[:, :, None] - whole.nodes, axis=3), axis=2)
+        parts = np.broadcast_to(eighths, (len(vertices), 8, 8))
     corners = np.take_along_axis(vertices, parts.reshape(len(vertices), -1), axis=1).reshape(-1, shape.corners)
     local = parts.reshape(corners.shape)
     columns = [corners]
     places = [points]
     count = len(points)
-    of_sets = {name: _member(one, len(points), mesh, vertices, whole) for name, one in mesh.sets.items()}
+    of_sets: dict[str, np.ndarray] = {}
+    faces_of_sets: dict[str, list[np.ndarray]] = {}
+    outer = boundary_faces(vertices, whole)
+    for name, one in mesh.sets.items():
+        faces = _chosen_faces(mesh, one, outer, whole)
+        of_sets[name] = np.zeros(len(points), dtype=bool)
+        of_sets[name][one.nodes] = True
+        of_sets[name][np.unique(faces)] = True
+        smaller = np.array(_TRIANGLES if len(whole.faces[0]) == 3 else _QUADS)
+        faces_of_sets[name] = [faces[:, smaller].reshape(-1, smaller.shape[1])] if one.faces else []
     members = {name: [flags] for name, flags in of_sets.items()}
     entities: list[np.ndarray] = [np.array(shape.edges)]
     if shape.kind == "hexahedron27":
@@ -53,8 +68,7 @@ def split(mesh: SolidMesh) -> SolidMesh:
             members[name].append(flags[names].all(axis=1))
         count += len(names)
     sets = {
-        name: NamedSet(np.flatnonzero(np.concatenate(members[name])), _split_faces(mesh, one, vertices, whole))
-        for name, one in mesh.sets.items()
+        name: NamedSet(np.flatnonzero(np.concatenate(flags)), faces_of_sets[name]) for name, flags in members.items()
     }
     return replace(mesh, points=np.vstack(places), cells=np.hstack(columns), sets=sets, straightened=(), _faces=[])
 
@@ -104,13 +118,6 @@ def _tetrahedra(mesh: SolidMesh) -> np.ndarray:
     return np.concatenate([corner, octahedra[shortest]], axis=1)
 
 
-def _eighths(whole: Element) -> np.ndarray:
-    """Corners (8, 8) of the eighths of a brick among its 27 nodes."""
-    corners = whole.nodes[:8]
-    places = 0.5 * (corners[:, None] + corners[None, :])
-    return np.asarray(np.argmin(np.linalg.norm(places[:, :, None] - whole.nodes, axis=3), axis=2))
-
-
 def _mapped(mesh: SolidMesh, shape: Element, cells: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """Places (n, 3) in space of reference places (n, 3) of elements (n,)."""
     found = np.empty((len(cells), 3))
@@ -122,17 +129,8 @@ def _mapped(mesh: SolidMesh, shape: Element, cells: np.ndarray, reference: np.nd
     return found
 
 
-def _boundary_vertices(mesh: SolidMesh, vertices: np.ndarray, whole: Element) -> np.ndarray:
-    """Nodes (f, m) of the outer faces among those with middles: corners, edges, for a brick the middle."""
-    faces = vertices[:, whole.face_nodes].reshape(-1, whole.face_nodes.shape[1])
-    keys = np.sort(faces[:, : len(whole.faces[0])], axis=1)
-    _, first, counts = np.unique(keys, axis=0, return_index=True, return_counts=True)
-    return np.asarray(faces[np.sort(first[counts == 1])])
-
-
-def _chosen_faces(mesh: SolidMesh, one: NamedSet, vertices: np.ndarray, whole: Element) -> np.ndarray:
-    """The outer faces of a set, by its faces or by its nodes."""
-    faces = _boundary_vertices(mesh, vertices, whole)
+def _chosen_faces(mesh: SolidMesh, one: NamedSet, faces: np.ndarray, whole: Element) -> np.ndarray:
+    """Those of the outer faces that a set has, by its faces or by its nodes."""
     corners = len(whole.faces[0])
     if one.faces:
         own = {tuple(row) for listed in one.faces for row in np.sort(listed[:, :corners], axis=1).tolist()}
@@ -141,20 +139,3 @@ def _chosen_faces(mesh: SolidMesh, one: NamedSet, vertices: np.ndarray, whole: E
     member[one.nodes] = True
     own_nodes = mesh.element.face_nodes.shape[1]
     return faces[member[faces[:, :own_nodes]].all(axis=1)]
-
-
-def _member(one: NamedSet, size: int, mesh: SolidMesh, vertices: np.ndarray, whole: Element) -> np.ndarray:
-    """Which nodes (size,) of those with middles are in a set."""
-    flags = np.zeros(size, dtype=bool)
-    flags[one.nodes] = True
-    flags[np.unique(_chosen_faces(mesh, one, vertices, whole))] = True
-    return flags
-
-
-def _split_faces(mesh: SolidMesh, one: NamedSet, vertices: np.ndarray, whole: Element) -> list[np.ndarray]:
-    """Corners of the parts of a set's faces, where it has faces."""
-    if not one.faces:
-        return []
-    faces = _chosen_faces(mesh, one, vertices, whole)
-    parts = _TRIANGLES if len(whole.faces[0]) == 3 else _QUADS
-    return [faces[:, np.array(parts)].reshape(-1, len(parts[0]))]

@@ -50,16 +50,8 @@ from rotorgear.quantity import millimetres
 _CHUNK = 4000  # elements at a time
 
 
-@dataclass(frozen=True)
-class SpinIntegrals:
-    """T and S (p, p) of the docstring above, for each of the three directions."""
-
-    transport: sp.csr_array
-    stress: sp.csr_array
-
-
-def spin_integrals(mesh: SolidMesh, material: Elastic, stretched: np.ndarray) -> SpinIntegrals:
-    """Integrate over a mesh.
+def spin_integrals(mesh: SolidMesh, material: Elastic, stretched: np.ndarray) -> list[sp.csr_array]:
+    """T and S (p, p) of the docstring above, for each of the three directions, integrated over a mesh.
 
     Args:
         mesh: in m, its axis of rotation z.
@@ -97,7 +89,7 @@ def spin_integrals(mesh: SolidMesh, material: Elastic, stretched: np.ndarray) ->
     for number in range(2):
         entries = np.concatenate([part[number].ravel() for part in parts])
         found.append(sp.csr_array(sp.coo_array((entries, (rows, columns)), shape=size)))
-    return SpinIntegrals(*found)
+    return found
 
 
 def _slopes(corners: np.ndarray, gradients: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -150,7 +142,12 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
         return space.forces(fe.matrices.times_mass(space.shapes @ columns))
 
     squares, modes, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL, name)
-    kept, left = _whole_pairs(np.sqrt(squares) / (2.0 * np.pi), left)
+    # No pair is torn apart; `left` is the frequency of the first mode that is not kept.
+    hz = np.sqrt(squares) / (2.0 * np.pi)
+    kept = len(hz)
+    while kept and left < (1.0 + _PAIR) * hz[kept - 1]:
+        kept -= 1
+        left = float(hz[kept])
     progress(0.7, f"{name}: static shapes of the rim")
     modes = space.shapes @ modes[:, :kept]
     rim_weights = fe.mean_weights((rim,))
@@ -164,9 +161,10 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     E = E @ turn
 
     progress(0.8, f"{name}: rotation")
-    stretched = space.shapes @ system.solve(space.forces(_centrifugal_forces(fe)))
-    spin = spin_integrals(fe.mesh, fe.settings.material, stretched[:, 0])
-    waves = _waves(fe, E, np.sqrt(squares), spin.transport)
+    outward = (fe.mesh.points * np.array([1.0, 1.0, 0.0])).reshape(-1, 1)  # centrifugal acceleration at 1 rad/s
+    stretched = space.shapes @ system.solve(space.forces(fe.matrices.times_mass(outward)))
+    transport, spin_stress = spin_integrals(fe.mesh, fe.settings.material, stretched[:, 0])
+    waves = _waves(fe, E, np.sqrt(squares), transport)
     frequency = waves.frequency
     own = np.flatnonzero(waves.first < kept)
     averaged = float(np.abs(waves.shift[own]).max(initial=0.0))
@@ -180,12 +178,14 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     M[6:, 6:] = np.eye(len(frequency))
     Z = waves.mean(everything.T @ fe.matrices.times_mass(across))
     Q = waves.mean(across.T @ fe.matrices.times_mass(across))
-    stress = waves.mean(la.block_diag(np.zeros((6, 6)), _each_direction(spin.stress, E)))
+    stress = waves.mean(la.block_diag(np.zeros((6, 6)), _each_direction(spin_stress, E)))
     L = waves.turning
     T = M @ L + Z
     H = L.T @ M @ L + L.T @ Z + Z.T @ L + Q
     rim_motion = np.zeros_like(M)
-    rim_motion[:6, 6:] = _from_point(rim.point) @ (rim_weights.T @ E)
+    # Motion of a rigid body about the origin from that about the middle of the rim: v - θ x r.
+    about_origin = np.vstack([rigid_motions(-rim.point[None, :]), np.eye(6)[3:]])
+    rim_motion[:6, 6:] = about_origin @ (rim_weights.T @ E)
     cosine, sine = _rim_waves(fe, E, waves.diameters)
     mass, centre, inertia = fe.mass_properties
     progress(1.0, f"{name}: reduced to {len(frequency)} coordinates")
@@ -384,29 +384,6 @@ def _across(fields: np.ndarray) -> np.ndarray:
 def _each_direction(scalar: sp.csr_array, fields: np.ndarray) -> np.ndarray:
     """Uᵀ (A x I) U for a matrix A (p, p) of nodes and fields U (3p, k)."""
     return np.asarray(fields.T @ (scalar @ fields.reshape(scalar.shape[0], -1)).reshape(fields.shape))
-
-
-def _centrifugal_forces(fe: FiniteElementBody) -> np.ndarray:
-    """(3p, 1): of the rotation at 1 rad/s."""
-    outward = fe.mesh.points * np.array([1.0, 1.0, 0.0])
-    return fe.matrices.times_mass(outward.reshape(-1, 1))
-
-
-def _from_point(point: np.ndarray) -> np.ndarray:
-    """(6, 6): motion of a rigid body about the origin from that about a point: v - θ x r."""
-    x, y, z = point
-    carried = np.eye(6)
-    carried[:3, 3:] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
-    return carried
-
-
-def _whole_pairs(frequency: np.ndarray, left: float) -> tuple[int, float]:
-    """How many of the modes are kept so that no pair is torn apart, and the frequency of the first that is left."""
-    kept = len(frequency)
-    while kept and left < (1.0 + _PAIR) * frequency[kept - 1]:
-        kept -= 1
-        left = float(frequency[kept])
-    return kept, left
 
 
 def _radius(fe: FiniteElementBody) -> float:

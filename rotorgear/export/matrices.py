@@ -134,8 +134,21 @@ def write_matrices(
             f"{name}_indptr": compressed.indptr,
             f"{name}_shape": np.array(compressed.shape),
         }
-    names, units = _dofs(system)
-    values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(_node_dofs(system))}
+    # A free degree of freedom has the name of the first node that it moves by one, else what the map says of it.
+    of_nodes = _node_dofs(system)
+    transform = parts["transform"]
+    names = []
+    units = []
+    for k in range(system.n):
+        column = slice(transform.indptr[k], transform.indptr[k + 1])
+        moved = [
+            int(row)
+            for row, entry in zip(transform.indices[column], transform.data[column], strict=True)
+            if entry == 1.0
+        ]
+        names.append(of_nodes[min(moved)] if moved else f"{system.dofs.describe(k, system.nodes)} [{k}]")
+        units.append("" if not moved else "rad" if min(moved) % 6 > 2 else "m")
+    values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(of_nodes)}
     with replacing(target) as scratch, open(scratch, "wb") as stream:
         np.savez_compressed(stream, allow_pickle=False, **values)
     return target
@@ -178,22 +191,3 @@ def _node_dofs(system: System) -> list[str]:
         counts[place] = counts.get(place, 0) + 1
         named.append(place if counts[place] == 1 else f"{place}#{counts[place]}")
     return [f"{place}:{direction}" for place in named for direction in DOF_NAMES]
-
-
-def _dofs(system: System) -> tuple[list[str], list[str]]:
-    """Name and unit of each free degree of freedom: of the first node that it moves by one, else what the map says of it."""
-    of_nodes = _node_dofs(system)
-    T = sp.csc_array(system.dofs.transform)
-    names = []
-    units = []
-    for k in range(system.n):
-        rows = T.indices[T.indptr[k] : T.indptr[k + 1]]
-        entries = T.data[T.indptr[k] : T.indptr[k + 1]]
-        own = [int(row) for row, entry in zip(rows, entries, strict=True) if row < len(of_nodes) and entry == 1.0]
-        if own:
-            names.append(of_nodes[min(own)])
-            units.append("rad" if min(own) % 6 > 2 else "m")
-        else:
-            names.append(f"{system.dofs.describe(k, system.nodes)} [{k}]")
-            units.append("")
-    return names, units

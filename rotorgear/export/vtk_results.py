@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish
 from rotorgear.export.paraview import add_texts, put_shape, save_mesh, undeformed, write_collection
-from rotorgear.export.solids import Solids
 from rotorgear.export.vtk import check_amplitude, write_period
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -61,37 +58,25 @@ def write_deflections(
             save_mesh(mesh, scratch / "static.vtp")
             names = ["static.vtp"]
         else:
-            names = list(_write_orders(pv, result, solids, plain, amplitude, scratch, progress))
+            names = []
+            for o, order in enumerate(result.orders):
+                progress(o / len(result.orders), order)
+                scaled, scale = solids.scaled(result.shapes[:, :, o], amplitude)
+                name = f"order_{o + 1:02d}"
+                mesh = plain.copy(deep=False)
+                put_shape(mesh, "displacement*", scaled)
+                put_shape(mesh, "displacement*_m", scaled / scale)
+                hz = result.ratio[o] * abs(result.shape_speed) / (2.0 * np.pi)
+                mesh.field_data["displacement_scale"] = np.array([scale])
+                mesh.field_data["speed_rpm"] = np.array([result.shape_speed * RPM_PER_RAD_S])
+                mesh.field_data["frequency_hz"] = np.array([hz])
+                add_texts(mesh, "order", [order])
+                save_mesh(mesh, scratch / f"{name}.vtp")
+                # What refers to others comes last.
+                names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, FRAMES, scratch, name)]
         written = publish(scratch, Path(directory), names)
     progress(1.0, "done")
     return written
-
-
-def _write_orders(
-    pv: ModuleType,
-    result: ResponseResult,
-    solids: Solids,
-    plain: Any,
-    amplitude: float | None,
-    scratch: Path,
-    progress: Progress,
-) -> Iterator[str]:
-    """Write every order and yield the names of its files, what refers to others last."""
-    rpm = result.shape_speed * RPM_PER_RAD_S
-    for o, order in enumerate(result.orders):
-        progress(o / len(result.orders), order)
-        scaled, scale = solids.scaled(result.shapes[:, :, o], amplitude)
-        name = f"order_{o + 1:02d}"
-        mesh = plain.copy(deep=False)
-        put_shape(mesh, "displacement*", scaled)
-        put_shape(mesh, "displacement*_m", scaled / scale)
-        mesh.field_data["displacement_scale"] = np.array([scale])
-        mesh.field_data["speed_rpm"] = np.array([rpm])
-        mesh.field_data["frequency_hz"] = np.array([result.ratio[o] * abs(result.shape_speed) / (2.0 * np.pi)])
-        add_texts(mesh, "order", [order])
-        save_mesh(mesh, scratch / f"{name}.vtp")
-        yield f"{name}.vtp"
-        yield from write_period(pv, solids, plain, scaled, FRAMES, scratch, name)
 
 
 def write_branch(

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.plots.figure import COLOURS, figure_for, name_axes, plain_axis
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.bearing import BearingSheet, OilState
+from rotorgear.results.bearing import BearingSheet
 
 
 def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
@@ -27,7 +27,20 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
     figure = figure_for(fig, (10.0, 7.2), f"{result.bearing}: {result.law} at {result.speed * RPM_PER_RAD_S:.6g} rpm")
     inside, beside, stiffness, damping = figure.subplots(2, 2).ravel()
     if result.oil is not None:
-        _film(figure, inside, beside, result.oil)
+        # Pressure over angle and place, and the gap over the angle.
+        film = result.oil
+        largest = 1e-6 * film.largest_pressure
+        # Several patches have the colours of one scale.
+        field = {"shading": "gouraud", "vmin": 0.0, "vmax": largest or 1.0} if film.smooth else {"shading": "nearest"}
+        line = {"lw": 1.4} if film.smooth else {"ls": "", "marker": ".", "ms": 2}
+        picture = None
+        for angle, place, gap, pressures in film.patches():
+            picture = inside.pcolormesh(angle, 1e3 * place, 1e-6 * pressures.T, cmap="viridis", **field)
+            beside.plot(angle, 1e6 * gap, color=COLOURS[0], **line)
+        figure.colorbar(picture, ax=inside, label="pressure, MPa")
+        name_axes(inside, "", f"{film.place}, mm", title=f"Pressure, at most {largest:.3g} MPa")
+        beside.set_ylim(bottom=0.0)
+        name_axes(beside, "", "gap, um", title=film.over_gap.format(film))
     else:
         angle = np.degrees([row.angle for row in result.rolling_elements])
         inside.bar(
@@ -63,19 +76,3 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
     for axis in axes[1:]:
         plain_axis(axis)
     return axes
-
-
-def _film(figure: Any, inside: Any, beside: Any, film: OilState) -> None:
-    """Pressure over angle and place, and the gap over the angle."""
-    largest = 1e-6 * film.largest_pressure
-    # Several patches have the colours of one scale.
-    field = {"shading": "gouraud", "vmin": 0.0, "vmax": largest or 1.0} if film.smooth else {"shading": "nearest"}
-    line = {"lw": 1.4} if film.smooth else {"ls": "", "marker": ".", "ms": 2}
-    picture = None
-    for angle, place, gap, pressure in film.patches():
-        picture = inside.pcolormesh(angle, 1e3 * place, 1e-6 * pressure.T, cmap="viridis", **field)
-        beside.plot(angle, 1e6 * gap, color=COLOURS[0], **line)
-    figure.colorbar(picture, ax=inside, label="pressure, MPa")
-    name_axes(inside, "", f"{film.place}, mm", title=f"Pressure, at most {largest:.3g} MPa")
-    beside.set_ylim(bottom=0.0)
-    name_axes(beside, "", "gap, um", title=film.over_gap.format(film))

@@ -49,6 +49,8 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
     if colour not in COLOURS:
         raise AnalysisError(f"colour: got '{colour}', expected {', '.join(COLOURS[:-1])} or {COLOURS[-1]}")
     axis = axes_for(ax, (11.0, 7.0), result.model.title or "Campbell diagram")
+    from matplotlib.lines import Line2D
+
     height = _height(result)
     top = height.top
     left, right = sorted((float(result.speed_rpm[0]), float(result.speed_rpm[-1])))
@@ -83,7 +85,22 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
             zorder=6,
         )
     name_axes(axis, f"speed of {result.model.reference_shaft}, rpm", "damped frequency, Hz", grid=True)
-    _legend(axis, result, colour)
+    handles = []
+    if colour == "motion":
+        handles += [Line2D([], [], color=_MOTION[name], lw=1.8, label=name) for name in result.kinetic_by_motion]
+    used = {WHIRL_WORDS[number] for number in np.unique(result.whirl)}
+    handles += [
+        Line2D([], [], color="#222222", marker=marker, mfc="white", ms=4.5, mew=0.8, ls="none", label=f"{word} whirl")
+        for word, marker in _MARKERS.items()
+        if word in used
+    ]
+    kinds = {line.kind for line in result.lines}
+    handles += [Line2D([], [], color=_LINES[k], ls="--", lw=0.9, label=f"{k} orders") for k in _LINES if k in kinds]
+    if any(item.excited for item in result.crossings):
+        handles.append(
+            Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm")
+        )
+    axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=6, frameon=False, fontsize=8)
     return axis
 
 
@@ -234,27 +251,6 @@ def _crossings(axis: Any, result: CampbellResult, height: _Height) -> None:
                 ha="center",
                 bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6},
             )
-
-
-def _legend(axis: Any, result: CampbellResult, colour: str) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = []
-    if colour == "motion":
-        handles += [Line2D([], [], color=_MOTION[name], lw=1.8, label=name) for name in result.kinetic_by_motion]
-    used = {WHIRL_WORDS[number] for number in np.unique(result.whirl)}
-    handles += [
-        Line2D([], [], color="#222222", marker=marker, mfc="white", ms=4.5, mew=0.8, ls="none", label=f"{word} whirl")
-        for word, marker in _MARKERS.items()
-        if word in used
-    ]
-    kinds = {line.kind for line in result.lines}
-    handles += [Line2D([], [], color=_LINES[k], ls="--", lw=0.9, label=f"{k} orders") for k in _LINES if k in kinds]
-    if any(item.excited for item in result.crossings):
-        handles.append(
-            Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm")
-        )
-    axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=6, frameon=False, fontsize=8)
 
 
 # Size of a short label, and distances at which it is tried, as shares of the axes.

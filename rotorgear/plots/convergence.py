@@ -80,7 +80,15 @@ def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
     axis.set_yscale("log")
     axis.margins(x=0.12)
     if reached:
-        _ticks(axis, sizes)
+        # As many ticks as stand beside each other without touching.
+        from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter, NullLocator
+
+        decades = math.log10(max(sizes) / min(sizes)) if min(sizes) > 0.0 else 0.0
+        subs = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if decades < 0.7 else ((1.0, 2.0, 5.0) if decades < 2.0 else (1.0,))
+        axis.xaxis.set_major_locator(LogLocator(subs=subs, numticks=12))
+        axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.xaxis.set_minor_locator(NullLocator())
+        axis.xaxis.set_minor_formatter(NullFormatter())
     axis.grid(True, which="major", alpha=0.25)
 
 
@@ -99,18 +107,6 @@ def _labels(x: np.ndarray, y: np.ndarray, settings: Sequence[float]) -> list[tup
         else:
             groups.append((k, [word]))
     return [((float(x[k]), float(y[k])), ", ".join(words)) for k, words in groups]
-
-
-def _ticks(axis: Any, values: Sequence[float]) -> None:
-    """As many ticks as stand beside each other without touching."""
-    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter, NullLocator
-
-    decades = math.log10(max(values) / min(values)) if min(values) > 0.0 else 0.0
-    subs = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if decades < 0.7 else ((1.0, 2.0, 5.0) if decades < 2.0 else (1.0,))
-    axis.xaxis.set_major_locator(LogLocator(subs=subs, numticks=12))
-    axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
-    axis.xaxis.set_minor_locator(NullLocator())
-    axis.xaxis.set_minor_formatter(NullFormatter())
 
 
 _CURVES = (

@@ -45,22 +45,12 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
             x = result.stiffness[rows]
             y = speeds[rows, columns]
             axis.plot(x, y, marker, color=colour, mfc="white", mew=0.9, ms=4.5, ls="none", label=name, zorder=3)
-    _bearings(axis, result)
-    name_axes(axis, "radial stiffness of every bearing, N/m", f"critical speed of {result.model.reference_shaft}, rpm")
-    axis.set_xlim(result.stiffness[0], result.stiffness[-1])
-    axis.grid(True, which="both", alpha=0.2)
-    if axis.get_legend_handles_labels()[0]:
-        axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=5)  # curves fill the axes
-    return axis
-
-
-def _bearings(axis: Any, result: CriticalMap) -> None:
-    """A vertical line at each different stiffness that a bearing has, named after the bearings that have it."""
+    # A vertical line at each different stiffness that a bearing has, named after the bearings that have it.
     names: dict[float, list[str]] = {}
-    for name, (x, y) in result.bearings.items():
-        for value, suffix in ((x, "" if x == y else " x"), (y, "" if x == y else " y")):
-            if value > 0.0 and f"{name}{suffix}" not in names.setdefault(float(value), []):
-                names[float(value)].append(f"{name}{suffix}")
+    for bearing, (k_x, k_y) in result.bearings.items():
+        for value, suffix in ((k_x, "" if k_x == k_y else " x"), (k_y, "" if k_x == k_y else " y")):
+            if value > 0.0 and f"{bearing}{suffix}" not in names.setdefault(float(value), []):
+                names[float(value)].append(f"{bearing}{suffix}")
     for value, alike in names.items():
         if result.stiffness[0] <= value <= result.stiffness[-1]:
             axis.axvline(value, color="#444444", lw=0.8)
@@ -80,3 +70,9 @@ def _bearings(axis: Any, result: CriticalMap) -> None:
                 ha="right",
                 color="#444444",
             )
+    name_axes(axis, "radial stiffness of every bearing, N/m", f"critical speed of {result.model.reference_shaft}, rpm")
+    axis.set_xlim(result.stiffness[0], result.stiffness[-1])
+    axis.grid(True, which="both", alpha=0.2)
+    if axis.get_legend_handles_labels()[0]:
+        axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=5)  # curves fill the axes
+    return axis

@@ -63,7 +63,16 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
         mesh_pressure(result, axes[1, 1])
     if result.loads:
         mesh_loads(result, axes[-1, 0])
-        _errors_at_loads(axes[-1, 1], result)
+        # Transmission error over the cycle at each load, about the middle of its range.
+        axis = axes[-1, 1]
+        axis.set_title("transmission error about its middle, by load factor", fontsize=10)
+        for point in result.loads:
+            if point.ste_m is not None and point.position is not None:
+                middle = 0.5 * (point.ste_m.max() + point.ste_m.min())
+                curve = _closed(point.position, 1e6 * (point.ste_m - middle), result.periods)
+                axis.plot(*curve, lw=1.3, label=f"{point.factor:g}")
+        axis.legend(frameon=False, fontsize=8, ncols=4)
+        _plain_axis(axis, "transmission error, um")
     return np.asarray(axes)
 
 
@@ -217,18 +226,6 @@ def mesh_loads(result: MeshResult, ax: Any = None) -> Any:
     axis.set_ylim(0.0, None)
     name_axes(axis, legend=1, grid=True)
     return axis
-
-
-def _errors_at_loads(axis: Any, result: MeshResult) -> None:
-    """Transmission error over the cycle at each load, about the middle of its range."""
-    axis.set_title("transmission error about its middle, by load factor", fontsize=10)
-    for point in result.loads:
-        if point.ste_m is not None and point.position is not None:
-            middle = 0.5 * (point.ste_m.max() + point.ste_m.min())
-            curve = _closed(point.position, 1e6 * (point.ste_m - middle), result.periods)
-            axis.plot(*curve, lw=1.3, label=f"{point.factor:g}")
-    axis.legend(frameon=False, fontsize=8, ncols=4)
-    _plain_axis(axis, "transmission error, um")
 
 
 # What is drawn by name: its field, the factor to its unit, and its label.

@@ -161,8 +161,13 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
     for number, s in enumerate(chosen[::-1]):
         # Heights from 0 to 1 of shares of the highest peak, logarithmic.
         height = 1.0 + np.log10(np.maximum(size[shown, s] / top, _SHOWN)) / _DECADES
-        hz, height = _spectrum(result.frequency_hz[shown, s], height, widest)
-        line = rpm[s] + _STEPS_HIGH * step * height
+        # A line along the axis with a narrow triangle of each height at its frequency.
+        width = _PEAK_WIDTH * widest
+        middle = result.frequency_hz[shown, s]
+        hz = np.unique(np.concatenate([[0.0, widest], middle - width, middle, middle + width]))
+        hz = hz[(hz >= 0.0) & (hz <= widest)]
+        peaks = np.clip(1.0 - np.abs(hz[:, None] - middle) / width, 0.0, None) * height
+        line = rpm[s] + _STEPS_HIGH * step * peaks.max(axis=1)
         axis.fill_between(hz, rpm[s], line, where=line > rpm[s], color="white", zorder=2 * number + 1, lw=0)
         axis.plot(hz, line, color=COLOURS[0], lw=0.8, zorder=2 * number + 2)
     axis.set_xlim(0.0, widest)
@@ -194,12 +199,3 @@ def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.n
     raise AnalysisError(
         f"'{at}' is no mesh, bearing or point of the model: expected one of {', '.join(known) or 'none'}"
     )
-
-
-def _spectrum(at: np.ndarray, height: np.ndarray, widest: float) -> tuple[np.ndarray, np.ndarray]:
-    """A line along the axis with a narrow triangle of each height at its frequency."""
-    width = _PEAK_WIDTH * widest
-    hz = np.unique(np.concatenate([[0.0, widest], at - width, at, at + width]))
-    hz = hz[(hz >= 0.0) & (hz <= widest)]
-    peaks = np.clip(1.0 - np.abs(hz[:, None] - at) / width, 0.0, None) * height
-    return hz, peaks.max(axis=1)

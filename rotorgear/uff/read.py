@@ -97,7 +97,17 @@ def read_function(block: Block, units: Units) -> tuple[Function, list[str]]:
     if not (np.isfinite(at).all() and np.isfinite(values).all()):
         raise block.problem(12, "finite numbers")
     axes = [_axis(lines[k], block, k + 1) for k in (7, 8, 9, 10)]
-    factor, unsure = _to_si(axes[1], axes[2], units)
+    # To SI: by the labels where they are known, else by the units of the file.
+    factor = 1.0
+    for (quantity, label), power in ((axes[1], 1), (axes[2], -1)):
+        plain = re.sub(r"[\s()^*\[\]]|²", lambda m: "2" if m[0] == "²" else "", label).lower()
+        of_file = 1.0 / units.length if quantity in _LENGTHS else 1.0 / units.force if quantity in _FORCES else 1.0
+        known = _LABELS.get(plain)
+        if label and known is None and quantity in (*_LENGTHS, *_FORCES):
+            notes.append(
+                f"the unit '{label}' of a function is not known: its values are taken in the units of the file"
+            )
+        factor *= (of_file if known is None else known) ** power
     found = Function(
         kind,
         response,
@@ -111,7 +121,7 @@ def read_function(block: Block, units: Units) -> tuple[Function, list[str]]:
         tuple(text.strip() for text in lines[:5]),
         axes[3][0],
     )
-    return found, notes + unsure
+    return found, notes
 
 
 # Function type, ids, then name, node and direction of response and of reference, where the names have no blanks.
@@ -142,22 +152,6 @@ def _axis(text: str, block: Block, row: int) -> tuple[int, str]:
         raise block.problem(row, "the specific data type of an axis", repr(text.strip()[:40]))
     label = columns(text, (25, 21, 21))[2]
     return int(code[1] or 0), "" if label.upper() == "NONE" else label
-
-
-def _to_si(numerator: tuple[int, str], denominator: tuple[int, str], units: Units) -> tuple[float, list[str]]:
-    """Factor to SI: by the labels where they are known, else by the units of the file."""
-    factor = 1.0
-    unsure = []
-    for (kind, label), power in ((numerator, 1), (denominator, -1)):
-        plain = re.sub(r"[\s()^*\[\]]|²", lambda m: "2" if m[0] == "²" else "", label).lower()
-        of_file = 1.0 / units.length if kind in _LENGTHS else 1.0 / units.force if kind in _FORCES else 1.0
-        known = _LABELS.get(plain)
-        if label and known is None and kind in (*_LENGTHS, *_FORCES):
-            unsure.append(
-                f"the unit '{label}' of a function is not known: its values are taken in the units of the file"
-            )
-        factor *= (of_file if known is None else known) ** power
-    return factor, unsure
 
 
 def _parted(

@@ -100,7 +100,10 @@ def function_set(function: Function, *, binary: bool = False) -> bytes:
         *_names(function.names),
         f"{function.kind:5d}{0:10d}{0:5d}{0:10d}{response}{reference}",
         f"{kind:10d}{len(x):10d}{int(even):10d}{spacing}",
-        *(_axis(code) for code in (function.x_type, function.numerator, function.denominator, function.z_type)),
+        *(
+            f"{code:10d}{0:5d}{0:5d}{0:5d} {'NONE':20s} {'NONE':20s}"
+            for code in (function.x_type, function.numerator, function.denominator, function.z_type)
+        ),
     ]
     if not binary:
         if even:
@@ -125,10 +128,6 @@ def _dataset(number: int, lines: Iterable[str]) -> bytes:
 def _names(names: tuple[str, ...]) -> list[str]:
     """Five lines of text, none of them blank."""
     return [(name[:80] or "NONE") for name in (*names, *("NONE",) * 5)[:5]]
-
-
-def _axis(code: int) -> str:
-    return f"{code:10d}{0:5d}{0:5d}{0:5d} {'NONE':20s} {'NONE':20s}"
 
 
 def _whole(values: Iterable[int]) -> str:

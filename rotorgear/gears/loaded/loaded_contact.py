@@ -115,7 +115,16 @@ def solve_contact(
         fall = -float(step @ opening)
         small = float(np.abs(step).max()) <= tolerance * total
         if small or fall <= _ENERGY_ROUNDING * total * abs(approach):
-            return _state(contact, target, approach, total)
+            # No opening where a force acts, no overlap anywhere.
+            opening = contact.compliance @ target + _local(contact, target, total)[0] + contact.gap - approach
+            loaded = target > 0.0
+            return ContactState(
+                force=target,
+                approach=approach,
+                tangent=float(_stiffness(contact, target, np.ones((len(target), 1)))[0, 0]),
+                strip=hertz_half_width(target / contact.length, contact.radius, contact.modulus),
+                residual=max(float(np.abs(opening[loaded]).max()), float(np.maximum(-opening, 0.0).max())),
+            )
         share, added, tangent = _share_of_step(contact, force, step, fall, total)
         force = force + share * step
     raise ConvergenceError(
@@ -158,21 +167,6 @@ def _share_of_step(
         if at_t >= -_SLOPE_LEFT * fall:
             return low, added, tangent
     return low, *_local(contact, force + low * step, total)
-
-
-def _state(contact: PositionContact, force: np.ndarray, approach: float, total: float) -> ContactState:
-    """The solution with its tangent stiffness and the violation of its conditions."""
-    # No opening where a force acts, no overlap anywhere.
-    opening = contact.compliance @ force + _local(contact, force, total)[0] + contact.gap - approach
-    loaded = force > 0.0
-    residual = max(float(np.abs(opening[loaded]).max()), float(np.maximum(-opening, 0.0).max()))
-    return ContactState(
-        force=force,
-        approach=approach,
-        tangent=float(_stiffness(contact, force, np.ones((len(force), 1)))[0, 0]),
-        strip=hertz_half_width(force / contact.length, contact.radius, contact.modulus),
-        residual=residual,
-    )
 
 
 def moment_and_tangents(contact: PositionContact, state: ContactState, z: np.ndarray) -> tuple[float, np.ndarray]:

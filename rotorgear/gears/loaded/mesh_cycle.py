@@ -303,11 +303,14 @@ def _swept(
     # Hertz: p_0 = 2 F' / (pi a). Along the line of action delta = delta_n / cos b_b and F_bt = F_n cos b_b.
     line_load = force * cosine / slices.length
     pressure = np.where(force > 0.0, 2.0 * line_load / (np.pi * np.maximum(strip, 1e-300)), 0.0)
+    # Approach (p,) along the normal at which the first place of any slice touches, without load.
+    no_load = np.full(len(positions), np.inf)
+    np.minimum.at(no_load, slices.position, problem.gap_along(slices).min(axis=1))
     return MeshCycle(
         position=positions,
         load=load,
         deflection=np.array([state.approach for state in states]) / cosine,
-        no_load=_no_load(problem, slices, len(positions)) / cosine,
+        no_load=no_load / cosine,
         tangent=np.array([state.tangent for state in states]) * cosine**2,
         moment=np.array([moment for moment, _ in along]),
         along_face=np.array([tangents for _, tangents in along]),
@@ -323,13 +326,6 @@ def _swept(
         beyond=beyond,
         warnings=_notes(problem, slices, force, pressure, beyond),
     )
-
-
-def _no_load(problem: ContactProblem, slices: Slices, count: int) -> np.ndarray:
-    """Approach (p,) along the normal at which the first place of any slice touches, without load."""
-    least = np.full(count, np.inf)
-    np.minimum.at(least, slices.position, problem.gap_along(slices).min(axis=1))
-    return least
 
 
 def _opening(contact: PositionContact, state: ContactState) -> np.ndarray:

@@ -99,7 +99,12 @@ def settled(
         for i in unsettled:
             states[i] = solve_contact(contacts[i], total, start.get(i))
             start[i] = states[i].force
-            _refuse_wide(float(states[i].strip.max()) / problem.module)
+            strip = float(states[i].strip.max()) / problem.module
+            if strip > _WIDEST_STRIP:
+                raise WideContactError(
+                    f"At this load the contact strip would be {2.0 * strip:.2g} modules wide, which is no line contact any more: "
+                    "reduce the torque."
+                )
             progress((i + 1) / count, f"contact {i + 1} of {count}")
         if problem.plane:
             break
@@ -171,12 +176,3 @@ def _with_patches(
             least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,
         )
     return found
-
-
-def _refuse_wide(strip: float) -> None:
-    """Refuse a contact whose half-width in normal modules makes it no line contact."""
-    if strip > _WIDEST_STRIP:
-        raise WideContactError(
-            f"At this load the contact strip would be {2.0 * strip:.2g} modules wide, which is no line contact any more: "
-            "reduce the torque."
-        )

@@ -22,7 +22,6 @@ from rotorgear.gears.tooth_fe.compliance_model import (
     wind_up,
 )
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
-from rotorgear.gears.tooth_fe.settings import Body, ToothFe
 from rotorgear.progress import Progress, silent
 
 # Stations of the preview along the face.
@@ -159,7 +158,10 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        compliances.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, chosen, fe))
+        compliance = gear_compliance(key, told, fresh=fresh)
+        if fe.excludes_torsion(chosen):  # the rotation of the teeth about the axis against the held circle is left out
+            compliance = replace(compliance, flexibility=compliance.flexibility - wind_up(key))
+        compliances.append(compliance)
         held_radii.append(module * held_radius(key))
         # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement,
         # lie in that section. In space the compliance of a body grows as 1 / (E m_n).
@@ -199,13 +201,6 @@ def gear_key(teeth: ToothPair, gear: int, *, space: bool) -> ComplianceKey:
     return compliance_key(
         geometry, teeth.fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space, blank=blank
     )
-
-
-def _without_torsion(compliance: GearCompliance, key: ComplianceKey, body: Body, fe: ToothFe) -> GearCompliance:
-    """The compliance without the rotation of the teeth about the axis against the held circle, where that is left out."""
-    if not fe.excludes_torsion(body):
-        return compliance
-    return replace(compliance, flexibility=compliance.flexibility - wind_up(key))
 
 
 def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:

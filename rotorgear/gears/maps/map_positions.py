@@ -69,18 +69,16 @@ def load_groups(problem: ContactProblem, near: bool = False) -> tuple[tuple[floa
     if problem.plane and not problem.uncoupled:
         return _IN_PLANE
     groups = _NEAR_IN_SPACE if near else _IN_SPACE
-    return _finer(groups) if problem.oblique else groups
-
-
-def _finer(groups: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
-    """Groups with more loads, evenly between each two in a range."""
+    if not problem.oblique:
+        return groups
+    # More loads in a range, evenly between each two.
     found = []
     before = 0.0
     for group in groups:
         loads: list[float] = []
         for factor in group:
-            near = before > _FINER[0] and factor < _FINER[1]
-            loads += [before + (factor - before) * k / _PARTS for k in range(1, _PARTS)] if near else []
+            near_working = before > _FINER[0] and factor < _FINER[1]
+            loads += [before + (factor - before) * k / _PARTS for k in range(1, _PARTS)] if near_working else []
             loads.append(factor)
             before = factor
         found.append(tuple(loads))

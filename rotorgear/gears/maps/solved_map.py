@@ -395,23 +395,10 @@ def solved_map(
             break
     order = [kinds.index(errors) for errors in of_period]
     loads = load * np.array([0.0, *factors])
-    return _assembled(problem, positions, loads, load, order, touch, solved, notes)
-
-
-def _assembled(
-    problem: ContactProblem,
-    positions: MapPositions,
-    loads: np.ndarray,
-    load: float,
-    order: list[int],
-    touch: list[np.ndarray],
-    solved: list[list[Column]],
-    notes: list[str],
-) -> ContactMap:
-    """The map over all periods, period n being of the kind order[n], from touch and columns of each kind."""
-    kinds = range(len(solved))
-    approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in kinds]
-    slope = [with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in kinds]
+    # Over all periods, period n being of the kind order[n].
+    numbers = range(len(solved))
+    approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in numbers]
+    slope = [with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in numbers]
     moment = [np.stack([np.zeros(len(positions.position)), *(c.moment for c in columns)], axis=1) for columns in solved]
     position, *curves = positions.kept(
         np.concatenate([approach[k] for k in order]),

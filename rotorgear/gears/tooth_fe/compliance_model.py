@@ -211,7 +211,9 @@ def compliance_key(
     body = fe.body_of(blank)
     wheel: BlankShape | None = None
     if body == "wheel":
-        wheel = _in_modules(blank or solid_blank(bore_radius), m, root)
+        shape = blank or solid_blank(bore_radius)
+        in_modules = {size.name: _rounded(getattr(shape, size.name) / m) for size in fields(BlankShape)}
+        wheel = BlankShape(**in_modules).with_core(root)  # a core that is held where shaft and gear are one
         inner = _seat_radius(wheel, root)
     elif body == "ring":
         inner = bore_radius / m if bore_radius > 0.0 else _LEAST_BORE * root
@@ -233,12 +235,6 @@ def compliance_key(
 def held_radius(key: ComplianceKey) -> float:
     """Radius in normal modules of the circle that is held: the bore of a wheel, else the inner circle of the pitches."""
     return key.blank.bore_radius if key.blank else key.inner_radius
-
-
-def _in_modules(blank: BlankShape, module: float, root: float) -> BlankShape:
-    """A blank in normal modules, with a held core where shaft and gear are one."""
-    rounded = {size.name: _rounded(getattr(blank, size.name) / module) for size in fields(BlankShape)}
-    return BlankShape(**rounded).with_core(root)
 
 
 def _seat_radius(blank: BlankShape, root: float) -> float:

@@ -10,7 +10,6 @@ Reference: cyclic symmetry as in D. L. Thomas, International Journal for Numeric
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,45 +67,23 @@ def wheel_motions(
     progress: Progress = silent,
 ) -> np.ndarray:
     """Motions (k, 2 c + m) of left cut, right cut and seat of pitches (k,) for flank forces (f,) on pitch 0."""
-    c = sector.cut
-    moved = np.zeros((len(pitches), 2 * c + sector.middle))
-    for harmonic in _harmonics(sector, blank, teeth, progress):
-        x = -la.cho_solve((harmonic.factor, True), harmonic.load @ force, check_finite=False)
-        phase = harmonic.share * harmonic.turn ** pitches[:, None]
-        moved[:, :c] += (phase * x[:c]).real
-        moved[:, c : 2 * c] += (phase * harmonic.turn * x[:c]).real
-        moved[:, 2 * c :] += (phase * x[c:]).real
-    return moved
-
-
-@dataclass(frozen=True)
-class _Harmonic:
-    """One harmonic n of the joined pitches.
-
-    Attributes:
-        turn: e^(i n a).
-        share: of this harmonic in a load on one pitch: 1/z, or 2/z where n stands for z - n too.
-        factor: Cholesky's L of the system of one cut and the seat's middle (c + m, c + m).
-        load: (c + m, f) what unit forces on the flank put on it.
-    """
-
-    turn: complex
-    share: float
-    factor: np.ndarray
-    load: np.ndarray
-
-
-def _harmonics(sector: WheelSector, blank: BlankSection, teeth: int, progress: Progress) -> Iterator[_Harmonic]:
-    """The harmonics n = 0 ... z/2; n and z - n are conjugate."""
     pitch = _JoinedPitches.of(sector)
     circle = _Circle(sector, blank, teeth)
     on_seat = np.ix_(circle.column, circle.column)
-    for n in range(teeth // 2 + 1):
+    c = sector.cut
+    moved = np.zeros((len(pitches), 2 * c + sector.middle))
+    for n in range(teeth // 2 + 1):  # harmonics n and z - n are conjugate
         progress(2.0 * n / teeth, f"harmonic {n} of {teeth // 2} round the wheel")
         turn, share = _turn_and_share(n, teeth)
         system, load = pitch.at(turn)
         system[on_seat] += circle.stiffness(n)
-        yield _Harmonic(turn, share, la.cholesky(system, lower=True, check_finite=False), load)
+        factor = la.cholesky(system, lower=True, check_finite=False)
+        x = -la.cho_solve((factor, True), load @ force, check_finite=False)
+        phase = share * turn ** pitches[:, None]
+        moved[:, :c] += (phase * x[:c]).real
+        moved[:, c : 2 * c] += (phase * turn * x[:c]).real
+        moved[:, 2 * c :] += (phase * x[c:]).real
+    return moved
 
 
 def _turn_and_share(n: int, count: int) -> tuple[complex, float]:
