@@ -15,7 +15,7 @@ from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mechanisms import no_hinges, no_mechanism
 from rotorgear.casings.mesh_file import read_mesh
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
-from rotorgear.casings.reduced_body import rigid_motions
+from rotorgear.casings.reduced_body import node_dofs, rigid_motions
 from rotorgear.casings.settings import CasingSettings, MountSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
 from rotorgear.casings.split import split
@@ -85,6 +85,10 @@ class FiniteElementBody:
         """Mass matrix (6, 6) of rigid motions (3p, 6)."""
         return np.asarray(motions.T @ self.matrices.times_mass(motions))
 
+    def mass_times(self, columns: np.ndarray, space: FreeSpace) -> np.ndarray:
+        """M U for U (f, k) of the free dofs of a space."""
+        return space.forces(self.matrices.times_mass(space.shapes @ columns))
+
     def stiffness_times(self, columns: np.ndarray) -> np.ndarray:
         """K U with the joints, without mounts, for U (3p, k)."""
         product = np.asarray(self.matrices.stiffness @ columns)
@@ -111,7 +115,7 @@ class FiniteElementBody:
             for patch in self.seats:
                 free[patch.nodes] = False
                 motions = rigid_motions(self.mesh.points[patch.nodes], patch.point)
-                dofs = (3 * patch.nodes[:, None] + np.arange(3)).ravel()
+                dofs = node_dofs(patch.nodes)
                 rows = np.repeat(dofs, 6)
                 columns = np.tile(np.arange(6), len(dofs))
                 blocks.append(sp.coo_array((motions.ravel(), (rows, columns)), shape=(3 * nodes, 6)))
@@ -123,7 +127,7 @@ class FiniteElementBody:
             follow = sp.csr_array(sp.kron(self.joined.interpolation, sp.eye_array(3)))
             space = sp.csr_array(follow @ space)
             seat_columns = sp.csr_array(follow @ seat_columns)
-        return FreeSpace((3 * chosen[:, None] + np.arange(3)).ravel(), space, seat_columns)
+        return FreeSpace(node_dofs(chosen), space, seat_columns)
 
     def stiffness_in(self, space: sp.csr_array) -> sp.csr_array:
         """Pᵀ K P of a space P of displacements, with the joints."""
@@ -139,7 +143,7 @@ class FiniteElementBody:
         """W (3p, 6 n): mean motions of patches from displacements of all nodes."""
         W = np.zeros((self.dofs, 6 * len(patches)))
         for number, patch in enumerate(patches):
-            dofs = (3 * patch.nodes[:, None] + np.arange(3)).ravel()
+            dofs = node_dofs(patch.nodes)
             W[dofs, 6 * number : 6 * number + 6] = patch.weights(self.mesh.points)
         return W
 

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.casings.joins import Joined
-from rotorgear.casings.reduced_body import rigid_motions
+from rotorgear.casings.reduced_body import node_dofs, rigid_motions
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.solid_mesh import SolidMesh
 from rotorgear.errors import AnalysisError
@@ -142,7 +142,7 @@ def _relative_motions(joined: Joined, part_of: np.ndarray, held: np.ndarray, spr
     if joined.interpolation is not None:
         follow = sp.csr_array(sp.kron(joined.interpolation - sp.eye_array(nodes), sp.eye_array(3)))
         blocks.append(sp.csr_array(follow @ moved))
-    blocks.append(sp.csr_array(moved[(3 * held[:, None] + np.arange(3)).ravel()]))
+    blocks.append(sp.csr_array(moved[node_dofs(held)]))
     if springs.shape[1]:
         blocks.append(sp.csr_array(_on_springs(springs, moved.toarray())))
     G = sum((block.T @ block).toarray() for block in blocks)

@@ -30,6 +30,11 @@ def rigid_motions(points: np.ndarray, about: np.ndarray | None = None) -> np.nda
     return np.asarray(motions.transpose(2, 0, 1).reshape(-1, 6))
 
 
+def node_dofs(nodes: np.ndarray) -> np.ndarray:
+    """Numbers (3n,) of the displacements along x y z of nodes (n,)."""
+    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
+
+
 def rigid_coordinates(size: int, seat_points: np.ndarray) -> np.ndarray:
     """Coordinates (n, 6) of rigid motions of the model: those of the seats; the inside follows statically.
 

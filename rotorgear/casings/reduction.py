@@ -23,13 +23,21 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy.linalg as la
 
 from rotorgear.casings.constrained import Constrained, ElasticBody, lowest_modes, modes_up_to
 from rotorgear.casings.fe_body import FiniteElementBody, FreeSpace
-from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping, rigid_coordinates, rigid_motions
+from rotorgear.casings.reduced_body import (
+    ReducedBody,
+    Surface,
+    modal_damping,
+    node_dofs,
+    rigid_coordinates,
+    rigid_motions,
+)
 from rotorgear.progress import Progress, part_of, silent
 
 
@@ -73,10 +81,7 @@ def held_modes(
 
 
 def _modes(fe: FiniteElementBody, space: FreeSpace, system: Constrained, count: int) -> MeshModes:
-    def times_mass(columns: np.ndarray) -> np.ndarray:
-        return space.forces(fe.matrices.times_mass(space.shapes @ columns))
-
-    values, shapes = lowest_modes(system.solve, times_mass, len(space.dofs), count)
+    values, shapes = lowest_modes(system.solve, partial(fe.mass_times, space=space), len(space.dofs), count)
     return MeshModes(values, np.asarray(space.shapes @ shapes))
 
 
@@ -150,11 +155,8 @@ def reduce_in_basis(
 
     progress(0.4, f"{name}: fixed-interface modes")
     started = time.perf_counter()
-
-    def times_mass(columns: np.ndarray) -> np.ndarray:
-        return space.forces(fe.matrices.times_mass(space.shapes @ columns))
-
-    _, fixed, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL, name)
+    of_mass = partial(fe.mass_times, space=space)
+    _, fixed, left = modes_up_to(system.solve, of_mass, len(space.dofs), modes_to, USUAL, name)
     seconds["fixed-interface modes"] = time.perf_counter() - started
 
     progress(0.7, f"{name}: residual shapes and error")
@@ -304,7 +306,7 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
 
     for nodes in fe.held_sets:
         moved = np.zeros_like(R)
-        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+        dofs = node_dofs(nodes)
         moved[dofs] = R[dofs]
         if fe.joined.interpolation is not None:
             moved = np.asarray(fe.joined.interpolation @ moved.reshape(len(fe.mesh.points), -1)).reshape(moved.shape)

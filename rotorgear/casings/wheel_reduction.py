@@ -29,7 +29,7 @@ rigid motions S - H vanishes.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg as la
@@ -40,7 +40,7 @@ from rotorgear.casings.constrained import Constrained, ElasticBody, modes_up_to
 from rotorgear.casings.fe_body import FiniteElementBody
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.reduced_body import rigid_motions
-from rotorgear.casings.reduction import independent, surface_of, symmetric
+from rotorgear.casings.reduction import USUAL, independent, surface_of, symmetric
 from rotorgear.casings.solid_mesh import MASS_DEGREE, STIFFNESS_DEGREE, SolidMesh
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.errors import AnalysisError
@@ -99,8 +99,6 @@ def _slopes(corners: np.ndarray, gradients: np.ndarray, weights: np.ndarray) -> 
     return np.linalg.det(J) * weights, slopes
 
 
-# Modes of the body where neither the file nor the analysis says a frequency.
-USUAL = 20
 # Two modes nearer than this (relative) may be a pair.
 _PAIR = 5e-3
 # A pair turns into each other by n; what other modes turn into each other by rounding is far below.
@@ -137,11 +135,8 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     system = Constrained(body, at_rest)
 
     progress(0.4, f"{name}: modes on the bore")
-
-    def times_mass(columns: np.ndarray) -> np.ndarray:
-        return space.forces(fe.matrices.times_mass(space.shapes @ columns))
-
-    squares, modes, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL, name)
+    of_mass = partial(fe.mass_times, space=space)
+    squares, modes, left = modes_up_to(system.solve, of_mass, len(space.dofs), modes_to, USUAL, name)
     # No pair is torn apart; `left` is the frequency of the first mode that is not kept.
     hz = np.sqrt(squares) / (2.0 * np.pi)
     kept = len(hz)

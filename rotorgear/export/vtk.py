@@ -68,7 +68,19 @@ def write_vtk(
         names = ["model.vtp", "beam.vtp"]
         for count, mode in enumerate(chosen):
             progress(count / len(chosen), f"mode {mode + 1}")
-            names += _write_mode(pv, result, solids, plain, mode, frames, amplitude, scratch)
+            scaled, scale = solids.scaled(result.shapes[:, :, mode], amplitude)
+            name = f"mode_{mode + 1:02d}"
+            mesh = plain.copy(deep=False)  # the same points and cells, but data of its own
+            put_shape(mesh, "displacement*", scaled)
+            put_shape(mesh, "mass_normalised*", scaled / scale)
+            mesh.field_data["mode"] = np.array([mode + 1], dtype=np.int32)
+            mesh.field_data["displacement_scale"] = np.array([scale])
+            mesh.field_data["frequency_hz"] = result.frequency_hz[[mode]]
+            mesh.field_data["natural_frequency_hz"] = result.natural_frequency_hz[[mode]]
+            mesh.field_data["damping_ratio"] = result.damping_ratio[[mode]]
+            add_texts(mesh, "description", [result.description[mode]])
+            save_mesh(mesh, scratch / f"{name}.vtp")
+            names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, frames, scratch, name)]
         index = [(mode + 1, f"mode_{mode + 1:02d}.vtp") for mode in chosen]
         write_collection(scratch / "index.pvd", index)
         (scratch / "README.txt").write_text(readme(result, chosen, frames), encoding="utf-8")
@@ -98,32 +110,6 @@ def check_amplitude(amplitude: float | None) -> None:
         raise AnalysisError(
             f"the amplitude must be a positive share of the model's size, such as 0.05, got {amplitude:g}"
         )
-
-
-def _write_mode(
-    pv: ModuleType,
-    result: ModalResult,
-    solids: Solids,
-    plain: Any,
-    mode: int,
-    frames: int,
-    amplitude: float | None,
-    scratch: Path,
-) -> list[str]:
-    """Write one mode to the temporary folder and return the names of its files, what refers to others last."""
-    scaled, scale = solids.scaled(result.shapes[:, :, mode], amplitude)
-    name = f"mode_{mode + 1:02d}"
-    mesh = plain.copy(deep=False)  # the same points and cells, but data of its own
-    put_shape(mesh, "displacement*", scaled)
-    put_shape(mesh, "mass_normalised*", scaled / scale)
-    mesh.field_data["mode"] = np.array([mode + 1], dtype=np.int32)
-    mesh.field_data["displacement_scale"] = np.array([scale])
-    mesh.field_data["frequency_hz"] = result.frequency_hz[[mode]]
-    mesh.field_data["natural_frequency_hz"] = result.natural_frequency_hz[[mode]]
-    mesh.field_data["damping_ratio"] = result.damping_ratio[[mode]]
-    add_texts(mesh, "description", [result.description[mode]])
-    save_mesh(mesh, scratch / f"{name}.vtp")
-    return [f"{name}.vtp", *write_period(pv, solids, plain, scaled, frames, scratch, name)]
 
 
 def write_period(

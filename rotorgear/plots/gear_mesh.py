@@ -71,8 +71,35 @@ def gear(result: GearSheet, fig: Any = None, *, mesh: str | None = None) -> np.n
     figure = figure_for(fig, (11.0, 5.6), "")
     whole, near = figure.subplots(1, 2, width_ratios=[1.0, 1.25])
     teeth = result.pairs[name]
+    # Both gears with their circles and the path of contact, in mm.
+    angle = teeth.pair.working_transverse_pressure_angle
+    turn = np.linspace(0.0, 2.0 * math.pi, 721)
+    centres = ((0.0, 0.0), (1e3 * teeth.pair.centre_distance, 0.0))
     for axis in (whole, near):
-        _draw(axis, teeth, (row.pinion, row.gear))
+        for number, (g, centre, colour) in enumerate(
+            zip((teeth.first, teeth.second), centres, (BLUE, ORANGE), strict=True), 1
+        ):
+            xy = 1e3 * gear_contour(teeth, number)
+            axis.fill(*xy.T, facecolor=colour, alpha=0.16)
+            axis.plot(*xy.T, color=colour, lw=1.2, label=(row.pinion, row.gear)[number - 1])
+            for radius, style in ((g.base_radius / math.cos(angle), "-."), (g.base_radius, ":")):
+                label = {"-.": "working pitch circles", ":": "base circles"}[style] if number == 1 else None
+                x = 1e3 * radius * np.cos(turn) + centre[0]
+                y = 1e3 * radius * np.sin(turn)
+                axis.plot(x, y, style, color="#555555", lw=0.8, label=label)
+            axis.plot(*centre, "+", color=colour, ms=8)
+        tangents = [-teeth.first.base_radius * math.tan(angle), teeth.second.base_radius * math.tan(angle)]
+        ends = 1e3 * np.array([on_line_of_action(teeth, x) for x in tangents])
+        axis.plot(*ends.T, "--", color="#333333", lw=0.9, label="line of action")
+        path = 1e3 * np.array(
+            [on_line_of_action(teeth, x) for x in (teeth.pair.start_of_contact, teeth.pair.end_of_contact)]
+        )
+        axis.plot(*path.T, color="#111111", lw=2.4, label="path of contact")
+        axis.plot(*(1e3 * contact_points(teeth)).T, "o", color="#c00000", ms=4.5, label="contact points")
+        axis.set_aspect("equal")
+        axis.tick_params(labelsize=8)
+        axis.set_xlabel("x, mm", fontsize=8)
+        axis.set_ylabel("y, mm", fontsize=8)
     # A few teeth around the pitch point.
     pitch = 1e3 * on_line_of_action(teeth, 0.0)[0]
     reach = 5.0e3 * teeth.first.transverse_module
@@ -85,34 +112,3 @@ def gear(result: GearSheet, fig: Any = None, *, mesh: str | None = None) -> np.n
     first = {row.pinion: handles[row.pinion], row.gear: handles[row.gear]} | handles
     figure.legend(first.values(), first.keys(), loc="outside lower center", ncols=7, frameon=False, fontsize=8)
     return np.array([whole, near])
-
-
-def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
-    """Both gears with their circles and the path of contact, in mm."""
-    angle = teeth.pair.working_transverse_pressure_angle
-    turn = np.linspace(0.0, 2.0 * math.pi, 721)
-    centres = ((0.0, 0.0), (1e3 * teeth.pair.centre_distance, 0.0))
-    for number, (g, centre, colour) in enumerate(
-        zip((teeth.first, teeth.second), centres, (BLUE, ORANGE), strict=True), 1
-    ):
-        xy = 1e3 * gear_contour(teeth, number)
-        axis.fill(*xy.T, facecolor=colour, alpha=0.16)
-        axis.plot(*xy.T, color=colour, lw=1.2, label=names[number - 1])
-        for radius, style in ((g.base_radius / math.cos(angle), "-."), (g.base_radius, ":")):
-            label = {"-.": "working pitch circles", ":": "base circles"}[style] if number == 1 else None
-            x = 1e3 * radius * np.cos(turn) + centre[0]
-            y = 1e3 * radius * np.sin(turn)
-            axis.plot(x, y, style, color="#555555", lw=0.8, label=label)
-        axis.plot(*centre, "+", color=colour, ms=8)
-    tangents = [-teeth.first.base_radius * math.tan(angle), teeth.second.base_radius * math.tan(angle)]
-    ends = 1e3 * np.array([on_line_of_action(teeth, x) for x in tangents])
-    axis.plot(*ends.T, "--", color="#333333", lw=0.9, label="line of action")
-    path = 1e3 * np.array(
-        [on_line_of_action(teeth, x) for x in (teeth.pair.start_of_contact, teeth.pair.end_of_contact)]
-    )
-    axis.plot(*path.T, color="#111111", lw=2.4, label="path of contact")
-    axis.plot(*(1e3 * contact_points(teeth)).T, "o", color="#c00000", ms=4.5, label="contact points")
-    axis.set_aspect("equal")
-    axis.tick_params(labelsize=8)
-    axis.set_xlabel("x, mm", fontsize=8)
-    axis.set_ylabel("y, mm", fontsize=8)

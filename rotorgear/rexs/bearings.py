@@ -188,32 +188,13 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
     else:
         table.add("shaft", f'"{seat[0].name}"')
         table.add("at", quantity(seat[1], "length"))
-    stiffness, comment = _stiffness(part, address, seat, designation, structure)
-    if not stiffness:
-        account.left_out.append(f"{part}: it holds nothing, by radial_force_absorption and axial_force_absorption")
-        return None
-    table.add("stiffness", row(**stiffness), comment)
-    return table
-
-
-def _add_ends(table: Table, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> None:
-    table.add("from_shaft", f'"{first[0].name}"')
-    table.add("from_at", quantity(first[1], "length"))
-    table.add("to_shaft", f'"{second[0].name}"')
-    table.add("to_at", quantity(second[1], "length"))
-
-
-def _stiffness(
-    part: Component, address: str, seat: tuple[ShaftPart, float], designation: str, structure: Structure
-) -> tuple[dict[str, str], str]:
-    """Stiffness by direction, and the comment that says which of it the file did not give."""
-    account = structure.account
+    # Stiffness by direction; the comment says which of it the file did not give.
     radial = _given(part, ("radial_stiffness",), "stiffness", account)
     axial = _given(part, ("axial_stiffness",), "stiffness", account)
     tilt = _given(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
     takes_radial = account.truth(part, "radial_force_absorption") is not False
     takes_axial = _takes_axial(part, designation, structure)
-    values: dict[str, str] = {}
+    stiffness: dict[str, str] = {}
     reasons: list[str] = []
     if (takes_radial and radial is None) or (takes_axial and axial is None):
         guess_radial, guess_axial, words = _guess(part, seat, designation, structure)
@@ -228,12 +209,23 @@ def _stiffness(
             why = "none in the file: 2 tan²(alpha) of the radial one" + ("; held both ways, not one" if one_way else "")
             reasons.append(account.assume(f"{address}.stiffness.axial", f"{axial:.3g} N/m", why))
     if takes_radial and radial is not None:
-        values["radial"] = quantity(radial, "stiffness")
+        stiffness["radial"] = quantity(radial, "stiffness")
     if takes_axial and axial is not None:
-        values["axial"] = quantity(axial, "stiffness")
+        stiffness["axial"] = quantity(axial, "stiffness")
     if tilt is not None:
-        values["tilt"] = quantity(tilt, "rotational_stiffness")
-    return values, "\n".join(reasons)
+        stiffness["tilt"] = quantity(tilt, "rotational_stiffness")
+    if not stiffness:
+        account.left_out.append(f"{part}: it holds nothing, by radial_force_absorption and axial_force_absorption")
+        return None
+    table.add("stiffness", row(**stiffness), "\n".join(reasons))
+    return table
+
+
+def _add_ends(table: Table, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> None:
+    table.add("from_shaft", f'"{first[0].name}"')
+    table.add("from_at", quantity(first[1], "length"))
+    table.add("to_shaft", f'"{second[0].name}"')
+    table.add("to_at", quantity(second[1], "length"))
 
 
 def _given(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:

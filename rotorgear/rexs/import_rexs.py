@@ -18,7 +18,7 @@ from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read
 from rotorgear.rexs.loads import MASS, load_tables, mass_tables
 from rotorgear.rexs.read import read_document
 from rotorgear.rexs.shafts import Materials, ShaftPart, read_pieces, shaft_axes, shaft_table
-from rotorgear.rexs.structure import GEAR, Pair, Structure, refuse_other_kinds
+from rotorgear.rexs.structure import GEAR, Structure, refuse_other_kinds
 from rotorgear.rexs.toml_text import Names, Table, comment_line, text
 
 _NEWEST = (1, 6)
@@ -51,7 +51,21 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
     tables, counts = _tables(document, version, account)
     if account.problems:
         raise ModelError(account.problems, source)
-    whole = _whole(tables, document, source, case, account)
+    # Where the text comes from stands at its head, with the warnings and what was left out.
+    by = f" by {document.application}" if document.application else ""
+    of_case = f", load case {case}" if case else ""
+    unit = next(iter(document.of_type("gear_unit")), None)
+    lines = [
+        f"# Made from {comment_line(source)}, REXS {comment_line(document.version)}{comment_line(by)}{of_case}.",
+        f"# {len(account.assumptions)} values are assumed: look for 'assumed'. z is u, x is v and y is w of the file.",
+        *(f"# Warning: {comment_line(note)}" for note in account.warnings),
+        *(f"# Left out: {comment_line(note)}" for note in account.left_out),
+        "schema_version = 1",
+        f"title = {text(f'{unit.name} of {source}' if unit and unit.name else source)}",
+    ]
+    for table in tables:
+        lines += ["", *table.lines()]
+    whole = "\n".join(lines) + "\n"
     try:
         model = loads(whole, source)
     except ModelError as error:
@@ -126,15 +140,30 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     if not document.of_type("shaft"):
         account.missing("the file", "a gearbox needs at least one component of the type shaft")
     shaft_tables = [shaft_table(part, *materials.of(part.component, f"shafts.{part.name}")) for part in shafts.values()]
-    gears, meshing, mesh_tables = _gears(pairs, version, shafts, structure)
-    # A gear has a material of its own, or that of its shaft.
-    of_its_own = {part.name: structure.referenced(part.component, "material") is not None for part in gears}
-    gear_tables = [
-        gear_table(
-            part, structure, materials.of(part.component, f"gears.{part.name}") if of_its_own[part.name] else ("", "")
-        )
-        for part in gears
-    ]
+    # Gears with shifts that fit their axes, and those that mesh.
+    gears: dict[str, GearPart] = {}
+    names = Names()
+    for component in document.of_type(GEAR):
+        part = read_gear(component, names.of(component.name, "gear", component.id), shafts, structure, version)
+        if part is not None:
+            gears[component.id] = part
+    meshing: list[tuple[GearPart, GearPart]] = []
+    mesh_tables = []
+    names = Names()
+    for pair in pairs:
+        first, second = (gears.get(gear.id) for gear in pair.members)
+        fitted = matched(first, second, pair, account) if first is not None and second is not None else None
+        if fitted is not None:
+            gears |= {part.component.id: part for part in fitted}
+            meshing.append(fitted)
+            name = names.of(pair.stage.name, "stage", pair.stage.id)
+            mesh_tables.append(mesh_table(pair, name, *fitted, account))
+    gear_tables = []
+    for part in gears.values():
+        # A gear has a material of its own, or that of its shaft.
+        own = structure.referenced(part.component, "material") is not None
+        material = materials.of(part.component, f"gears.{part.name}") if own else ("", "")
+        gear_tables.append(gear_table(part, structure, material))
     names = Names()
     masses = document.of_type(MASS)
     mass_list = [table for part in masses for table in mass_tables(part, names, shafts, structure)]
@@ -162,53 +191,5 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     return [*head, *materials.tables, *bodies, *mesh_tables, *joints, *load_list], counts
 
 
-def _gears(
-    pairs: list[Pair],
-    version: tuple[int, int],
-    shafts: dict[str, ShaftPart],
-    structure: Structure,
-) -> tuple[list[GearPart], list[tuple[GearPart, GearPart]], list[Table]]:
-    """Gears with shifts that fit their axes, those that mesh, and the tables of the meshes."""
-    gears: dict[str, GearPart] = {}
-    names = Names()
-    for component in structure.document.of_type(GEAR):
-        name = names.of(component.name, "gear", component.id)
-        part = read_gear(component, name, shafts, structure, version)
-        if part is not None:
-            gears[component.id] = part
-    meshing: list[tuple[GearPart, GearPart]] = []
-    tables = []
-    names = Names()
-    for pair in pairs:
-        first, second = (gears.get(gear.id) for gear in pair.members)
-        fitted = matched(first, second, pair, structure.account) if first is not None and second is not None else None
-        if fitted is None:
-            continue
-        for part in fitted:
-            gears[part.component.id] = part
-        meshing.append(fitted)
-        name = names.of(pair.stage.name, "stage", pair.stage.id)
-        tables.append(mesh_table(pair, name, *fitted, structure.account))
-    return list(gears.values()), meshing, tables
-
-
 def _value(table: Table, key: str) -> str:
     return next(value for name, value, _ in table.rows if name == key).strip('"')
-
-
-def _whole(tables: list[Table], document: Document, source: str, case: str, account: Account) -> str:
-    """The text of the file, with where it comes from at its head and what was left out at its foot."""
-    by = f" by {document.application}" if document.application else ""
-    of_case = f", load case {case}" if case else ""
-    unit = next(iter(document.of_type("gear_unit")), None)
-    lines = [
-        f"# Made from {comment_line(source)}, REXS {comment_line(document.version)}{comment_line(by)}{of_case}.",
-        f"# {len(account.assumptions)} values are assumed: look for 'assumed'. z is u, x is v and y is w of the file.",
-        *(f"# Warning: {comment_line(note)}" for note in account.warnings),
-        *(f"# Left out: {comment_line(note)}" for note in account.left_out),
-        "schema_version = 1",
-        f"title = {text(f'{unit.name} of {source}' if unit and unit.name else source)}",
-    ]
-    for table in tables:
-        lines += ["", *table.lines()]
-    return "\n".join(lines) + "\n"

@@ -106,10 +106,28 @@ def contact_slices(
     """
     tangent = float(np.tan(line.base_helix_angle))
     half = 0.5 * width
-
     whole = (tangent == 0.0 and slices == 1) or stations
     along, weight = (np.array([0.0]), np.array([1.0])) if whole else _legendre()
-    pieces = _pieces(line, positions, half, slices, beyond, along, stations=stations)
+    # Number of position, pair and zone, places along the face and length of each slice. Zone 0: the gear's tip
+    # corner before the start of contact; 1: the line of action; 2: the pinion's corner after its end.
+    first = line.start - beyond[0]
+    last = line.end + beyond[1]
+    zones = [(first, line.start), (line.start, line.end), (line.end, last)]
+    away = _corner_borders(MOST_BEYOND * line.base_pitch, 4.0 * tangent * half / slices)
+    pieces: list[tuple[int, int, int, np.ndarray, float]] = []
+    for p, u in enumerate(positions):
+        low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
+        high = (last + tangent * half - line.pitch_point) / line.base_pitch - u
+        for k in range(int(np.ceil(low)), int(np.floor(high)) + 1):
+            middle = line.pitch_point + (u + k) * line.base_pitch
+            for number, ends in enumerate(zones):
+                if tangent == 0.0 or stations:
+                    cut = _stations(middle, tangent, ends, half, slices, along, closed=number == 1)
+                elif number == 1:
+                    cut = _line_pieces(middle, tangent, ends, half, slices)
+                else:
+                    cut = _corner_pieces(middle, tangent, ends, half, slices, away, after=number == 2)
+                pieces += [(p, k, number, z, length) for z, length in cut]
     position, pair, zone = (np.array([piece[i] for piece in pieces], int) for i in range(3))
     z = np.array([piece[3] for piece in pieces]).reshape(len(pieces), len(weight))
 
@@ -134,42 +152,6 @@ def contact_slices(
         gap=gap * np.cos(line.base_helix_angle),
         corner=zone != 1,
     )
-
-
-def _pieces(
-    line: LineOfAction,
-    positions: np.ndarray,
-    half: float,
-    slices: int,
-    beyond: tuple[float, float],
-    along: np.ndarray,
-    *,
-    stations: bool,
-) -> list[tuple[int, int, int, np.ndarray, float]]:
-    """Number of position, pair and zone, places along the face and length of each slice.
-
-    Zone 0: the gear's tip corner before the start of contact; 1: the line of action; 2: the pinion's corner after its end.
-    """
-    tangent = float(np.tan(line.base_helix_angle))
-    first = line.start - beyond[0]
-    last = line.end + beyond[1]
-    zones = [(first, line.start), (line.start, line.end), (line.end, last)]
-    away = _corner_borders(MOST_BEYOND * line.base_pitch, 4.0 * tangent * half / slices)
-    pieces: list[tuple[int, int, int, np.ndarray, float]] = []
-    for p, u in enumerate(positions):
-        low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
-        high = (last + tangent * half - line.pitch_point) / line.base_pitch - u
-        for k in range(int(np.ceil(low)), int(np.floor(high)) + 1):
-            middle = line.pitch_point + (u + k) * line.base_pitch
-            for number, ends in enumerate(zones):
-                if tangent == 0.0 or stations:
-                    cut = _stations(middle, tangent, ends, half, slices, along, closed=number == 1)
-                elif number == 1:
-                    cut = _line_pieces(middle, tangent, ends, half, slices)
-                else:
-                    cut = _corner_pieces(middle, tangent, ends, half, slices, away, after=number == 2)
-                pieces += [(p, k, number, z, length) for z, length in cut]
-    return pieces
 
 
 @cache

@@ -14,6 +14,7 @@ References: K. L. Johnson, Contact Mechanics, sections 4.2 and 5.6; Nocedal and 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -59,6 +60,14 @@ class PositionContact:
     radius: np.ndarray
     modulus: float
     least_tangent: float = 0.01
+
+    def with_arrays(self, of: Callable[[str], np.ndarray]) -> PositionContact:
+        """The same pair with other arrays of slices, by their names."""
+        return replace(self, **{name: of(name) for name in ("compliance", "gap", "length", "log_width", "radius")})
+
+    def chosen(self, which: Any) -> PositionContact:
+        """Arrays at some places, or one, of their first axis: that of many contacts, or of the slices."""
+        return self.with_arrays(lambda name: np.asarray(getattr(self, name)[which]))
 
 
 @dataclass(frozen=True)
@@ -237,7 +246,7 @@ def solve_many(contact: PositionContact, total: np.ndarray) -> tuple[np.ndarray,
     tangent = np.zeros(b)
     running = np.arange(b)
     for _ in range(_ROUNDS):
-        here = _chosen(contact, running)
+        here = contact.chosen(running)
         force = F[running]
         touches = active[running]
         added, slope = _local(here, force, total[running, None])
@@ -261,19 +270,7 @@ def solve_many(contact: PositionContact, total: np.ndarray) -> tuple[np.ndarray,
         if not len(running):
             break
     for i in running:
-        state = solve_contact(_chosen(contact, i), float(total[i]))
+        state = solve_contact(contact.chosen(i), float(total[i]))
         approach[i] = state.approach
         tangent[i] = state.tangent
     return approach, tangent
-
-
-def _chosen(contact: PositionContact, which: Any) -> PositionContact:
-    """Some, or one, of many contacts."""
-    return replace(
-        contact,
-        compliance=contact.compliance[which],
-        gap=contact.gap[which],
-        length=contact.length[which],
-        log_width=contact.log_width[which],
-        radius=contact.radius[which],
-    )

@@ -15,7 +15,7 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_points import Slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact
-from rotorgear.gears.loaded.slice_compliance import SliceCompliance, slice_compliances
+from rotorgear.gears.loaded.slice_compliance import slice_compliances
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
 
@@ -159,18 +159,17 @@ def _with_patches(
     # rho = xi / cos b_b.
     length = slices.length / cosine
     R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / cosine
-    before = {i: SliceCompliance(known[i].compliance, known[i].log_width) for i in positions if i in known}
+    before = {i: (known[i].compliance, known[i].log_width) for i in positions if i in known}
     found = {}
-    for i, compliance in zip(
-        positions, slice_compliances(problem, slices, positions, patch, before or None), strict=True
-    ):
+    compliances = slice_compliances(problem, slices, positions, patch, before or None)
+    for i, (compliance, log_width) in zip(positions, compliances, strict=True):
         here = slices.at(i)
         found[i] = PositionContact(
-            compliance=compliance.matrix,
+            compliance=compliance,
             gap=gap[here],
             length=length[here],
             local=problem.local,
-            log_width=compliance.log_width,
+            log_width=log_width,
             radius=R[here],
             modulus=problem.modulus,
             least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,

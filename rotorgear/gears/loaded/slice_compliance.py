@@ -21,26 +21,13 @@ from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 _TOGETHER = 16
 
 
-@dataclass(frozen=True)
-class SliceCompliance:
-    """Compliance of the slices of one position.
-
-    Attributes:
-        matrix: C (n, n) in m/N without the local part, symmetric.
-        log_width: (n, 2) logarithm of the patches' half-widths across the contact line (m).
-    """
-
-    matrix: np.ndarray
-    log_width: np.ndarray
-
-
 def slice_compliances(
     problem: ContactProblem,
     slices: Slices,
     positions: Sequence[int],
     least: np.ndarray,
-    known: Mapping[int, SliceCompliance] | None = None,
-) -> list[SliceCompliance]:
+    known: Mapping[int, tuple[np.ndarray, np.ndarray]] | None = None,
+) -> list[tuple[np.ndarray, np.ndarray]]:
     """Compliances of the slices at some positions.
 
     Args:
@@ -49,8 +36,12 @@ def slice_compliances(
         positions: numbers of those asked for.
         least: (n,) least half-width of the patch of every slice, in normal modules.
         known: those of all these positions in space with other patches.
+
+    Returns:
+        For each position C (n, n) in m/N without the local part, symmetric, and (n, 2) the logarithm of the patches' half-widths
+        across the contact line (m).
     """
-    found: list[SliceCompliance] = []
+    found: list[tuple[np.ndarray, np.ndarray]] = []
     for first in range(0, len(positions), _TOGETHER):
         some = positions[first : first + _TOGETHER]
         before = None if known is None else [known[i] for i in some]
@@ -63,8 +54,8 @@ def _compliances(
     slices: Slices,
     positions: Sequence[int],
     least: np.ndarray,
-    known: Sequence[SliceCompliance] | None,
-) -> list[SliceCompliance]:
+    known: Sequence[tuple[np.ndarray, np.ndarray]] | None,
+) -> list[tuple[np.ndarray, np.ndarray]]:
     ranges = [slices.at(position) for position in positions]
     here = np.concatenate(ranges)
     some = slices.take(here)
@@ -83,14 +74,14 @@ def _compliances(
             _add_gear(problem, gear, patches[gear], blocks, matrices)
         done = [_completed(problem, some.take(block.all), C) for block, C in zip(blocks, matrices, strict=True)]
     else:
-        changed = np.any(log_width != np.concatenate([one.log_width for one in known]), axis=1)
+        changed = np.any(log_width != np.concatenate([width for _, width in known]), axis=1)
         for gear in (0, 1):
             _add_rows(problem, gear, patches[gear], blocks, matrices, changed)
         done = [
-            _with_rows(one.matrix, C, np.flatnonzero(changed[block.all]))
-            for one, C, block in zip(known, matrices, blocks, strict=True)
+            _with_rows(old, C, np.flatnonzero(changed[block.all]))
+            for (old, _), C, block in zip(known, matrices, blocks, strict=True)
         ]
-    return [SliceCompliance(C, log_width[block.all]) for block, C in zip(blocks, done, strict=True)]
+    return [(C, log_width[block.all]) for block, C in zip(blocks, done, strict=True)]
 
 
 @dataclass(frozen=True)

@@ -185,14 +185,7 @@ def _few_slices(contacts: Sequence[PositionContact], loads: list[float]) -> list
         def stacked(name: str, which: list[int] = which) -> np.ndarray:
             return np.repeat(np.stack([getattr(contacts[i], name) for i in which]), len(loads), axis=0)
 
-        many = replace(
-            contacts[which[0]],
-            compliance=stacked("compliance"),
-            gap=stacked("gap"),
-            length=stacked("length"),
-            log_width=stacked("log_width"),
-            radius=stacked("radius"),
-        )
+        many = contacts[which[0]].with_arrays(stacked)
         approach, tangent = solve_many(many, np.tile(loads, len(which)))
         found[:, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads))
     return [Column(found[0, :, j], found[1, :, j], np.zeros(len(contacts))) for j in range(len(loads))]
@@ -207,14 +200,7 @@ def _row(
     """
     # A slice whose gap is wider than the approach at the largest load touches at none.
     near = np.flatnonzero((contact.gap < state.approach) | (state.force > 0.0))
-    fewer = replace(
-        contact,
-        compliance=contact.compliance[np.ix_(near, near)],
-        gap=contact.gap[near],
-        length=contact.length[near],
-        log_width=contact.log_width[near],
-        radius=contact.radius[near],
-    )
+    fewer = replace(contact.chosen(near), compliance=contact.compliance[np.ix_(near, near)])
     force = state.force[near]
     # How the forces change with the load, from the two loads above; below the first one they are taken in proportion.
     rate = force / loads[-1]

@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import splu
 
 from rotorgear.gears.geometry.blank import BlankShape
-from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, lame
+from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, lame, node_dofs
 
 # Largest side of an element over the thickness of its part, and in normal modules along the radius and along the axis. Along the
 # axis it is no coarser than the layers of the teeth above: what they do between two nodes of the blank would meet no resistance.
@@ -98,8 +98,8 @@ class BlankSection:
     def stiffness(self, harmonic: int) -> np.ndarray:
         """K (3 k, 3 k) of the amplitudes of the nodes on the circle: the bore held, all others condensed."""
         K = self.free_stiffness(harmonic)
-        circle = _dofs(self._circle)
-        inside = _dofs(self._inside)
+        circle = node_dofs(self._circle, 3)
+        inside = node_dofs(self._inside, 3)
         couple = K[inside][:, circle].toarray()
         factor = splu(sp.csc_matrix(K[inside][:, inside]), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
         condensed = K[circle][:, circle].toarray() - couple.T @ factor.solve(couple)
@@ -166,10 +166,6 @@ def torsional_flexibility(shape: BlankShape, width: float, root_radius: float, p
     """Mean rotation of the root circle against the bore for a unit torque, without the teeth."""
     section = BlankSection(shape, width, root_radius, poisson_ratio)
     return section.circle_mean(section.twist())
-
-
-def _dofs(nodes: np.ndarray) -> np.ndarray:
-    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
 
 
 def _section_mesh(parts: Sequence[Rectangle], axial_side: float, coarseness: float) -> tuple[np.ndarray, np.ndarray]:

@@ -38,6 +38,11 @@ def component_dofs(cells: np.ndarray, dimension: int) -> np.ndarray:
     return np.asarray((dimension * cells.T[:, :, None] + np.arange(dimension)).reshape(cells.shape[1], -1))
 
 
+def node_dofs(nodes: np.ndarray, dimension: int) -> np.ndarray:
+    """Degrees of freedom (n d,) of nodes (n,), those of a node one after the other."""
+    return np.asarray((dimension * nodes[:, None] + np.arange(dimension)).ravel())
+
+
 def assembled(elements: np.ndarray, dofs: np.ndarray, size: int) -> sp.csc_array:
     """Sum of element matrices (e, n, n) on their degrees of freedom (e, n), sparse (size, size)."""
     n = dofs.shape[1]

@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices
+from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices, node_dofs
 from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
 from rotorgear.progress import Progress, silent
 
@@ -129,24 +129,27 @@ def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.nd
 def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarray, np.ndarray, np.ndarray]:
     """Frame of the unknowns in one plane (displacements = frame @ unknowns) and the numbers of free, inner and kept ones."""
     d = normal.shape[1]
-    count = len(mesh.points)
-    blocks = np.tile(np.eye(d), (count, 1, 1))
-    blocks[mesh.right] = clockwise(mesh.pitch_angle, d)
-    # A flank node's first unknown is its displacement along the normal; the others complete an orthogonal frame, and are
-    # condensed, so that any frame will do.
-    for node, direction in zip(mesh.flank, normal, strict=True):
+    frame = sp.csc_array(sp.block_diag(list(node_frames(mesh, normal))))
+    free = np.setdiff1d(np.arange(d * len(mesh.points)), node_dofs(mesh.inner, d))
+    keep = np.concatenate([node_dofs(mesh.left, d), node_dofs(mesh.right, d), d * mesh.flank])
+    return frame, free, np.setdiff1d(free, keep), keep
+
+
+def node_frames(mesh: PitchMesh, normal: np.ndarray) -> np.ndarray:
+    """Frames (p, d, d) of the nodes of a plane for normals (f, d) at the flank; the right cut is in the next pitch's frame.
+
+    A flank node's first unknown is its displacement along the normal; the others complete an orthogonal frame, and are condensed,
+    so that any frame will do. Axial displacements (d = 1) need no normals, which are (0, 1).
+    """
+    d = normal.shape[1]
+    frames = np.tile(np.eye(d), (len(mesh.points), 1, 1))
+    if d > 1:
+        frames[mesh.right] = clockwise(mesh.pitch_angle, d)
+    for node, direction in zip(mesh.flank, normal, strict=d > 1):
         q, _ = np.linalg.qr(np.column_stack([direction, np.eye(d)[:, : d - 1] + 0.1]))
         q[:, 0] = direction  # qr keeps it up to its sign
-        blocks[node] = q
-    frame = sp.csc_array(sp.block_diag(list(blocks)))
-    components = np.arange(d)
-
-    def of(nodes: np.ndarray) -> np.ndarray:
-        return np.asarray((d * nodes[:, None] + components).ravel())
-
-    free = np.setdiff1d(np.arange(d * count), of(mesh.inner))
-    keep = np.concatenate([of(mesh.left), of(mesh.right), d * mesh.flank])
-    return frame, free, np.setdiff1d(free, keep), keep
+        frames[node] = q
+    return frames
 
 
 def _condensed(K: np.ndarray, inside: int) -> np.ndarray:

@@ -18,6 +18,7 @@ from scipy.sparse.linalg import splu
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.tooth_fe.blank_section import BlankSection
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, pitch_of, wheel_sector
+from rotorgear.gears.tooth_fe.elasticity import node_dofs
 from rotorgear.gears.tooth_fe.gear_compliance import cut_motions
 from rotorgear.gears.tooth_fe.mesh import PitchMesh
 from rotorgear.gears.tooth_fe.pitch import Pitch, whole_pitch
@@ -83,16 +84,12 @@ def tooth_inside(key: ComplianceKey, progress: Progress = silent) -> ToothInside
     else:
         sector = plane_sector(mesh, key.poisson_ratio)
     d = pitch.dimension
-    moved = _dofs(np.concatenate([pitch.left, pitch.right, pitch.inner]), d)
+    moved = node_dofs(np.concatenate([pitch.left, pitch.right, pitch.inner]), d)
     rest = np.setdiff1d(np.arange(d * len(pitch.points)), moved)
     K = pitch.stiffness
     factor = splu(sp.csc_matrix(K[rest][:, rest]), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     progress(1.0, "inside of the teeth")
     return ToothInside(mesh, sector, pitch, moved, rest, factor, K[rest][:, moved])
-
-
-def _dofs(nodes: np.ndarray, dimension: int) -> np.ndarray:
-    return np.asarray((dimension * nodes[:, None] + np.arange(dimension)).ravel())
 
 
 def solve_teeth(
@@ -124,7 +121,7 @@ def solve_teeth(
         told(i / len(teeth), f"tooth {number}")
         force = np.zeros(d * n)
         if number in loads:
-            force[_dofs(pitch.flank, d)] = (loads[number][:, None] * pitch.normal).ravel()
+            force[node_dofs(pitch.flank, d)] = (loads[number][:, None] * pitch.normal).ravel()
         displacement[i, inside.moved] = at_ends[i]
         displacement[i, inside.rest] = inside.factor.solve(force[inside.rest] - inside.couple @ at_ends[i])
     return TeethSolution(teeth, displacement.reshape(len(teeth), n, d), pitch)

@@ -20,9 +20,9 @@ import scipy.sparse as sp
 from numpy.polynomial import legendre
 from scipy.sparse.linalg import splu
 
-from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices, lame
+from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices, lame, node_dofs
 from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
-from rotorgear.gears.tooth_fe.sector import clockwise, layer_stiffness, stacked_layers
+from rotorgear.gears.tooth_fe.sector import layer_stiffness, node_frames, stacked_layers
 from rotorgear.progress import Progress, silent
 
 # Quadratic elements of the seat over one pitch.
@@ -128,18 +128,10 @@ class _Frame:
     flank: np.ndarray
 
 
-def _frame(mesh: PitchMesh, components: int, normal: np.ndarray) -> _Frame:
-    """Frame of the plane's nodes with 1 (axial), 2 (in the plane) or 3 components; normal (f, d) at the flank, or none."""
-    d = components
-    count = len(mesh.points)
-    blocks = np.tile(np.eye(d), (count, 1, 1))
-    if d > 1:
-        blocks[mesh.right] = clockwise(mesh.pitch_angle, d)
-    for node, direction in zip(mesh.flank, normal, strict=False):
-        q, _ = np.linalg.qr(np.column_stack([direction, np.eye(d)[:, : d - 1] + 0.1]))
-        q[:, 0] = direction  # qr keeps it up to its sign
-        blocks[node] = q
-    matrix = sp.lil_array(sp.block_diag(list(blocks)))
+def _frame(mesh: PitchMesh, normal: np.ndarray) -> _Frame:
+    """Frame of the plane's nodes with d = 1 (axial), 2 (in the plane) or 3 components, for normals (f, d) or none (0, 1)."""
+    d = normal.shape[1]
+    matrix = sp.lil_array(sp.block_diag(list(node_frames(mesh, normal))))
 
     # The inner circle follows the seat: polar components (radial, clockwise, axial) times the seat's functions.
     shapes, polar = seat_frame(mesh)
@@ -152,14 +144,12 @@ def _frame(mesh: PitchMesh, components: int, normal: np.ndarray) -> _Frame:
             if value:
                 matrix[d * node : d * node + d, d * seat : d * seat + d] = value * frame
 
-    def of(chosen: np.ndarray) -> np.ndarray:
-        return np.asarray((d * chosen[:, None] + np.arange(d)).ravel())
-
-    cut = np.stack([of(np.concatenate([nodes[:1], mesh.left])), of(np.concatenate([nodes[-1:], mesh.right]))])
-    middle = of(nodes[1:-1])
+    ends = (np.concatenate([nodes[:1], mesh.left]), np.concatenate([nodes[-1:], mesh.right]))
+    cut = np.stack([node_dofs(end, d) for end in ends])
+    middle = node_dofs(nodes[1:-1], d)
     flank = d * mesh.flank if len(normal) else np.empty(0, int)
-    kept = np.concatenate([cut.ravel(), middle, flank, of(mesh.inner)])
-    return _Frame(sp.csc_array(matrix), np.setdiff1d(np.arange(d * count), kept), cut, middle, flank)
+    kept = np.concatenate([cut.ravel(), middle, flank, node_dofs(mesh.inner, d)])
+    return _Frame(sp.csc_array(matrix), np.setdiff1d(np.arange(d * len(mesh.points)), kept), cut, middle, flank)
 
 
 def layered_wheel(
@@ -168,7 +158,7 @@ def layered_wheel(
     """Superelement in layers of hexahedra, spur or helical; end faces free."""
     b = mesh.outline.geometry.base_helix_angle
     normal = np.hstack([np.cos(b) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(b))])
-    frame = _frame(mesh, 3, normal)
+    frame = _frame(mesh, normal)
     twist = float(np.tan(b) / mesh.outline.geometry.base_radius)
     K = layer_stiffness(mesh, poisson_ratio, width / layers, frame.matrix)
     keep = np.concatenate([*frame.cut, frame.middle, frame.flank])
@@ -202,8 +192,8 @@ def even_wheel(mesh: PitchMesh, poisson_ratio: float, width: float, order: int, 
     orders = np.arange(order + 1)
     in_plane = orders[::2] if centred else orders
     axial = orders[1::2] if centred else orders
-    u = _frame(mesh, 2, mesh.normal)
-    w = _frame(mesh, 1, np.empty((0, 1)))
+    u = _frame(mesh, mesh.normal)
+    w = _frame(mesh, np.empty((0, 1)))
     UU, UW, WW = _polynomial_stiffness(mesh, poisson_ratio, width, in_plane, axial, u.matrix, w.matrix)
     K = sp.csc_array(sp.block_array([[UU, UW], [UW.T, WW]]))
 
