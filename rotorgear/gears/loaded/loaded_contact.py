@@ -61,13 +61,13 @@ class PositionContact:
     modulus: float
     least_tangent: float = 0.01
 
-    def with_arrays(self, of: Callable[[str], np.ndarray]) -> PositionContact:
+    def with_arrays(self, of: Callable[[str], Any]) -> PositionContact:
         """The same pair with other arrays of slices, by their names."""
         return replace(self, **{name: of(name) for name in ("compliance", "gap", "length", "log_width", "radius")})
 
     def chosen(self, which: Any) -> PositionContact:
         """Arrays at some places, or one, of their first axis: that of many contacts, or of the slices."""
-        return self.with_arrays(lambda name: np.asarray(getattr(self, name)[which]))
+        return self.with_arrays(lambda name: getattr(self, name)[which])
 
 
 @dataclass(frozen=True)

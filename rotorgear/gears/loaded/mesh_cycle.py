@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +52,11 @@ _MOST_PRESSURE = 4e9
 # First guesses: the load is spread over two thirds of the face, and the teeth give way as one pair of 8 N/(mm um) would.
 _FIRST_PEAK = 1.5
 _FIRST_STIFFNESS = 8e9
+
+
+# Arrays of a cycle with one entry for each position, and for each slice.
+_BY_POSITION = ("position", "deflection", "no_load", "tangent", "moment", "along_face")
+_BY_SLICE = ("force", "strip", "pressure", "opening", "patch")
 
 
 @dataclass(frozen=True)
@@ -140,22 +146,15 @@ class MeshCycle:
         new[numbers] = np.arange(len(numbers))
         here = np.flatnonzero(new[self.slices.position] >= 0)
         slices = self.slices.take(here)
+        at_positions: dict[str, Any] = {name: getattr(self, name)[numbers] for name in _BY_POSITION}
+        of_slices: dict[str, Any] = {name: getattr(self, name)[here] for name in _BY_SLICE}
         return replace(
             self,
-            position=self.position[numbers],
-            deflection=self.deflection[numbers],
-            no_load=self.no_load[numbers],
-            tangent=self.tangent[numbers],
-            moment=self.moment[numbers],
-            along_face=self.along_face[numbers],
+            **at_positions,
+            **of_slices,
             slices=replace(slices, position=new[slices.position]),
-            force=self.force[here],
-            strip=self.strip[here],
-            pressure=self.pressure[here],
-            opening=self.opening[here],
             contacts=tuple(self.contacts[i] for i in numbers),
             states=tuple(self.states[i] for i in numbers),
-            patch=self.patch[here],
         )
 
 
@@ -199,49 +198,30 @@ def with_more(
 
 def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
     """Positions of both, in their order."""
-    place = np.concatenate([first.position, second.position])
-    order = np.argsort(place, kind="stable")
+    order = np.argsort(np.concatenate([first.position, second.position]), kind="stable")
     rank = np.empty(len(order), int)
     rank[order] = np.arange(len(order))
     number = rank[np.concatenate([first.slices.position, len(first.position) + second.slices.position])]
     here = np.argsort(number, kind="stable")
 
-    def positions(name: str) -> np.ndarray:
-        return np.concatenate([getattr(first, name), getattr(second, name)])[order]
-
-    def pieces(one: np.ndarray, other: np.ndarray, axis: int = 0) -> np.ndarray:
-        return np.take(np.concatenate([one, other], axis=axis), here, axis=axis)
+    def both(one: Any, other: Any, name: str, chosen: np.ndarray, axis: int = 0) -> Any:
+        return np.take(np.concatenate([getattr(one, name), getattr(other, name)], axis=axis), chosen, axis=axis)
 
     a = first.slices
     b = second.slices
+    at_positions = {name: both(first, second, name, order) for name in _BY_POSITION}
+    of_slices = {name: both(first, second, name, here) for name in _BY_SLICE}
+    slices = {name: both(a, b, name, here) for name in ("pair", "z", "length", "gap", "corner")}
     contacts = first.contacts + second.contacts
     states = first.states + second.states
     return replace(
         first,
-        position=place[order],
-        deflection=positions("deflection"),
-        no_load=positions("no_load"),
-        tangent=positions("tangent"),
-        moment=positions("moment"),
-        along_face=positions("along_face"),
-        slices=Slices(
-            position=number[here],
-            pair=pieces(a.pair, b.pair),
-            z=pieces(a.z, b.z),
-            length=pieces(a.length, b.length),
-            weight=a.weight,
-            roll=pieces(a.roll, b.roll, 1),
-            gap=pieces(a.gap, b.gap),
-            corner=pieces(a.corner, b.corner),
-        ),
-        force=pieces(first.force, second.force),
-        strip=pieces(first.strip, second.strip),
-        pressure=pieces(first.pressure, second.pressure),
+        **at_positions,
+        **of_slices,
+        slices=replace(a, **slices, position=number[here], roll=both(a, b, "roll", here, axis=1)),
         residual=max(first.residual, second.residual),
-        opening=pieces(first.opening, second.opening),
         contacts=tuple(contacts[i] for i in order),
         states=tuple(states[i] for i in order),
-        patch=pieces(first.patch, second.patch),
         warnings=tuple(dict.fromkeys(first.warnings + second.warnings)),
     )
 

@@ -49,11 +49,15 @@ def tooth_compliance(outline: ToothOutline, body: ToothBody, roll_length: np.nda
         body: material, and the inner radius of the ring; a smaller one than the fit's is taken as the fit's last.
         roll_length: xi (n,) of the loaded points.
     """
-    # Inclination a1 of the load, and height y0 at which its line meets the tooth's middle line, each (n,).
-    radius, half = outline.involute(roll_length)
-    inclination = np.arctan(roll_length / outline.geometry.base_radius) - half
-    cut = radius * (np.cos(half) - np.sin(half) * np.tan(inclination))
+    inclination, cut = _load(outline, roll_length)
     return _beam(outline, body, roll_length, inclination, cut) + _ring(outline, body, inclination, cut)
+
+
+def _load(outline: ToothOutline, roll: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Inclination a1 of the load, and height y0 at which its line meets the tooth's middle line, each (n,)."""
+    radius, half = outline.involute(roll)
+    inclination = np.arctan(roll / outline.geometry.base_radius) - half
+    return inclination, radius * (np.cos(half) - np.sin(half) * np.tan(inclination))
 
 
 def _beam(
