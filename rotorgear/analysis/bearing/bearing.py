@@ -38,6 +38,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.bearing import BearingSheet, BearingSpeed
+from rotorgear.system.system import System
 
 _MODES = 24
 # Smaller damping ratios are rounding of a mode that nothing damps.
@@ -46,54 +47,23 @@ _UNDAMPED = 1e-9
 _THRESHOLD = 1e-5
 
 
-class Decrements:
-    """Least logarithmic decrements of a model at speeds in a range.
-
-    The mesh is one that serves the modes at both ends of the range, and is found once.
+def _least_decrement(
+    model: Model, system: System, speed: float, near: Sequence[LawState] = ()
+) -> tuple[float | None, float]:
+    """Smallest logarithmic decrement of what oscillates and is damped, None where nothing is, and its frequency in Hz.
 
     Args:
-        model: a checked model. speeds: of the reference shaft in rad/s, not empty.
+        model: a checked model; system: its mesh. speed: of the reference shaft in rad/s.
+        near: the laws in a known equilibrium at that speed or near by.
     """
-
-    def __init__(self, model: Model, speeds: Sequence[float]) -> None:
-        self._model = model
-        ends = (min(speeds, key=abs), max(speeds, key=abs))
-        self._system = system_for_speeds(model, ends, modes=_MODES, fmax=None, elements=None, accuracy=None)
-
-    def at(self, speed: float, near: Sequence[LawState] = ()) -> tuple[float | None, float]:
-        """Smallest decrement of what oscillates and is damped, None where nothing is, and its frequency in Hz.
-
-        Args:
-            speed: of the reference shaft in rad/s. near: the laws in a known equilibrium at that speed or near by.
-        """
-        state_at(self._model, [speed], near=near)  # which the modes find there
-        modes = modal(self._system, speed=speed, modes=_MODES, error_estimate=False)
-        s = modes.eigenvalues
-        s = s[(s.imag > 0.0) & ~modes.rigid & (np.abs(s.real) > _UNDAMPED * np.abs(s))]
-        if not s.size:
-            return None, 0.0
-        least = s[np.argmax(s.real / s.imag)]
-        return float(-2.0 * np.pi * least.real / least.imag), float(least.imag / (2.0 * np.pi))
-
-    def threshold(
-        self, speeds: Sequence[float], decrements: Sequence[float | None], near: Sequence[Sequence[LawState]]
-    ) -> tuple[float, float] | None:
-        """Speed in rad/s and frequency in Hz where the least decrement falls through zero first, at its own equilibria.
-
-        Args:
-            speeds: rising in size. decrements: at these. near: the laws in equilibrium at these.
-        """
-        rows = list(zip(speeds, decrements, near, strict=True))
-        for (low, begin, _), (high, end, laws) in pairwise(rows):
-            if begin is None or end is None or not begin > 0.0 >= end:
-                continue
-
-            def decrement(speed: float, laws: Sequence[LawState] = laws) -> float:
-                return self.at(speed, laws)[0] or 0.0
-
-            speed = float(brentq(decrement, low, high, xtol=_THRESHOLD * abs(high)))
-            return speed, self.at(speed, laws)[1]
-        return None
+    state_at(model, [speed], near=near)  # which the modes find there
+    modes = modal(system, speed=speed, modes=_MODES, error_estimate=False)
+    s = modes.eigenvalues
+    s = s[(s.imag > 0.0) & ~modes.rigid & (np.abs(s.real) > _UNDAMPED * np.abs(s))]
+    if not s.size:
+        return None, 0.0
+    least = s[np.argmax(s.real / s.imag)]
+    return float(-2.0 * np.pi * least.real / least.imag), float(least.imag / (2.0 * np.pi))
 
 
 # Of the operating speed, where no speeds are given.
@@ -136,13 +106,13 @@ def bearing(
     state = law_at(equilibrium_of(own, given), address)
     law = state.part.law
     started = time.process_time()
-    here = carried(law, state.force, state.d, given)
+    here = carried(state, law, given)
     seconds = time.process_time() - started
     consistency = relative(here.force - state.force, state.force)
     progress(0.2, "error estimate")
-    other = carried(on_grid(law, 2.0), state.force, state.d, given, 2 * CYCLE_POINTS)
+    other = carried(state, on_grid(law, 2.0), given, 2 * CYCLE_POINTS)
     error = change_of_tangents(here, other)
-    law = here.law
+    law = here.part.law
     inside = law.settled(here.d).inside(here.d, speed=given)
     asked = (
         [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
@@ -179,11 +149,22 @@ def bearing(
     if stability and found:
         progress(0.5, "stability")
         laws = [equilibrium.laws for equilibrium in found.values()]
-        decrements = Decrements(own, list(found))
-        least = [decrements.at(speed, near)[0] for speed, near in zip(found, laws, strict=True)]
+        # One mesh serves the modes at both ends of the range.
+        ends = (min(found, key=abs), max(found, key=abs))
+        system = system_for_speeds(own, ends, modes=_MODES, fmax=None, elements=None, accuracy=None)
+        least = [_least_decrement(own, system, speed, near)[0] for speed, near in zip(found, laws, strict=True)]
         rows = [replace(row, log_decrement=one) for row, one in zip(rows, least, strict=True)]
         progress(0.85, "threshold")
-        threshold = decrements.threshold(list(found), least, laws)
+        # Speeds rise in size: the first pair between which the least decrement falls through zero, at its own equilibria.
+        for (low, begin, _), (high, end, near) in pairwise(zip(found, least, laws, strict=True)):
+            if begin is not None and end is not None and begin > 0.0 >= end:
+
+                def decrement(speed: float, near: Sequence[LawState] = near) -> float:
+                    return _least_decrement(own, system, speed, near)[0] or 0.0
+
+                whirling = float(brentq(decrement, low, high, xtol=_THRESHOLD * abs(high)))
+                threshold = whirling, _least_decrement(own, system, whirling, near)[1]
+                break
     # What the sheet says of the inside, under its name there.
     told: dict[str, Any] = {}
     if inside is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,17 +25,6 @@ if TYPE_CHECKING:
 
 _ITERATIONS = 40
 _TOLERANCE = 1e-11
-
-
-@dataclass(frozen=True)
-class Carried:
-    """A law, warm where it is a film in heat balance, its displacements d (k,) under a load, and its tangents (k, k) there."""
-
-    law: ForceLaw
-    d: np.ndarray
-    force: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
 
 
 def address_of(model: Model, name: str | None) -> str:
@@ -86,21 +75,28 @@ def law_at(equilibrium: Equilibrated, address: str) -> LawState:
     return next(law for law in equilibrium.laws if law.part.part == address)
 
 
-def carried(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, points: int = CYCLE_POINTS) -> Carried:
-    """A law under a load (k,), from displacements near by; rolling elements are averaged over `points` of their pitch.
+def carried(state: LawState, law: ForceLaw, speed: float, points: int = CYCLE_POINTS) -> LawState:
+    """A law on its own under the force of a state, warm where it is a film; rolling elements are averaged over `points`.
 
     Raises:
         AnalysisError: Newton's method does not find it.
     """
-    near = [start]
+    near = [state.d]
 
     def settled(laws: Sequence[ForceLaw]) -> tuple[np.ndarray, list[np.ndarray]]:
-        near[0] = _under(laws[0], load, near[0], speed, points)
+        near[0] = _under(laws[0], state.force, near[0], speed, points)
         return near[0], near
 
     (own,), d = in_heat_balance([law], speed, settled)
     tangent = own.settled(d).linearised(d, speed=speed, points=points)
-    return Carried(own, d, tangent.force, tangent.stiffness, tangent.damping)
+    return replace(
+        state,
+        part=replace(state.part, law=own),
+        d=d,
+        force=tangent.force,
+        stiffness=tangent.stiffness,
+        damping=tangent.damping,
+    )
 
 
 def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, points: int) -> np.ndarray:
@@ -119,7 +115,7 @@ def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, poi
     raise AnalysisError("the bearing's own equilibrium was not found on another grid; check its load")
 
 
-def change_of_tangents(here: Carried, finer: Carried) -> float:
+def change_of_tangents(here: LawState, finer: LawState) -> float:
     """Estimated relative error of stiffness and damping: twice what half the cells change, as for an error of first order."""
     changes = [(finer.stiffness - here.stiffness, here.stiffness), (finer.damping - here.damping, here.damping)]
     return 2.0 * max(relative(difference, size) for difference, size in changes)

@@ -10,7 +10,6 @@ import numpy as np
 from rotorgear.casings.constrained import ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce, rigid_residual
 from rotorgear.casings.settings import BEYOND
 from rotorgear.errors import AnalysisError
@@ -123,6 +122,16 @@ def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress
     nodes, surface_nodes = len(fe.mesh.points), np.unique(fe.mesh.boundary)
     assert body.surface is not None, "a body of a mesh has a surface"
     tell(1.0, f"{settings.address}: done")
+    # Stiffness of each seat: of a body that is held with the other seats free, else with them held.
+    K = body.stiffness[: body.interface, : body.interface]
+    flexibility = np.linalg.inv(K) if body.held else None
+    seats = []
+    for number, seat in enumerate(body.seats):
+        own = slice(6 * number, 6 * number + 6)
+        stiffness = K[own, own] if flexibility is None else np.linalg.inv(flexibility[own, own])
+        patch = fe.seats[number]
+        others = "held" if flexibility is None else "free"
+        seats.append(CasingSeat(seat, patch.point, patch.area, len(patch.nodes), stiffness, others))
     return CasingRow(
         files=tuple(Path(path).name for _, path in settings.files),
         element=fe.mesh.kind,
@@ -148,7 +157,7 @@ def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress
         reduction_error=np.array(
             [0.5 * (body.eigenvalue_error((2.0 * np.pi * frequency[i]) ** 2, shapes[:, i]) or 0.0) for i in chosen]
         ),
-        seats=_seats(fe, body),
+        seats=tuple(seats),
         notes=fe.mesh.notes,
         memory_bytes=largest_memory(),
         seconds=seconds,
@@ -164,17 +173,3 @@ def _mesh_error(fe: FiniteElementBody, modes: MeshModes) -> np.ndarray:
     if not len(modes.eigenvalues):
         return np.zeros(0)
     return np.asarray(0.5 * eigenvalue_errors(fe, modes.eigenvalues, modes.shapes) / modes.eigenvalues)
-
-
-def _seats(fe: FiniteElementBody, body: ReducedBody) -> tuple[CasingSeat, ...]:
-    """Stiffness of each seat: of a body that is held with the other seats free, else with them held."""
-    K = body.stiffness[: body.interface, : body.interface]
-    flexibility = np.linalg.inv(K) if body.held else None
-    found = []
-    for number, seat in enumerate(body.seats):
-        own = slice(6 * number, 6 * number + 6)
-        stiffness = K[own, own] if flexibility is None else np.linalg.inv(flexibility[own, own])
-        patch = fe.seats[number]
-        others = "held" if flexibility is None else "free"
-        found.append(CasingSeat(seat, patch.point, patch.area, len(patch.nodes), stiffness, others))
-    return tuple(found)

@@ -80,7 +80,18 @@ def between(
     def numbers_at(share: float) -> dict[str, np.ndarray]:
         if share not in known:
             systems[share] = system_at(share)
-            known[share] = _numbers(systems[share])
+            system = systems[share]
+            own = {name: getattr(system, name).data for name in _MATRICES if getattr(system, name) is not None}
+            if system.watched is not None:
+                own["watched"] = system.watched
+            forces = system.forces
+            known[share] = own | {
+                "load": system.load,
+                "parameters": forces.parameters,
+                "reference_stiffness": forces.reference_stiffness,
+                "reference_damping": forces.reference_damping,
+                "speeds": system.rotation.speeds,
+            }
         return known[share]
 
     degree = 2
@@ -150,20 +161,6 @@ def _mixed(
         mixed = whole * values[0] + np.tensordot(parts, values - values[0], axes=1)
         found[name] = np.where(same, values[0], mixed)
     return found
-
-
-def _numbers(system: LocalSystem) -> dict[str, np.ndarray]:
-    own = {name: getattr(system, name).data for name in _MATRICES if getattr(system, name) is not None}
-    if system.watched is not None:
-        own["watched"] = system.watched
-    forces = system.forces
-    return own | {
-        "load": system.load,
-        "parameters": forces.parameters,
-        "reference_stiffness": forces.reference_stiffness,
-        "reference_damping": forces.reference_damping,
-        "speeds": system.rotation.speeds,
-    }
 
 
 def _alike(first: LocalSystem, others: list[LocalSystem]) -> bool:

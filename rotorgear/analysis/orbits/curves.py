@@ -21,22 +21,16 @@ _SAME = 1e-4
 
 
 @dataclass(frozen=True)
-class CurvePoint:
-    """A special point: shares of both ranges, and the motion there."""
-
-    p: float
-    q: float
-    cycle: Cycle
-
-
-@dataclass(frozen=True)
 class Curve:
-    """Special points of one kind over two parameters; the branch and the base periods of the motions; why it ended."""
+    """Special points of one kind over two parameters.
+
+    `points` are shares p and q of both ranges and the motion there; `branch` and `periods` are those of the motions.
+    """
 
     kind: str
     branch: int
     periods: int
-    points: list[CurvePoint]
+    points: list[tuple[float, float, Cycle]]
     ended: str
 
 
@@ -53,7 +47,7 @@ def special_curves(branches: list[Branch], family: SystemFamily, plan: Walk, pro
         node = one.at.node
         # A curve that has come back to the begin of the second range ends at a point of a branch.
         ends = [curve.points[-1] for curve in found if curve.kind == one.kind and curve.points]
-        if any(abs(last.q) < _SAME and abs(last.p - node.p) < _SAME for last in ends):
+        if any(abs(q) < _SAME and abs(p - node.p) < _SAME for p, q, _ in ends):
             continue
         progress(0.8 + 0.15 * count / len(starts), f"curve of the {one.kind}")
         found.append(_followed(number, branch, one.kind, node, family, plan))
@@ -65,14 +59,14 @@ def _followed(number: int, branch: Branch, kind: str, node: Node, family: System
         return branch.orbits.along(lambda p: family.plant(p, q))
 
     equations = SpecialCurve(orbits_at, kind, node.y, node.p, 0.0)
-    points: list[CurvePoint] = []
+    points: list[tuple[float, float, Cycle]] = []
 
     def heard(one: Node) -> bool:
         p = float(one.y[-1])
         if not 0.0 <= p <= 1.0:
             return False
         cycle = equations.orbits(one.p).cycle(one.y[:-1], p)
-        points.append(CurvePoint(p, one.p, cycle))
+        points.append((p, one.p, cycle))
         return True
 
     try:

@@ -100,7 +100,18 @@ class SystemFamily:
         first = self.model_at([0.0] * len(ranges))
         if not first.operation or not first.operation.speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or follow over it")
-        self._free_speed = self._speed_axis is not None and _only_turns(first)
+        # Whether another speed changes nothing but the rotation. The place of a journal goes with it: its heat balance, and the
+        # teeth that feel the tilt of its shaft.
+        films = [bearing.film for bearing in first.bearings.values() if bearing.film is not None]
+        self._free_speed = self._speed_axis is not None and not (
+            first.operation.power is not None
+            or any(load.power is not None or load.speed_power for load in first.loads.values())
+            or any(bearing.table for bearing in first.bearings.values())
+            or any(shaft.internal_damping for shaft in first.shafts.values())
+            or any(film.settles for film in films)
+            or (films and first.meshes)
+            or first.nonlinear_elements
+        )
         self.local, self.rest, self.static_force, _ = self._built([0.0] * len(ranges))
         self.order, self.excited, self.notes = _excitation(self.local, excite)
         self._varied = [i for i, part in enumerate(self.local.parts) if _keeps(part.law, self.order)]
@@ -207,21 +218,6 @@ class SystemFamily:
                 self._known.clear()
             self._known[shares] = self._plants.of(self.system(shares))
         return self._known[shares]
-
-
-def _only_turns(model: Model) -> bool:
-    """Whether another speed changes nothing but the rotation: nothing else of the model goes with it."""
-    assert model.operation is not None
-    loads = model.loads.values()
-    powers = [model.operation.power, *(load.power for load in loads)]
-    over_speed = any(load.speed_power for load in loads)
-    tables = any(bearing.table for bearing in model.bearings.values())
-    inner = any(shaft.internal_damping for shaft in model.shafts.values())
-    # The place of a journal goes with the speed: its heat balance, and the teeth that feel the tilt of its shaft.
-    films = [bearing.film for bearing in model.bearings.values() if bearing.film is not None]
-    settled = any(film.settles for film in films) or (films and model.meshes)
-    others = over_speed or tables or inner or settled or model.nonlinear_elements
-    return all(power is None for power in powers) and not others
 
 
 def _keeps(law: LocalLaw, order: float) -> bool:

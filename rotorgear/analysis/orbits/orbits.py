@@ -211,12 +211,7 @@ def orbits(
             *family.notes,
             *_modes_left_out(problem),
         ),
-        warnings=(
-            *_undamped(family.plant(0.0)),
-            *_warnings(branches, curves),
-            *_short_of_modes(family),
-            *((short,) if short else ()),
-        ),
+        warnings=(*_warnings(family, branches, curves), *((short,) if short else ())),
     )
 
 
@@ -304,26 +299,16 @@ def _modes_left_out(problem: AnyOrbits) -> tuple[str, ...]:
     )
 
 
-def _short_of_modes(family: SystemFamily) -> tuple[str, ...]:
-    """A warning on each casing whose modes end too low for the faster end of the range."""
-    local = family.local
-    fastest = max(abs(family.plant(share).speed) for share in (0.0, 1.0))
-    return tuple(time_warnings(local.system.model, local.local.forces.laws, fastest))
-
-
-def _undamped(plant: Plant) -> tuple[str, ...]:
-    """A word where nothing takes up energy."""
+def _warnings(family: SystemFamily, branches: list[Branch], curves: list[Curve]) -> list[str]:
+    plant = family.plant(0.0)
     rates = plant.D + plant.D.T
-    if any(law.uses_velocity for law in plant.forces.laws) or (rates.nnz and abs(rates).max() > 0.0):
-        return ()
-    return (
-        "nothing damps the model: at a resonance its motions have no bound, and no branch comes past one; "
-        "give damping.modal_ratio or the damping of bearings and meshes",
-    )
-
-
-def _warnings(branches: list[Branch], curves: list[Curve]) -> list[str]:
-    notes = [
+    notes = []
+    if not any(law.uses_velocity for law in plant.forces.laws) and not (rates.nnz and abs(rates).max() > 0.0):
+        notes.append(
+            "nothing damps the model: at a resonance its motions have no bound, and no branch comes past one; "
+            "give damping.modal_ratio or the damping of bearings and meshes"
+        )
+    notes += [
         f"branch {branch.name} ended early, at {len(branch.nodes)} points: {branch.ended}"
         for branch in branches
         if branch.ended not in ("the end of the range", "the branch closed")
@@ -336,7 +321,10 @@ def _warnings(branches: list[Branch], curves: list[Curve]) -> list[str]:
     ]
     if not any(one.stable for branch in branches for one in branch.nodes):
         notes.append("no motion of the range is stable: a transient settles on none of them")
-    return notes
+    # Modes of a casing may end too low for the faster end of the range.
+    local = family.local
+    fastest = max(abs(family.plant(share).speed) for share in (0.0, 1.0))
+    return [*notes, *time_warnings(local.system.model, local.local.forces.laws, fastest)]
 
 
 # Multipliers of a point that are kept.
@@ -418,14 +406,14 @@ def gathered_curves(curves: list[Curve], told: Told, ranges: Sequence[Range]) ->
     """The curves of special points as a result has them."""
     found = []
     for curve in curves:
-        extremes = [_extremes(point.cycle, told) for point in curve.points]
+        extremes = [_extremes(cycle, told) for _, _, cycle in curve.points]
         found.append(
             SpecialCurve(
                 curve.kind,
                 curve.branch,
-                np.array([ranges[0].at(point.p) for point in curve.points]),
-                np.array([ranges[1].at(point.q) for point in curve.points]),
-                np.array([point.cycle.period for point in curve.points]),
+                np.array([ranges[0].at(p) for p, _, _ in curve.points]),
+                np.array([ranges[1].at(q) for _, q, _ in curve.points]),
+                np.array([cycle.period for _, _, cycle in curve.points]),
                 np.array([approach for approach, _ in extremes]),
                 curve.ended,
                 np.array([moved for _, moved in extremes]),

@@ -83,11 +83,6 @@ class FrfMisfit:
             return ()
         return (f"{len(self._at)} of {every} frequencies of the measured responses are compared, evenly chosen",)
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What the file leaves open."""
-        return self.given.notes
-
     @cached_property
     def _at(self) -> NDArray[np.intp]:
         every = len(self.given.frequency_hz)

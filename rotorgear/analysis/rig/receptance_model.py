@@ -8,7 +8,6 @@ and, for what lies above them, answers Z(s)^-1 P to the places at a few s along 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,11 +95,29 @@ class ReceptanceModel:
         """dH/dx (p, f, o, i)."""
         numbers = self.model.numbers
         springs = springs_of(numbers.model, here.system)
+        beta = numbers.model.damping.rayleigh_beta
+        V = here.V
         w = 2.0 * np.pi * self.frequency_hz[:, None, None]
         left = np.transpose(here.q_out, (0, 2, 1))
         found = []
         for j, address in enumerate(numbers.addresses):
-            K, D, M = self._change(x, j, address, here, springs)
+            # Derivatives of K, D and M over the shapes with respect to number j.
+            if address in springs:
+                # The matrix of a spring is in proportion to its number: no system is assembled again.
+                spring = V.T @ (
+                    assemble(springs[address], here.system.dofs, lambda group: group.matrices.stiffness) @ V
+                )
+                K, M = self._stiffness_and_mass(here.system, V)
+                zeta = self._zeta(x)
+                stiffer, softer = (self._modal_damping(here.system, K + h * spring, M, zeta) for h in (STEP, -STEP))
+                # Damping in proportion to the stiffness has its part in the spring.
+                change = np.array([spring, (stiffer - softer) / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
+            else:
+                step = np.zeros(len(x))
+                step[j] = STEP
+                above, below = beside(numbers, x, j, here.system, self.model.speed)
+                change = (self._reduced(above, V, x + step) - self._reduced(below, V, x - step)) / (2.0 * STEP)
+            K, D, M = change
             forces = K @ here.q_in + 1j * w * (D @ here.q_in) - w**2 * (M @ here.q_in)
             found.append(-left @ forces)
         return np.array(found)
@@ -195,29 +212,6 @@ class ReceptanceModel:
         limit = damped_up_to(system, 2.0 * np.pi * float(self.frequency_hz[-1]))
         momentum = M @ phi[:, w < limit]
         return np.asarray(momentum * (2.0 * zeta * w[w < limit]) @ momentum.T)
-
-    def _change(
-        self, x: NDArray[np.float64], j: int, address: str, here: Receptances, springs: dict[str, list]
-    ) -> NDArray[np.float64]:
-        """Derivatives of K, D and M over the shapes with respect to number j, (3, r, r)."""
-        V = here.V
-        step = np.zeros(len(x))
-        step[j] = STEP
-        if address in springs:
-            return self._of_spring(x, here, springs[address])
-        above, below = beside(self.model.numbers, x, j, here.system, self.model.speed)
-        return (self._reduced(above, V, x + step) - self._reduced(below, V, x - step)) / (2.0 * STEP)
-
-    def _of_spring(self, x: NDArray[np.float64], here: Receptances, groups: Sequence) -> NDArray[np.float64]:
-        """The same of a spring, whose matrix is in proportion to its number: no system is assembled again."""
-        V = here.V
-        spring = V.T @ (assemble(groups, here.system.dofs, lambda group: group.matrices.stiffness) @ V)
-        K, M = self._stiffness_and_mass(here.system, V)
-        zeta = self._zeta(x)
-        above, below = (self._modal_damping(here.system, K + step * spring, M, zeta) for step in (STEP, -STEP))
-        # Damping in proportion to the stiffness has its part in the spring.
-        beta = self.model.numbers.model.damping.rayleigh_beta
-        return np.array([spring, (above - below) / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
 
 
 def _damping(system: System, speed: float) -> sp.csc_array:

@@ -233,7 +233,7 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
                 if len(problem.given.points) == 1
                 else ()
             ),
-            *(note for one in problem.responses.values() for note in one.warnings),
+            *(note for one in problem.responses.values() for note in one.given.notes),
         ),
     )
 

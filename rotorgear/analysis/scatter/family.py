@@ -131,26 +131,29 @@ def family_of(
     nominal = forms_of(linear_system(spreads.numbers.model, [speed], plan), speed or 0.0, V)
     bare = Family(spreads, speed, plan, V, nominal, None)
     trials = np.random.default_rng(0).uniform(-0.7, 0.7, (_TRIALS, len(spreads))) * spreads.reach
-    if not _adds_up(bare, trials[0]):
-        return bare
+    if len(spreads) > 1:
+        # Whether the change of the forms is the sum of those of each number by itself.
+        summed = nominal + sum(bare.assembled(alone) - nominal for alone in np.diag(trials[0]))
+        if _error(summed, bare.assembled(trials[0])) >= _SUM_ERROR:
+            return bare
     changes = []
     for j in range(len(spreads)):
         progress(j / len(spreads), f"number {j + 1} of {len(spreads)}")
         few = _interpolated(bare, j, _FEW)
         linear = all(len(coefficients) < _FEW for coefficients in few.values())
         changes.append(few if linear else _interpolated(bare, j, _POINTS))
-    whole = Family(spreads, speed, plan, V, nominal, _terms(changes))
+    # The sums of all numbers, form by form.
+    terms = []
+    for form in sorted({form for change in changes for form in change}):
+        parts = [(j, change[form]) for j, change in enumerate(changes) if form in change]
+        number = np.concatenate([np.full(len(c), j) for j, c in parts])
+        degree = np.concatenate([np.arange(len(c)) for _, c in parts])
+        coefficients = np.concatenate([c.reshape(len(c), -1) for _, c in parts])
+        terms.append(Term(form, number, degree, coefficients))
+    whole = Family(spreads, speed, plan, V, nominal, tuple(terms))
     if all(_error(whole.at(z), bare.assembled(z)) < _SUM_ERROR for z in trials):
         return whole
     return bare
-
-
-def _adds_up(bare: Family, z: NDArray[np.float64]) -> bool:
-    """Whether the change of the forms at z is the sum of those of each number by itself."""
-    if len(z) == 1:
-        return True
-    summed = bare.nominal + sum(bare.assembled(alone) - bare.nominal for alone in np.diag(z))
-    return _error(summed, bare.assembled(z)) < _SUM_ERROR
 
 
 def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.float64]]:
@@ -178,18 +181,6 @@ def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.flo
         large = np.flatnonzero(np.abs(coefficients).max(axis=(1, 2)) > least)
         found[form] = coefficients[: large[-1] + 1]
     return found
-
-
-def _terms(changes: list[dict[int, NDArray[np.float64]]]) -> tuple[Term, ...]:
-    """The sums of all numbers, form by form."""
-    found = []
-    for form in sorted({form for change in changes for form in change}):
-        parts = [(j, change[form]) for j, change in enumerate(changes) if form in change]
-        number = np.concatenate([np.full(len(c), j) for j, c in parts])
-        degree = np.concatenate([np.arange(len(c)) for _, c in parts])
-        coefficients = np.concatenate([c.reshape(len(c), -1) for _, c in parts])
-        found.append(Term(form, number, degree, coefficients))
-    return tuple(found)
 
 
 def _error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> float:

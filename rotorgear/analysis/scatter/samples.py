@@ -94,7 +94,18 @@ def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float6
     try:
         forms = study.family.at(z)
         modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
-        followed, own, held = _followed(study, modes)
+        # Frequencies of the nominal shapes and of the modes assigned to them, and how much of each shape its group holds.
+        common, at = _assigned(study, modes)
+        own = modes.omega[at]
+        followed = own.copy()
+        held = np.zeros(len(at))
+        for group in study.groups:
+            rows = list(group)
+            inside = common[rows][:, at[rows]]
+            held[rows] = np.sum(np.abs(inside) ** 2, axis=1)
+            if len(rows) > 1:
+                W = la.polar(inside)[0]
+                followed[rows] = np.real(np.sum(np.abs(W) ** 2 * own[rows], axis=1))
         taken = participations(study.names, study.lines, forms, modes)
         shares = shares_at(study, z)
     except (RotorgearError, np.linalg.LinAlgError):
@@ -139,22 +150,6 @@ def _assigned(study: Study, modes: FormModes) -> tuple[Shapes, NDArray[np.intp]]
 
     common = overlaps(study.family.nominal[STIFFNESS], study.family.nominal[MASS], study.nominal, modes)
     return common, linear_sum_assignment(-(np.abs(common) ** 2))[1]
-
-
-def _followed(study: Study, modes: FormModes) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Frequencies of the nominal shapes and of the modes assigned to them in rad/s, how much of each shape its group holds."""
-    common, at = _assigned(study, modes)
-    own = modes.omega[at]
-    followed = own.copy()
-    held = np.zeros(len(at))
-    for group in study.groups:
-        rows = list(group)
-        inside = common[rows][:, at[rows]]
-        held[rows] = np.sum(np.abs(inside) ** 2, axis=1)
-        if len(rows) > 1:
-            W = la.polar(inside)[0]
-            followed[rows] = np.real(np.sum(np.abs(W) ** 2 * own[rows], axis=1))
-    return followed, own, held
 
 
 def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: float) -> float:

@@ -80,7 +80,16 @@ def whole_frequencies(model: Model, name: str, count: int, progress: Progress = 
     """The lowest elastic frequencies (count,) in Hz with every node of the casing's mesh: nothing of it is reduced."""
     system = flow_system(model)
     fe = finite_element_body(casing_settings(model, name), progress)
-    shapes, seats = _mesh_space(fe)
+    # Displacements (3p, f) of the mesh from its unknowns, and motions (6 s, f) of the seats from them.
+    mean = fe.settings.connection == "mean"
+    space = fe.free_space(held=True, rigid_seats=not mean)
+    if mean:
+        shapes, seats = space.shapes, sp.csr_array(space.forces(fe.mean_weights(fe.seats)).T)
+    else:
+        count_of_seats = space.seats.shape[1]
+        elastic = sp.csr_array((count_of_seats, space.shapes.shape[1]))
+        seats = sp.csr_array(sp.hstack([elastic, sp.eye_array(count_of_seats)], format="csr"))
+        shapes = sp.csr_array(sp.hstack([space.shapes, space.seats], format="csr"))
     of_casing = system.nodes.of_casing(name)
     numbers = np.flatnonzero(np.abs(system.dofs.transform[of_casing, :]).sum(axis=0))
     others = np.setdiff1d(np.arange(system.n), numbers)
@@ -105,17 +114,6 @@ def whole_frequencies(model: Model, name: str, count: int, progress: Progress = 
     squares, _ = lowest_modes(factor.solve, lambda x: np.asarray(M @ x), K.shape[0], count + 8)
     squares = squares - shift
     return np.asarray(np.sqrt(squares[_elastic(squares, count)]) / (2.0 * np.pi))
-
-
-def _mesh_space(fe: FiniteElementBody) -> tuple[sp.csr_array, sp.csr_array]:
-    """Displacements (3p, f) of the mesh from its unknowns, and motions (6 s, f) of the seats from them."""
-    if fe.settings.connection == "mean":
-        space = fe.free_space(held=True, rigid_seats=False)
-        return space.shapes, sp.csr_array(space.forces(fe.mean_weights(fe.seats)).T)
-    space = fe.free_space(held=True, rigid_seats=True)
-    count = space.seats.shape[1]
-    motions = sp.hstack([sp.csr_array((count, space.shapes.shape[1])), sp.eye_array(count)], format="csr")
-    return sp.csr_array(sp.hstack([space.shapes, space.seats], format="csr")), sp.csr_array(motions)
 
 
 def _elastic(eigenvalues: np.ndarray, count: int) -> np.ndarray:
@@ -182,9 +180,17 @@ def casing_convergence_study(
             f"casings.{name}: its mesh has {fe.dofs} unknowns, and one split in eight to compare with has more than "
             f"{finest}. Study a coarser mesh of the same body, or raise finest."
         )
+    # The limit in Hz that keeps n fixed-interface modes lies between the last of them and the next one.
+    frequency = reduce(fe, None)[0].fixed_frequency
+    while max(fixed) >= len(frequency):
+        more = reduce(fe, 1.5 * float(frequency[-1]))[0].fixed_frequency
+        if len(more) == len(frequency):  # a mesh of few unknowns has no more
+            break
+        frequency = more
     fixed_modes = [
-        Setting(f"{n} fixed modes", "fixed modes", float(n), {"modes_to": limit})
-        for n, limit in _fixed_limits(fe, fixed)
+        Setting(f"{n} fixed modes", "fixed modes", float(n), {"modes_to": 0.5 * float(frequency[n - 1] + frequency[n])})
+        for n in fixed
+        if n < len(frequency)
     ]
     studies = _of_gearbox(model, name, modes, finer, progress) if coupled else _of_casing(fe, modes, finer, progress)
     meshes, reductions = studies
@@ -290,17 +296,6 @@ def _splits(finer: int) -> list[tuple[int, str]]:
     """Meshes coarser than the reference: how often each element is split in eight, and what the row says."""
     names = ("the file's mesh", "elements split once", "split twice", "split three times")
     return list(enumerate(names))[:finer]
-
-
-def _fixed_limits(fe: FiniteElementBody, fixed: tuple[int, ...]) -> list[tuple[int, float]]:
-    """Numbers of fixed-interface modes that can be kept, each with the limit in Hz that keeps them: between two modes."""
-    frequency = reduce(fe, None)[0].fixed_frequency
-    while max(fixed) >= len(frequency):
-        more = reduce(fe, 1.5 * float(frequency[-1]))[0].fixed_frequency
-        if len(more) == len(frequency):  # a mesh of few unknowns has no more
-            break
-        frequency = more
-    return [(n, 0.5 * float(frequency[n - 1] + frequency[n])) for n in fixed if n < len(frequency)]
 
 
 def _linear(fe: FiniteElementBody) -> FiniteElementBody:

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.bearing.state import (
-    Carried,
     address_of,
     by_its_law,
     carried,
@@ -20,6 +19,7 @@ from rotorgear.analysis.bearing.state import (
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_or_operating
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
+from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.teeth.errors import error_parts
 from rotorgear.analysis.teeth.request import Cycle, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
@@ -75,12 +75,12 @@ def bearing_convergence_study(
             f"{address}: its law is a formula without a grid or turning elements; there is nothing to refine"
         )
 
-    def at(fineness: float) -> Carried:
+    def at(fineness: float) -> LawState:
         if film:
-            return carried(on_grid(law, fineness), state.force, state.d, given)
-        return carried(law, state.force, state.d, given, points=int(fineness))
+            return carried(state, on_grid(law, fineness), given)
+        return carried(state, law, given, points=int(fineness))
 
-    def judge(found: tuple[Carried, Carried]) -> Judged:
+    def judge(found: tuple[LawState, LawState]) -> Judged:
         here, finer = found
         errors = []
         for key in ("d", "stiffness", "damping"):

@@ -43,10 +43,31 @@ def cluster(address: Any, *, timeout: float = TIMEOUT) -> Cluster:
     if not isinstance(address, str):
         return Cluster(address, (), str(address.scheduler.address), timeout)
     if address.startswith("local:"):
-        own = _local(distributed, address)
+        number = address.removeprefix("local:")
+        if not number.isdigit() or not 1 <= int(number) <= _MOST_LOCAL:
+            raise AnalysisError(f"cluster: got '{address}', expected {_FORMS} (1 to {_MOST_LOCAL})")
+        own = distributed.LocalCluster(
+            n_workers=int(number), threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
+        )
         client = distributed.Client(own, set_as_default=False, timeout=timeout)
         return Cluster(client, (client, own), address, timeout)
-    _reach(address, timeout)
+    # A client that is made without a scheduler would leave tasks behind: it has to answer first.
+    from distributed import Security
+    from distributed.comm import connect
+
+    async def knock() -> None:
+        comm = await connect(address, timeout=timeout, **Security().get_connection_args("client"))
+        await comm.close()
+
+    try:
+        with ThreadPoolExecutor(1) as thread:  # a notebook has a loop in this one
+            thread.submit(lambda: asyncio.run(knock())).result()
+    except (ValueError, TypeError) as error:
+        raise AnalysisError(f"cluster: got '{address}', expected {_FORMS} ({error})") from None
+    except OSError:
+        raise AnalysisError(
+            f"no dask scheduler answers at {address} within {timeout:g} s: start one with  dask scheduler"
+        ) from None
     client = distributed.Client(address, set_as_default=False, timeout=timeout)
     return Cluster(client, (client,), address, timeout)
 
@@ -168,36 +189,6 @@ class Block:
         from dask import config
 
         return int(config.get("distributed.scheduler.allowed-failures", 3)) + 1
-
-
-def _local(distributed: Any, address: str) -> Any:
-    """Processes on this machine, of one thread each."""
-    number = address.removeprefix("local:")
-    if not number.isdigit() or not 1 <= int(number) <= _MOST_LOCAL:
-        raise AnalysisError(f"cluster: got '{address}', expected {_FORMS} (1 to {_MOST_LOCAL})")
-    return distributed.LocalCluster(
-        n_workers=int(number), threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
-    )
-
-
-def _reach(address: str, timeout: float) -> None:
-    """AnalysisError unless a scheduler answers; asked before a client is made, which would leave tasks behind."""
-    from distributed import Security
-    from distributed.comm import connect
-
-    async def knock() -> None:
-        comm = await connect(address, timeout=timeout, **Security().get_connection_args("client"))
-        await comm.close()
-
-    try:
-        with ThreadPoolExecutor(1) as thread:  # a notebook has a loop in this one
-            thread.submit(lambda: asyncio.run(knock())).result()
-    except (ValueError, TypeError) as error:
-        raise AnalysisError(f"cluster: got '{address}', expected {_FORMS} ({error})") from None
-    except OSError:
-        raise AnalysisError(
-            f"no dask scheduler answers at {address} within {timeout:g} s: start one with  dask scheduler"
-        ) from None
 
 
 def _on_worker(caller: dict[str, str], function: Callable[..., Any], *arguments: Any) -> Any:

@@ -39,12 +39,19 @@ def notes(
         sentences.append(
             "the torques do not balance at some points: the shafts drift off the prescribed rotation there"
         )
-    takers = sorted(set().union(*(_takers(q) for q in points if q)))
+    # Laws that push a motion whose speed the drive keeps.
+    takers: set[str] = set()
+    for q in filter(None, points):
+        B = q.system.B
+        pushed = np.any(np.abs(q.system.carried @ B) > _ROUNDING * np.linalg.norm(B, axis=0), axis=0)
+        own = q.system.own
+        places = zip(own.forces.laws, *own.place, strict=True)
+        takers |= {law.title for law, first, count in places if pushed[first : first + count].any()}
     if takers:
         sentences.append(
-            f"the loads do not give the power that {' and '.join(takers)} takes: the drive makes up for it on all shafts, in "
-            "proportion to their inertia, so that they keep their speed; with a drive at one end mean forces may be another by "
-            "about that loss"
+            f"the loads do not give the power that {' and '.join(sorted(takers))} takes: the drive makes up for it on all "
+            "shafts, in proportion to their inertia, so that they keep their speed; with a drive at one end mean forces may be "
+            "another by about that loss"
         )
     if any(q.rolling for q in points if q):
         sentences.append(
@@ -66,19 +73,17 @@ def notes(
     sentences += [
         f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)
     ]
-    return (*sentences, *_slow(motion, orbits, runs))
-
-
-def _takers(point: Point) -> set[str]:
-    """Titles of the laws that push a motion whose speed the drive keeps."""
-    own = point.system.own
-    B = point.system.B
-    pushed = np.any(np.abs(point.system.carried @ B) > _ROUNDING * np.linalg.norm(B, axis=0), axis=0)
-    return {
-        law.title
-        for law, first, count in zip(own.forces.laws, *own.place, strict=True)
-        if pushed[first : first + count].any()
+    # Where the transient has not decayed when sampling begins, a response may repeat after several T because of it.
+    several = {
+        key: o for key, o in orbits.items() if period_in(motion[key[0] * runs + key[1]]) > 1 and o.growth.shape[1]
     }
+    slow = sum(float(o.growth[:, 0].mean()) * o.settled > -_FORGOTTEN for o in several.values())
+    if slow:
+        sentences.append(
+            f"{slow} of {len(several)} runs with 2T or longer have a transient that outlasts the periods that they settled: "
+            "their period may change with more --discard"
+        )
+    return tuple(sentences)
 
 
 def _coexisting(kinds: Sequence[set[str]]) -> list[str]:
@@ -128,47 +133,35 @@ def left_out_of(models: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
     """Axes along which all systems are the same to the last bit."""
     seen: dict[bytes, int] = {}
-    own = [-1 if q is None else seen.setdefault(_digest(q), len(seen)) for q in points]
+    own = []
+    for q in points:
+        if q is None:
+            own.append(-1)
+            continue
+        # All that a point's motion depends on.
+        system = q.system
+        columns = system.columns
+        parts = (
+            system.K,
+            system.D,
+            system.load,
+            system.B,
+            system.rest,
+            columns.kind,
+            columns.mode,
+            columns.stiffness,
+            columns.damping,
+            columns.clearance,
+            columns.per_depth,
+            columns.push,
+            system.own.forces.parameters,
+            np.array([system.w, system.turns]),
+        )
+        data = b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), q.shape])
+        own.append(seen.setdefault(hashlib.blake2b(data).digest(), len(seen)))
     table = np.array(own).reshape([len(axis.values) for axis in axes])
     return [
         axis
         for at, axis in enumerate(axes)
         if len(set(axis.values)) > 1 and np.all(table == np.take(table, [0], axis=at))
     ]
-
-
-def _digest(point: Point) -> bytes:
-    """All that a point's motion depends on."""
-    system = point.system
-    columns = point.system.columns
-    parts = (
-        system.K,
-        system.D,
-        system.load,
-        system.B,
-        system.rest,
-        columns.kind,
-        columns.mode,
-        columns.stiffness,
-        columns.damping,
-        columns.clearance,
-        columns.per_depth,
-        columns.push,
-        system.own.forces.parameters,
-        np.array([system.w, system.turns]),
-    )
-    return hashlib.blake2b(b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), point.shape])).digest()
-
-
-def _slow(motion: Sequence[str], orbits: dict[tuple[int, int], Orbit], runs: int) -> tuple[str, ...]:
-    """A warning where the transient has not decayed when sampling begins, which may be why a response repeats after several T."""
-    several = {
-        key: o for key, o in orbits.items() if period_in(motion[key[0] * runs + key[1]]) > 1 and o.growth.shape[1]
-    }
-    slow = sum(float(o.growth[:, 0].mean()) * o.settled > -_FORGOTTEN for o in several.values())
-    if not slow:
-        return ()
-    return (
-        f"{slow} of {len(several)} runs with 2T or longer have a transient that outlasts the periods that they settled: "
-        "their period may change with more --discard",
-    )

@@ -195,7 +195,15 @@ class PointMaker:
         slow = 1.0 if speed > 0.0 else -1.0
         standing = model.operation.model_copy(update={"speed": slow})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
-        if not _only_turns(model):
+        # Whether more than the rotation depends on the speed; laws of one's own may depend on it as they like.
+        if (
+            model.operation.power is not None
+            or any(load.power is not None or load.varies for load in model.loads.values())
+            or any(bearing.table or bearing.has_film for bearing in model.bearings.values())
+            or any(gear.body.mesh for gear in model.gears.values())
+            or any(shaft.internal_damping for shaft in model.shafts.values())
+            or model.nonlinear_elements
+        ):
             return self._at(self._made(model, speed), speed, model.damping.modal_ratio)
         if key not in self._known:
             if len(self._known) >= _KEPT:
@@ -243,21 +251,6 @@ class PointMaker:
         if key != self._free[0]:
             self._free = key, free_motions(local.M, about)
         return self._free[1]
-
-
-def _only_turns(model: Model) -> bool:
-    """Whether only the rotation depends on the speed: no power, tables, films, bodies, internal damping, torque over speed."""
-    operation = model.operation
-    assert operation is not None
-    powers = [operation.power, *(load.power for load in model.loads.values())]
-    varying = any(load.varies for load in model.loads.values())
-    tables = any(bearing.table or bearing.has_film for bearing in model.bearings.values())
-    bodies = any(gear.body.mesh for gear in model.gears.values())
-    inner = any(shaft.internal_damping for shaft in model.shafts.values())
-    # Laws of one's own may depend on the speed as they like.
-    return all(power is None for power in powers) and not (
-        varying or tables or bodies or inner or model.nonlinear_elements
-    )
 
 
 def at_rest(

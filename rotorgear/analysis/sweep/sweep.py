@@ -29,7 +29,7 @@ from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.portrait import Portraits
 from rotorgear.results.sweep import Reduction, SweepResult
-from rotorgear.solvers.batch.run_block import Orbit, Plan, Start
+from rotorgear.solvers.batch.run_block import Orbit, Plan
 from rotorgear.solvers.batch.trajectory import trajectory
 from rotorgear.solvers.sparse.factor import single_thread
 
@@ -238,9 +238,15 @@ def _run(
             tasks = []
             for block in rest:
                 own = [p for p in (points[job.point] for job in block) if p is not None]
-                states = [
-                    _start(job.after, job.run, points, p, orbit_of, request) for job, p in zip(block, own, strict=True)
-                ]
+                states = []
+                for job, p in zip(block, own, strict=True):
+                    # A run starts at the end of the one before it, unless that failed.
+                    before = orbit_of.get((job.after, job.run)) if job.after is not None else None
+                    last = points[job.after] if job.after is not None else None
+                    if before is not None and last is not None and before.finite and last.system.size == p.system.size:
+                        states.append(before.end.moved(last.system, p.system))
+                    else:
+                        states.append(start_of(p.system, job.run % request.starts, request.seed, request.throw))
                 # A system has no more exponents than states beside its rigid-body motions.
                 most = 2 * (own[0].system.n - len(own[0].system.rigid))
                 plan = Plan(int(steps[block[0].point]), request.settle, request.count, min(request.exponents, most))
@@ -259,22 +265,6 @@ def _run(
                 done += len(block)
                 progress(_READY + (1.0 - _READY) * done / total, f"{done} of {total} runs")
     return orbit_of
-
-
-def _start(
-    after: int | None,
-    run: int,
-    points: Sequence[Point | None],
-    point: Point,
-    found: dict[tuple[int, int], Orbit],
-    request: Request,
-) -> Start:
-    """Where a run starts: the end of the one before it, unless that failed."""
-    before = found.get((after, run)) if after is not None else None
-    old = points[after] if after is not None else None
-    if before is not None and old is not None and before.finite and old.system.size == point.system.size:
-        return before.end.moved(old.system, point.system)
-    return start_of(point.system, run % request.starts, request.seed, request.throw)
 
 
 MOST_PORTRAITS = 16
@@ -297,25 +287,25 @@ def wanted_points(wanted: WantedPortraits, axes: Sequence[Axis]) -> list[int] | 
         raise AnalysisError(f"portraits: got {count}, expected 0 to {MOST_PORTRAITS} points")
     if isinstance(wanted, int):
         return wanted
-    return list(dict.fromkeys(_nearest(value, axes) for value in wanted))
-
-
-def _nearest(value: float | str | Sequence[float], axes: Sequence[Axis]) -> int:
-    """Number of the point next to a value of each parameter."""
-    parts = value.split(",") if isinstance(value, str) else np.atleast_1d(np.asarray(value, dtype=float)).tolist()
-    if len(parts) != len(axes):
-        what = "a value" if len(axes) == 1 else "two values with a comma"
-        raise AnalysisError(f"portrait: got '{value}', expected {what} of {' and '.join(a.address for a in axes)}")
-    place = 0
-    for axis, part in zip(axes, parts, strict=True):
-        number = number_in(axis, part, "portrait")
-        all_of = np.array(axis.values)
-        if not all_of.min() - 1e-9 * abs(all_of.min()) <= number <= all_of.max() + 1e-9 * abs(all_of.max()):
-            raise AnalysisError(
-                f"portrait: got '{part}', expected {axis.address} from {all_of.min():g} to {all_of.max():g} {axis.unit}".rstrip()
-            )
-        place = place * len(all_of) + int(np.argmin(np.abs(all_of - number)))
-    return place
+    places = []
+    for value in wanted:
+        parts = value.split(",") if isinstance(value, str) else np.atleast_1d(np.asarray(value, dtype=float)).tolist()
+        if len(parts) != len(axes):
+            what = "a value" if len(axes) == 1 else "two values with a comma"
+            raise AnalysisError(f"portrait: got '{value}', expected {what} of {' and '.join(a.address for a in axes)}")
+        # The number of the nearest point: the last parameter runs fastest.
+        place = 0
+        for axis, part in zip(axes, parts, strict=True):
+            number = number_in(axis, part, "portrait")
+            all_of = np.array(axis.values)
+            low, high = all_of.min(), all_of.max()
+            if not low - 1e-9 * abs(low) <= number <= high + 1e-9 * abs(high):
+                raise AnalysisError(
+                    f"portrait: got '{part}', expected {axis.address} from {low:g} to {high:g} {axis.unit}".rstrip()
+                )
+            place = place * len(all_of) + int(np.argmin(np.abs(all_of - number)))
+        places.append(place)
+    return list(dict.fromkeys(places))
 
 
 def spread(shape: Sequence[int], sound: Sequence[bool], count: int) -> list[int]:

@@ -149,6 +149,13 @@ def _root_stress_of(
             z = float(point[2]) * problem.module if pitch.dimension == 3 else 0.0
             # The gear's own face runs the other way than the pinion's.
             places.append((2.0 * problem.module * float(np.hypot(point[0], point[1])), end * side * z))
+    # The whole load at the outer point of single contact: the pinion carries alone up to D, one pitch after the start, the gear
+    # from B on, one pitch before the end. Helical teeth and high contact ratios have none.
+    nominal = None
+    line = problem.line
+    if not line.base_helix_angle and 1.0 <= line.contact_ratio < 2.0:
+        roll = line.start + line.base_pitch if gear == 0 else line.length - (line.end - line.base_pitch)
+        nominal = section.nominal_stress(cycle.load / teeth.width, roll)
     order = np.argsort(phase)
     tangent = int(np.argmax(at_tangent))
     worst = int(np.argmax(largest))
@@ -165,7 +172,7 @@ def _root_stress_of(
         worst_phase=phase[worst],
         worst_diameter=places[worst][0],
         worst_z=places[worst][1],
-        nominal=_nominal(teeth, problem, cycle, gear),
+        nominal=nominal,
     )
 
 
@@ -188,17 +195,6 @@ def _tooth_loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> Callab
         return loads
 
     return at
-
-
-def _nominal(teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, gear: int) -> float | None:
-    """Nominal stress (Pa) with the whole load at the outer point of single contact; None for helical and high contact ratios."""
-    line = problem.line
-    if line.base_helix_angle or not 1.0 <= line.contact_ratio < 2.0:
-        return None
-    # The pinion carries alone up to D, one pitch after the start; the gear from B on, one pitch before the end.
-    roll = line.start + line.base_pitch if gear == 0 else line.length - (line.end - line.base_pitch)
-    section = root_section(tooth_outline((teeth.first, teeth.second)[gear]))
-    return section.nominal_stress(cycle.load / teeth.width, roll)
 
 
 @recorded
@@ -236,7 +232,29 @@ def tooth_fields(
         _field(names[i], teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i)) for i in (0, 1)
     ]
     progress(1.0, "done")
-    return ToothFields(request.name, at, (fields[0], fields[1]), _contact(problem, cycle, at))
+    # The loaded slices as pieces of contact lines on the plane of action.
+    line = problem.line
+    slices = cycle.slices
+    loaded = cycle.force > 0.0
+    z = (slices.z @ slices.weight)[loaded, None] + 0.5 * slices.length[loaded, None] * np.array([-1.0, 1.0])
+    roll = line.pitch_point + (at + slices.pair[loaded, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
+    c = np.cos(line.pressure_angle)
+    s = np.sin(line.pressure_angle)
+    x = roll * c - line.base_radius[0] * s
+    y = roll * s + line.base_radius[0] * c
+    length = slices.length[loaded] / np.cos(line.base_helix_angle)
+    return ToothFields(
+        request.name,
+        at,
+        (fields[0], fields[1]),
+        ContactField(
+            np.stack([x, y, z], -1),
+            cycle.force[loaded] / length,
+            cycle.strip[loaded],
+            cycle.pressure[loaded],
+            slices.pair[loaded],
+        ),
+    )
 
 
 def _field(
@@ -255,7 +273,13 @@ def _field(
     mises, largest = (strength * np.concatenate([part[i] for part in stress]) for i in (0, 1))
     fillet = np.concatenate([part[1][solution.pitch.fillet] for part in stress])
     points, moved = _placed(solution, problem, teeth, at, gear)
-    cells = _vtk_cells(solution, flipped=gear == 0 and bool(key.width))
+    # Nodes of the elements of one pitch in VTK's order.
+    places = np.array(solution.pitch.basis.elem.doflocs, float)
+    wanted = _VTK_QUAD if places.shape[1] == 2 else _VTK_HEX
+    if gear == 0 and key.width:  # the mirror image
+        wanted = wanted * np.array([1, 1, -1]) + np.array([0, 0, 1])
+    order = [int(np.argmin(np.abs(places - place).sum(axis=1))) for place in wanted]
+    cells = solution.pitch.cells.reshape(-1, len(places))[:, order]
     n = len(solution.pitch.points)
     return ToothField(
         name,
@@ -295,38 +319,6 @@ def _placed(
     if pitch.dimension == 2:
         x, u = (np.pad(values, ((0, 0), (0, 1))) for values in (x, u))
     return x, u
-
-
-def _vtk_cells(solution: TeethSolution, *, flipped: bool) -> np.ndarray:
-    """Nodes of the elements of one pitch in VTK's order; `flipped`: of the mirror image."""
-    places = np.array(solution.pitch.basis.elem.doflocs, float)
-    wanted = _VTK_QUAD if places.shape[1] == 2 else _VTK_HEX
-    if flipped:
-        wanted = wanted * np.array([1, 1, -1]) + np.array([0, 0, 1])
-    order = [int(np.argmin(np.abs(places - place).sum(axis=1))) for place in wanted]
-    cells = solution.pitch.cells.reshape(-1, len(places))
-    return np.asarray(cells[:, order])
-
-
-def _contact(problem: ContactProblem, cycle: MeshCycle, at: float) -> ContactField:
-    """The loaded slices as pieces of contact lines on the plane of action."""
-    line = problem.line
-    slices = cycle.slices
-    loaded = cycle.force > 0.0
-    z = (slices.z @ slices.weight)[loaded, None] + 0.5 * slices.length[loaded, None] * np.array([-1.0, 1.0])
-    roll = line.pitch_point + (at + slices.pair[loaded, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
-    c = np.cos(line.pressure_angle)
-    s = np.sin(line.pressure_angle)
-    x = roll * c - line.base_radius[0] * s
-    y = roll * s + line.base_radius[0] * c
-    length = slices.length[loaded] / np.cos(line.base_helix_angle)
-    return ContactField(
-        np.stack([x, y, z], -1),
-        cycle.force[loaded] / length,
-        cycle.strip[loaded],
-        cycle.pressure[loaded],
-        slices.pair[loaded],
-    )
 
 
 _VTK_QUAD = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])

@@ -12,8 +12,7 @@ from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
 from rotorgear.analysis.teeth.request import Cycle, MeshRequest, SolvedHelices, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle
-from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
+from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_fe.settings import PRESETS
 from rotorgear.memory import largest_memory
@@ -89,10 +88,25 @@ def mesh(
     else:
         teeth, found, errors = _refined(request, cycle, accuracy, progress)
     clock.lap("teeth and contact")
-    loads = tuple(_load_point(request, teeth, factor, cycle) for factor in load_factors)
+    loads = []
+    for factor in load_factors:
+        at = solve_helices(request, teeth, factor * request.base_force, cycle)
+        loads.append(
+            LoadPoint(
+                factor=factor,
+                mean_stiffness_n_per_m=float(at.curve.mean()[1]),
+                peak_to_peak_stiffness_n_per_m=float(np.ptp(at.stiffness)),
+                ste_peak_to_peak_m=float(np.ptp(at.error)),
+                contact_ratio=at.contact_ratio,
+                ste_harmonics_m=tuple(np.abs(at.curve.harmonics(3)[:, 0]).tolist()),
+                largest_pressure_pa=float(at.curve.values[:, 3].max()),
+                position=at.position,
+                ste_m=at.error,
+            )
+        )
     if loads:
         clock.lap("other loads")
-    return _result(model, request, teeth, found, errors, loads, clock)
+    return _result(model, request, teeth, found, errors, tuple(loads), clock)
 
 
 def require_positions(positions: int) -> None:
@@ -137,21 +151,6 @@ def _refined(
     raise AnalysisError(
         f"No preset reaches a relative accuracy of {accuracy:g} of stiffness, its ripple and the transmission error's ripple: "
         f"the estimates are {', '.join(said)}. Ask for less, or take --preset fine with its estimate."
-    )
-
-
-def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, cycle: Cycle) -> LoadPoint:
-    found = solve_helices(request, teeth, factor * request.base_force, cycle)
-    return LoadPoint(
-        factor=factor,
-        mean_stiffness_n_per_m=float(found.curve.mean()[1]),
-        peak_to_peak_stiffness_n_per_m=float(np.ptp(found.stiffness)),
-        ste_peak_to_peak_m=float(np.ptp(found.error)),
-        contact_ratio=found.contact_ratio,
-        ste_harmonics_m=tuple(np.abs(found.curve.harmonics(3)[:, 0]).tolist()),
-        largest_pressure_pa=float(found.curve.values[:, 3].max()),
-        position=found.position,
-        ste_m=found.error,
     )
 
 
@@ -223,6 +222,7 @@ def _result(
         notes.append(
             "tilt: the shafts are rigid here; statics finds the misalignment over the face by their deflection"
         )
+    line = found.problem.line
     return MeshResult(
         **_common(model, request, clock),
         stiffness_model="tooth_fe",
@@ -237,7 +237,28 @@ def _result(
         tangent=found.tangent,
         transmission_error=found.error,
         no_load_error=found.no_load,
-        helix=tuple(_helix(cycle, teeth, found.problem) for cycle in found.cycles),
+        helix=tuple(
+            HelixContact(
+                stiffness=cycle.secant,
+                tangent=cycle.tangent,
+                transmission_error=cycle.deflection,
+                no_load_error=cycle.no_load,
+                share=cycle.share_by_pair(),
+                contact_ratio=cycle.contact_ratio,
+                geometric_contact_ratio=line.contact_ratio + teeth.pair.overlap_ratio,
+                path_of_contact=(line.start, line.pitch_point, line.end),
+                position=cycle.slices.position,
+                pair=cycle.slices.pair,
+                z=cycle.slices.z @ cycle.slices.weight,
+                length=cycle.slices.length / np.cos(teeth.pair.base_helix_angle),
+                corner=cycle.slices.corner,
+                roll=np.stack([roll @ cycle.slices.weight for roll in cycle.slices.roll], axis=-1),
+                force=cycle.force,
+                half_width=cycle.strip,
+                pressure=cycle.pressure,
+            )
+            for cycle in found.cycles
+        ),
         errors=errors.total if errors else None,
         element_errors=errors.elements if errors else None,
         slice_errors=errors.slices if errors else None,
@@ -245,27 +266,4 @@ def _result(
         dofs=found.problem.unknowns,
         loads=loads,
         warnings=tuple(dict.fromkeys(notes)),
-    )
-
-
-def _helix(cycle: MeshCycle, teeth: ToothPair, problem: ContactProblem) -> HelixContact:
-    s = cycle.slices
-    return HelixContact(
-        stiffness=cycle.secant,
-        tangent=cycle.tangent,
-        transmission_error=cycle.deflection,
-        no_load_error=cycle.no_load,
-        share=cycle.share_by_pair(),
-        contact_ratio=cycle.contact_ratio,
-        geometric_contact_ratio=problem.line.contact_ratio + teeth.pair.overlap_ratio,
-        path_of_contact=(problem.line.start, problem.line.pitch_point, problem.line.end),
-        position=s.position,
-        pair=s.pair,
-        z=s.z @ s.weight,
-        length=s.length / np.cos(teeth.pair.base_helix_angle),
-        corner=s.corner,
-        roll=np.stack([roll @ s.weight for roll in s.roll], axis=-1),
-        force=cycle.force,
-        half_width=cycle.strip,
-        pressure=cycle.pressure,
     )

@@ -105,8 +105,16 @@ def operating_values(given: Mapping[str, object], name: str) -> np.ndarray | Non
     return found
 
 
-def operating_axes(over: Mapping[str, object], request: MeshRequest) -> tuple[np.ndarray, np.ndarray]:
-    """Torques (t,) in N m and misalignments (m,) in m, rising; what is not given is that of the request.
+def operating_points(
+    model: Model,
+    mesh: str | None,
+    over: Mapping[str, object],
+    torque: float | str | None,
+    fe: dict[str, object],
+) -> tuple[MeshRequest, ToothPair, np.ndarray, np.ndarray]:
+    """The mesh, its teeth, torques (t,) in N m and misalignments (m,) in m, rising; what is not given is that of the model.
+
+    The teeth have one finite-element model for all misalignments: a map must have no seam where one of them is zero.
 
     Raises:
         AnalysisError: another axis, torques of both senses or of none, too many points, or no torque at all.
@@ -114,29 +122,28 @@ def operating_axes(over: Mapping[str, object], request: MeshRequest) -> tuple[np
     for name in over:
         if name not in AXES:
             raise AnalysisError(f"over: there is no '{name}'; a mesh is looked at over {' and '.join(AXES)}.")
-    assert request.teeth is not None
-    torque = operating_values(over, "torque")
-    if torque is None:
+    torques = operating_values(over, "torque")
+    request = mesh_request(
+        model, mesh, "tooth_fe", float(torques[0]) if torque is None and torques is not None else torque, fe
+    )
+    teeth = request.teeth
+    assert teeth is not None
+    if torques is None:
         if request.load is None:
             raise AnalysisError(f"meshes.{request.name} carries no torque: give over torque, or --torque.")
-        torque = np.array([request.load.pinion_torque_n_m])
-    if not ((torque > 0.0).all() or (torque < 0.0).all()):
+        torques = np.array([request.load.pinion_torque_n_m])
+    if not ((torques > 0.0).all() or (torques < 0.0).all()):
         raise AnalysisError(
             "over torque: the torques must have one sense, and none of them be zero: the other flanks differ."
         )
     misalignment = operating_values(over, "misalignment")
     if misalignment is None:
-        misalignment = np.array([request.teeth.misalignment])
-    if len(torque) * len(misalignment) > _MOST_POINTS:
-        raise AnalysisError(f"over: {len(torque)} x {len(misalignment)} points are more than {_MOST_POINTS}.")
-    return np.unique(torque), np.unique(misalignment)
-
-
-def one_kind_of_model(teeth: ToothPair, misalignment: np.ndarray) -> ToothPair:
-    """The teeth with one finite-element model for all misalignments: a map must have no seam where one of them is zero."""
+        misalignment = np.array([teeth.misalignment])
+    if len(torques) * len(misalignment) > _MOST_POINTS:
+        raise AnalysisError(f"over: {len(torques)} x {len(misalignment)} points are more than {_MOST_POINTS}.")
     if np.any(misalignment) and teeth.fe.preset != "preview" and teeth.fe.space is None:
-        return replace(teeth, fe=replace(teeth.fe, space=True))
-    return teeth
+        teeth = replace(teeth, fe=replace(teeth.fe, space=True))
+    return request, teeth, np.unique(torques), np.unique(misalignment)
 
 
 @recorded
@@ -171,12 +178,7 @@ def mesh_map(
     """
     require_positions(positions)
     clock = Clock()
-    torques = operating_values(over, "torque")
-    asked = float(torques[0]) if torque is None and torques is not None and len(torques) else torque
-    request = mesh_request(model, mesh, "tooth_fe", asked, {"preset": preset, "body": body})
-    assert request.teeth is not None
-    load, misalignment = operating_axes(over, request)
-    teeth = one_kind_of_model(request.teeth, misalignment)
+    request, teeth, load, misalignment = operating_points(model, mesh, over, torque, {"preset": preset, "body": body})
     problem = contact_problem(teeth, part_of(progress, 0.0, 0.3))
     points = [(i, j) for i in range(len(load)) for j in range(len(misalignment))]
     figures = []

@@ -30,17 +30,15 @@ from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
 from rotorgear.analysis.teeth.mesh_map import (
     MeshFigures,
     mesh_figures,
-    one_kind_of_model,
-    operating_axes,
+    operating_points,
     operating_values,
 )
-from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
+from rotorgear.analysis.teeth.request import MeshRequest
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.mesh_optimum import FlankVariable, MeshOptimum
 
 # Flanks that are tried for each variable, and the share of them that the evolution takes; the simplex has the rest.
@@ -118,6 +116,65 @@ class _Search:
         high = np.array([variable.high for variable in self.variables])
         return np.asarray(low + (high - low) * shares)
 
+    def run(self) -> str:
+        """Look for the best flanks; "success", or how far it came before Ctrl-C."""
+        from scipy.optimize import differential_evolution, minimize
+
+        v = len(self.variables)
+        bounds = [(0.0, 1.0)] * v
+        try:
+            differential_evolution(
+                self,
+                bounds,
+                maxiter=max(1, int(_EVOLUTION * self.most / (_POPULATION * v)) - 1),
+                popsize=_POPULATION,
+                init="sobol" if v > 1 else "latinhypercube",
+                tol=1e-3,
+                polish=False,
+                seed=np.random.default_rng(12),  # the same question has the same answer; "rng" is new in scipy 1.15
+            )
+            assert self.best is not None
+            # A simplex as wide as what the evolution leaves open, and pointing inwards.
+            start = self.best.copy()
+            minimize(
+                self,
+                start,
+                method="Nelder-Mead",
+                bounds=bounds,
+                options={
+                    "initial_simplex": start + np.vstack([np.zeros(v), np.diag(np.where(start > 0.5, -0.08, 0.08))]),
+                    "xatol": 1e-3,
+                    "fatol": 1e-4 * self.scale,
+                    "maxfev": 10 * self.most,
+                },
+            )
+        except _EnoughError:
+            pass
+        except KeyboardInterrupt:
+            if self.best is None:
+                raise
+            return f"interrupted: the best of {self.tried} flanks so far"
+        return "success"
+
+    def band(
+        self, values: np.ndarray, tolerance: np.ndarray, samples: int, progress: Progress
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """5 and 95 % quantiles (1 + points,) of the weighted mean and of the peak to peak at each operating point (m)."""
+        from scipy.stats import qmc
+
+        # Sobol's points are balanced for powers of two: the next one, of which the first ones are taken.
+        power = max(1, int(np.ceil(np.log2(samples))))
+        varied = qmc.Sobol(len(values), seed=np.random.default_rng(12)).random_base2(power)
+        least = np.array([0.0 if variable.low >= 0.0 else -np.inf for variable in self.variables])
+        found = []
+        for number, shares in enumerate(varied[:samples]):
+            changed = np.maximum(values + tolerance * (2.0 * shares - 1.0), least)
+            points = self.points(with_values(self.teeth, self.variables, changed))
+            found.append([self.mean(points), *(point.ste_peak_to_peak for point in points)])
+            progress((number + 1) / samples, f"tolerances {number + 1} of {samples}")
+        low, high = np.quantile(np.array(found), _BAND, axis=0)
+        return low, high
+
 
 @recorded
 def optimise_flanks(
@@ -164,22 +221,18 @@ def optimise_flanks(
         ConvergenceError: the contact does not converge.
         MissingExtraError: scikit-fem is not installed.
     """
-    from scipy.optimize import differential_evolution, minimize
-
     require_positions(positions)
     if not variables:
         raise AnalysisError("optimise: name at least one modification, such as tip_relief,tip_relief_length.")
     if not 0 <= samples <= 4096:
         raise AnalysisError(f"samples: got {samples}, expected 0 to 4096")
+    limit = None if pressure_limit is None else quantity(pressure_limit, "modulus", "pressure limit")
+    if limit is not None and limit <= 0.0:
+        raise AnalysisError(f"pressure limit: got {pressure_limit!r}, expected a positive pressure")
     clock = Clock()
-    torques = operating_values(over, "torque")
-    asked = float(torques[0]) if torque is None and torques is not None and len(torques) else torque
-    request = mesh_request(model, mesh, "tooth_fe", asked, {"preset": preset, "body": body})
-    assert request.teeth is not None
+    request, teeth, load, misalignment = operating_points(model, mesh, over, torque, {"preset": preset, "body": body})
     chosen = flank_variables(request.mesh, variables, bounds or {})
     spread = _tolerances(chosen, tolerance or {})
-    load, misalignment = operating_axes(over, request)
-    teeth = one_kind_of_model(request.teeth, misalignment)
     if any(variable.field in ALONG_FACE for variable in chosen) and teeth.fe.preset != "preview":
         teeth = replace(teeth, fe=replace(teeth.fe, space=True))
     contact_problem(teeth, part_of(progress, 0.0, _SHARES[0]))
@@ -192,8 +245,8 @@ def optimise_flanks(
         variables=chosen,
         torque=load,
         misalignment=misalignment,
-        weight=_weights(weights, torques, load, len(misalignment)),
-        limit=_pressure(pressure_limit),
+        weight=_weights(weights, operating_values(over, "torque"), load, len(misalignment)),
+        limit=limit,
         positions=positions,
         most=most,
         progress=part_of(progress, *_SHARES),
@@ -201,36 +254,7 @@ def optimise_flanks(
     before = search.points(teeth)
     search.scale = search.mean(before)
     clock.lap("teeth")
-    status = "success"
-    try:
-        generations = max(1, int(_EVOLUTION * most / (_POPULATION * len(chosen))) - 1)
-        differential_evolution(
-            search,
-            [(0.0, 1.0)] * len(chosen),
-            maxiter=generations,
-            popsize=_POPULATION,
-            init="sobol" if len(chosen) > 1 else "latinhypercube",
-            tol=1e-3,
-            polish=False,
-            seed=np.random.default_rng(12),  # the same question has the same answer; "rng" is new in scipy 1.15
-        )
-        assert search.best is not None
-        # A simplex as wide as what the evolution leaves open, and pointing inwards.
-        start = search.best.copy()
-        corners = start + np.vstack([np.zeros(len(chosen)), np.diag(np.where(start > 0.5, -0.08, 0.08))])
-        minimize(
-            search,
-            start,
-            method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * len(chosen),
-            options={"initial_simplex": corners, "xatol": 1e-3, "fatol": 1e-4 * search.scale, "maxfev": 10 * most},
-        )
-    except _EnoughError:
-        pass
-    except KeyboardInterrupt:
-        if search.best is None:
-            raise
-        status = f"interrupted: the best of {search.tried} flanks so far"
+    status = search.run()
     assert search.best is not None
     values = search.values(search.best)
     found = search.points(with_values(teeth, chosen, values))
@@ -243,7 +267,7 @@ def optimise_flanks(
     clock.lap("search")
     band = None
     if samples and status == "success":
-        band = _band(search, values, spread, samples, part_of(progress, _SHARES[1], 1.0))
+        band = search.band(values, spread, samples, part_of(progress, _SHARES[1], 1.0))
         clock.lap("tolerance band")
     shape = (len(load), len(misalignment))
     notes = dict.fromkeys(note for point in found for note in point.warnings)
@@ -306,18 +330,6 @@ def _weights(given: Sequence[float] | None, asked: np.ndarray | None, torque: np
     return np.repeat(values[:, None], columns, axis=1) / (values.sum() * columns)
 
 
-def _pressure(given: float | str | None) -> float | None:
-    if given is None:
-        return None
-    try:
-        limit = parse_quantity(given, "modulus")
-    except QuantityError:
-        raise AnalysisError(f"pressure limit: got {given!r}, expected a pressure such as '1200 MPa'") from None
-    if limit <= 0.0:
-        raise AnalysisError(f"pressure limit: got {given!r}, expected a positive pressure")
-    return limit
-
-
 def _tolerances(variables: Sequence[Variable], given: Mapping[str, object]) -> np.ndarray:
     """Tolerances (v,) in m, up and down."""
     if strange := set(given) - {variable.text for variable in variables}:
@@ -334,22 +346,3 @@ def _tolerances(variables: Sequence[Variable], given: Mapping[str, object]) -> n
             )
         found.append(value)
     return np.array(found)
-
-
-def _band(
-    search: _Search, values: np.ndarray, tolerance: np.ndarray, samples: int, progress: Progress
-) -> tuple[np.ndarray, np.ndarray]:
-    """5 and 95 % quantiles (1 + points,) of the weighted mean and of the peak to peak at each operating point (m)."""
-    from scipy.stats import qmc
-
-    # Sobol's points are balanced for powers of two: the next one, of which the first ones are taken.
-    varied = qmc.Sobol(len(values), seed=np.random.default_rng(12)).random_base2(max(1, int(np.ceil(np.log2(samples)))))
-    least = np.array([0.0 if variable.low >= 0.0 else -np.inf for variable in search.variables])
-    found = []
-    for number, shares in enumerate(varied[:samples]):
-        changed = np.maximum(values + tolerance * (2.0 * shares - 1.0), least)
-        points = search.points(with_values(search.teeth, search.variables, changed))
-        found.append([search.mean(points), *(point.ste_peak_to_peak for point in points)])
-        progress((number + 1) / samples, f"tolerances {number + 1} of {samples}")
-    low, high = np.quantile(np.array(found), _BAND, axis=0)
-    return low, high

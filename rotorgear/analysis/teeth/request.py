@@ -189,7 +189,16 @@ def mesh_request(
     Raises:
         AnalysisError: no such mesh or model, no teeth, or no load where one is needed.
     """
-    mesh = model.layout.mesh(_mesh_name(model, name))
+    names = list(model.meshes)
+    if not names:
+        raise AnalysisError("The model has no meshes.")
+    if name is None and len(names) > 1:
+        raise AnalysisError(f"Which mesh? Give --mesh with one of {', '.join(names)}.")
+    if name is not None and name not in names:
+        guess = nearest(name, names)
+        hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(names)}."
+        raise AnalysisError(f"There is no mesh '{name}': {hint}")
+    mesh = model.layout.mesh(name or names[0])
     given = mesh.part.stiffness
     chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
     if chosen not in (*MODELS, "given"):
@@ -211,21 +220,6 @@ def mesh_request(
             "loads in the model."
         )
     return MeshRequest(mesh, chosen, teeth, sense, mesh.helix_senses(sense), load)
-
-
-def _mesh_name(model: Model, name: str | None) -> str:
-    names = list(model.meshes)
-    if not names:
-        raise AnalysisError("The model has no meshes.")
-    if name is None:
-        if len(names) > 1:
-            raise AnalysisError(f"Which mesh? Give --mesh with one of {', '.join(names)}.")
-        return names[0]
-    if name not in names:
-        guess = nearest(name, names)
-        hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(names)}."
-        raise AnalysisError(f"There is no mesh '{name}': {hint}")
-    return name
 
 
 def _load(model: Model, mesh: MeshLayout, given: float | str | None) -> tuple[MeshLoad | None, int]:
