@@ -39,6 +39,7 @@ from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
+from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.mesh_optimum import FlankVariable, MeshOptimum
 
 # Flanks that are tried for each variable, and the share of them that the evolution takes; the simplex has the rest.
@@ -226,7 +227,10 @@ def optimise_flanks(
         raise AnalysisError("optimise: name at least one modification, such as tip_relief,tip_relief_length.")
     if not 0 <= samples <= 4096:
         raise AnalysisError(f"samples: got {samples}, expected 0 to 4096")
-    limit = None if pressure_limit is None else quantity(pressure_limit, "modulus", "pressure limit")
+    try:
+        limit = None if pressure_limit is None else parse_quantity(pressure_limit, "modulus")
+    except QuantityError:
+        raise AnalysisError(f"pressure limit: got {pressure_limit!r}, expected a pressure such as '1200 MPa'") from None
     if limit is not None and limit <= 0.0:
         raise AnalysisError(f"pressure limit: got {pressure_limit!r}, expected a positive pressure")
     clock = Clock()
