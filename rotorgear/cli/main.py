@@ -42,8 +42,10 @@ def _root(
     """Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file."""
 
 
-def _show_old_names_as_sentences() -> None:
-    """Former names in a model file are the user's to mend: no path and line of this package before the sentence."""
+def main() -> None:
+    """Run the command line."""
+    start_fast()
+    # Former names in a model file are the user's to mend: no path and line of this package before the sentence.
     show = warnings.showwarning
 
     def sentence(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
@@ -53,12 +55,6 @@ def _show_old_names_as_sentences() -> None:
             show(message, category, *place, **rest)
 
     warnings.showwarning = sentence
-
-
-def main() -> None:
-    """Run the command line."""
-    start_fast()
-    _show_old_names_as_sentences()
     if sys.stdout is None:  # started with a closed output
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -63,9 +64,7 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
         raise ModelError([Problem(source, "", "not valid TOML: brackets within brackets too deep")], source) from None
     except ValueError as error:  # a TOMLDecodeError, or a number of thousands of digits
         raise ModelError([_syntax_problem(source, str(error), text)], source) from None
-    _find_topographies(data, Path(folder))
-    _find_meshes(data, Path(folder))
-    _find_histories(data, Path(folder))
+    _find_files(data, Path(folder))
     try:
         model = Model(**data)
     except ModelError as error:
@@ -76,40 +75,28 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
     return model
 
 
-def _find_topographies(data: dict[str, Any], folder: Path) -> None:
-    """Let files of measured flanks be looked for beside the model file, not where the program runs."""
-    gears = data.get("gears")
-    for gear in gears.values() if isinstance(gears, dict) else ():
-        flank = gear.get("flank") if isinstance(gear, dict) else None
-        if isinstance(flank, dict) and isinstance(flank.get("topography"), str):
-            flank["topography"] = str(folder / flank["topography"])
+def _find_files(data: dict[str, Any], folder: Path) -> None:
+    """Let the files that a model names be looked for beside the model file, not where the program runs."""
 
+    def parts(name: str) -> Iterable[Any]:
+        table = data.get(name)
+        return table.values() if isinstance(table, dict) else ()
 
-def _find_histories(data: dict[str, Any], folder: Path) -> None:
-    """Let files of loads over time or angle be looked for beside the model file."""
-    loads = data.get("loads")
-    for load in loads.values() if isinstance(loads, dict) else ():
-        if isinstance(load, dict) and isinstance(load.get("history"), str):
-            load["history"] = str(folder / load["history"])
+    def find(table: Any, *keys: str) -> None:
+        for key in keys if isinstance(table, dict) else ():
+            if isinstance(table.get(key), str):
+                table[key] = str(folder / table[key])
 
-
-def _find_meshes(data: dict[str, Any], folder: Path) -> None:
-    """Let files of casings and of gear bodies be looked for beside the model file likewise."""
-    gears = data.get("gears")
-    for gear in gears.values() if isinstance(gears, dict) else ():
-        body = gear.get("body") if isinstance(gear, dict) else None
-        if isinstance(body, dict) and isinstance(body.get("mesh"), str):
-            body["mesh"] = str(folder / body["mesh"])
-    casings = data.get("casings")
-    for casing in casings.values() if isinstance(casings, dict) else ():
-        if not isinstance(casing, dict):
-            continue
-        for key in ("mesh", "matrices"):
-            if isinstance(casing.get(key), str):
-                casing[key] = str(folder / casing[key])
-        if isinstance(casing.get("mesh"), dict):
-            files = casing["mesh"].items()
-            casing["mesh"] = {part: str(folder / file) if isinstance(file, str) else file for part, file in files}
+    for gear in parts("gears"):
+        if isinstance(gear, dict):
+            find(gear.get("flank"), "topography")
+            find(gear.get("body"), "mesh")
+    for load in parts("loads"):
+        find(load, "history")
+    for casing in parts("casings"):
+        find(casing, "mesh", "matrices")
+        if isinstance(casing, dict) and isinstance(casing.get("mesh"), dict):
+            find(casing["mesh"], *casing["mesh"])
 
 
 def _refused(path: Path, text: str, hint: str = "") -> ModelError:

@@ -137,20 +137,15 @@ def model_hash(model: Model) -> str:
     if reads_files:
         return _hash(model)
     # Parts are frozen, but not the tables that hold them: the hash is kept for these parts only.
-    parts = _parts(model)
-    kept = model.known_hash
-    if not kept or len(kept[0][0]) != len(parts) or any(map(is_not, kept[0][0], parts)):
-        kept[:] = [(parts, _hash(model))]
-    return kept[0][1]
-
-
-def _parts(model: Model) -> tuple[object, ...]:
-    """Names and parts of all tables, and what stands beside them."""
     found: list[object] = []
     for name in type(model).model_fields:
         value = getattr(model, name)
         found += [*value.keys(), *value.values()] if isinstance(value, dict) else [value]
-    return tuple(found)
+    parts = tuple(found)
+    kept = model.known_hash
+    if not kept or len(kept[0][0]) != len(parts) or any(map(is_not, kept[0][0], parts)):
+        kept[:] = [(parts, _hash(model))]
+    return kept[0][1]
 
 
 def _hash(model: Model) -> str:

@@ -33,7 +33,16 @@ class ShippedModel:
 
 def models() -> tuple[ShippedModel, ...]:
     """Return the models that come with the package, by name: examples to look at and to start from."""
-    return tuple(_described(path) for path in sorted(_folder().glob("*.toml")))
+    # The wheel carries a copy of the folder inside the package, a clone has it at its top.
+    inside = _PACKAGE / "models"
+    folder = inside if inside.is_dir() else _PACKAGE.parent / "models"
+    found = []
+    for path in sorted(folder.glob("*.toml")):
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        named = {path.with_name(text) for text in _texts(data) if text.endswith((".msh", ".inp", ".csv", ".npz"))}
+        beside = sorted(file for file in {*named, path.with_name(f"{path.stem}_rig.csv")} if file.is_file())
+        found.append(ShippedModel(path.stem, str(data.get("title", "")), path, tuple(beside)))
+    return tuple(found)
 
 
 def shipped_model(name: str) -> ShippedModel:
@@ -48,19 +57,6 @@ def shipped_model(name: str) -> ShippedModel:
         hint = f"did you mean '{guess}'? " if guess else ""
         raise AnalysisError(f"no model '{name}' comes with rotorgear: {hint}`rotorgear models` lists them")
     return known[name]
-
-
-def _folder() -> Path:
-    """Folder of the models: the wheel carries a copy inside the package, a clone has them at its top."""
-    inside = _PACKAGE / "models"
-    return inside if inside.is_dir() else _PACKAGE.parent / "models"
-
-
-def _described(path: Path) -> ShippedModel:
-    data = tomllib.loads(path.read_text(encoding="utf-8"))
-    named = {path.with_name(value) for value in _texts(data) if value.endswith((".msh", ".inp", ".csv", ".npz"))}
-    beside = sorted(file for file in {*named, path.with_name(f"{path.stem}_rig.csv")} if file.is_file())
-    return ShippedModel(path.stem, str(data.get("title", "")), path, tuple(beside))
 
 
 def _texts(value: Any) -> Iterator[str]:

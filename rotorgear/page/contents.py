@@ -82,7 +82,23 @@ def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Conten
     if rig and modes is not None:
         found.run("rig", lambda: compare(modes, rig, known_to_hz=wanted.get("fmax")))
     if speed:
-        _over_speed(found, model, speed, grade, progress)
+        # The analyses over a range of speeds.
+        progress(0.2, "Campbell diagram")
+        found.run("campbell", lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
+        progress(0.45, "critical speeds")
+        # The rules judge the critical speeds of the table: both go as far as the widest margin reaches.
+        speeds = found.run("critical", lambda: critical(model, stop=HIGHEST * speed))
+        if model.bearings:
+            found.run("critical_map", lambda: critical_map(model, stiffness=_stiffnesses(model)))
+        else:
+            found.missing["critical_map"] = "the model has no bearings"
+        progress(0.55, "rules of standards")
+        if speeds is not None:
+            found.run("standards", lambda: _standards(model, critical_speeds=speeds, grade=grade))
+        else:
+            found.missing["standards"] = found.missing["critical"]
+        progress(0.65, "run-up")
+        found.run("response", lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
     else:
         for name in ("campbell", "critical", "critical_map", "standards"):
             found.missing[name] = _NO_SPEED
@@ -92,26 +108,6 @@ def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Conten
     for name in model.casings:
         found.run(f"casing {name}", lambda name=name: casing(model, name))  # type: ignore[misc]
     return found
-
-
-def _over_speed(found: Contents, model: Model, speed: float, grade: float, progress: Progress) -> None:
-    """The analyses over a range of speeds."""
-    progress(0.2, "Campbell diagram")
-    found.run("campbell", lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
-    progress(0.45, "critical speeds")
-    # The rules judge the critical speeds of the table: both go as far as the widest margin reaches.
-    speeds = found.run("critical", lambda: critical(model, stop=HIGHEST * speed))
-    if model.bearings:
-        found.run("critical_map", lambda: critical_map(model, stiffness=_stiffnesses(model)))
-    else:
-        found.missing["critical_map"] = "the model has no bearings"
-    progress(0.55, "rules of standards")
-    if speeds is not None:
-        found.run("standards", lambda: _standards(model, critical_speeds=speeds, grade=grade))
-    else:
-        found.missing["standards"] = found.missing["critical"]
-    progress(0.65, "run-up")
-    found.run("response", lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
 
 
 @recorded

@@ -8,7 +8,7 @@ from rotorgear.errors import Problem
 from rotorgear.model.checks.names import PartName, unknown
 from rotorgear.model.checks.sizes import six_by_six
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.parts.casing import Casing, Seat
+from rotorgear.model.parts.casing import Seat
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.problems import missing, not_default, shown, told
@@ -49,7 +49,18 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
             yield missing(f"{address}.mesh", "the file of the mesh, such as 'box.msh'")
         elif casing.unit is None:
             yield missing(f"{address}.unit", _UNIT)
-        yield from _material(address, casing)
+        given = [key for key in _MATERIAL if getattr(casing, key) is not None]
+        if casing.material is not None and given:
+            what = "one of the two ways to say what the casing is of"
+            yield Problem(address, f"material and {', '.join(given)}", what)
+        elif casing.material is None and not given and casing.mesh:
+            yield Problem(f"{address}.material", "", "missing", f"required, or {', '.join(_MATERIAL)}")
+        elif given:
+            for key in _MATERIAL:
+                if key not in given:
+                    yield Problem(f"{address}.{key}", "", "missing", f"required beside {', '.join(given)}")
+            if casing.poisson_ratio is not None and casing.poisson_ratio >= 0.5:
+                yield Problem(f"{address}.poisson_ratio", f"{casing.poisson_ratio:.4g}", "one from 0 to below 0.5")
         for set_name, mount in casing.mounts.items():
             yield from six_by_six(f"{address}.mounts.{set_name}", mount, None)
             yield from six_by_six(f"{address}.mounts.{set_name}", None, mount.damping)
@@ -81,20 +92,6 @@ def _all_motions(model: Tables, beside: str, why: str) -> Iterator[Problem]:
     absent = [motion for motion in MOTIONS if not model.has(motion)]
     if absent:
         yield Problem("motions", f"without {' and '.join(absent)}", f"all three beside {beside}", why)
-
-
-def _material(address: str, casing: Casing) -> Iterator[Problem]:
-    given = [key for key in _MATERIAL if getattr(casing, key) is not None]
-    if casing.material is not None and given:
-        yield Problem(address, f"material and {', '.join(given)}", "one of the two ways to say what the casing is of")
-    elif casing.material is None and not given and casing.mesh:
-        yield Problem(f"{address}.material", "", "missing", f"required, or {', '.join(_MATERIAL)}")
-    elif given:
-        for key in _MATERIAL:
-            if key not in given:
-                yield Problem(f"{address}.{key}", "", "missing", f"required beside {', '.join(given)}")
-        if casing.poisson_ratio is not None and casing.poisson_ratio >= 0.5:
-            yield Problem(f"{address}.poisson_ratio", f"{casing.poisson_ratio:.4g}", "one from 0 to below 0.5")
 
 
 def _seat(address: str, seat: Seat) -> Iterator[Problem]:

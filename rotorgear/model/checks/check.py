@@ -6,7 +6,7 @@ that only follows from an earlier mistake.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 
 from rotorgear.errors import Problem
 from rotorgear.model.checks.casings import casings, gear_bodies
@@ -33,7 +33,6 @@ from rotorgear.model.checks.sizes import (
     stations,
 )
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.tables import Tables
 
 
 def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Problem]:
@@ -49,7 +48,25 @@ def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Probl
     if not model.shafts and not any(table == "shafts" for table, _ in dropped):
         found.append(Problem("shafts", "", "missing", "a model has at least one shaft, such as [shafts.input]"))
         dropped.add(("shafts", ""))
-    found += _by_themselves(model, dropped)
+    # First the checks that look at one part and at names only, so that they need no other part to be in order.
+    rest = sound(model, dropped)
+    found += [
+        *motions(model),
+        *duplicate_names(model, dropped),
+        *unknown_names(model, dropped),
+        *unknown_materials(model, dropped),
+        *materials(rest),
+        *sections(rest),
+        *gear_problems(rest),
+        *gear_bodies(rest),
+        *matrices(rest),
+        *casings(rest, dropped),
+        *nonlinear_elements(rest),
+        *mesh_settings(rest),
+        *points(rest),
+        *loads(rest),
+        *operating_point(rest, dropped),
+    ]
     stages: tuple[Callable[[Layout], Iterable[Problem]], ...] = (
         lambda rest: [*stations(rest.model), *coupled_points(rest.model)],
         mesh_problems,
@@ -62,23 +79,3 @@ def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Probl
         # The layout of a sound model is the one that its analyses go on with.
         found += stage(Layout(without(model, dropped)) if found or dropped else layout)
     return found
-
-
-def _by_themselves(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
-    """Checks that look at one part and at names only, so that they need no other part to be in order."""
-    yield from motions(model)
-    yield from duplicate_names(model, broken)
-    yield from unknown_names(model, broken)
-    yield from unknown_materials(model, broken)
-    rest = sound(model, broken)
-    yield from materials(rest)
-    yield from sections(rest)
-    yield from gear_problems(rest)
-    yield from gear_bodies(rest)
-    yield from matrices(rest)
-    yield from casings(rest, broken)
-    yield from nonlinear_elements(rest)
-    yield from mesh_settings(rest)
-    yield from points(rest)
-    yield from loads(rest)
-    yield from operating_point(rest, broken)

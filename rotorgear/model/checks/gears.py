@@ -252,11 +252,25 @@ def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterato
     model = layout.model
     found: list[Problem] = []
     if inertia_is_given(part):
-        found += _given_inertia(model, address, part)
+        needs = {
+            "mass": ("bending", "axial"),
+            "polar_inertia": ("torsion", "bending"),
+            "diametral_inertia": ("bending",),
+        }
+        for key, motions in needs.items():
+            if getattr(part, key) is None and any(model.has(motion) for motion in motions):
+                found.append(missing(f"{address}.{key}", "a value beside the other inertias, 0 if it has none"))
+        if isinstance(part, Disk):
+            why = "a disk has sizes or given inertias, not both"
+            sizes = not_default(part, ("outer_diameter", "width", "bore"))
+            found += [Problem(f"{address}.{key}", millimetres(getattr(part, key)), _NOTHING, why) for key in sizes]
+        elif part.body != GearBody():
+            why = "a gear has a body or given inertias, not both"
+            found.append(Problem(f"{address}.body", "a table", _NOTHING, why))
     elif isinstance(part, Disk):  # the sizes of a gear are those of its teeth, which are checked with them
-        for key in ("outer_diameter", "width"):
-            if getattr(part, key) is None:
-                found.append(missing(f"{address}.{key}", "outer_diameter and width, or mass and moments of inertia"))
+        wanted = "outer_diameter and width, or mass and moments of inertia"
+        lacking = [key for key in ("outer_diameter", "width") if getattr(part, key) is None]
+        found += [missing(f"{address}.{key}", wanted) for key in lacking]
     yield from found
     if found:
         return
@@ -281,16 +295,3 @@ def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterato
             limit = f"at least mass x ((gap + width)/2)^2 = {least:.6g} kg m^2"
             hint = "it is that of the whole gear about its middle; or nodes = 1"
             yield Problem(f"{address}.diametral_inertia", diametral, limit, hint)
-
-
-def _given_inertia(model: Tables, address: str, part: Gear | Disk) -> Iterator[Problem]:
-    needed = {"mass": ("bending", "axial"), "polar_inertia": ("torsion", "bending"), "diametral_inertia": ("bending",)}
-    for key, motions in needed.items():
-        if getattr(part, key) is None and any(model.has(motion) for motion in motions):
-            yield missing(f"{address}.{key}", "a value beside the other inertias, 0 if it has none")
-    if isinstance(part, Disk):
-        for key in not_default(part, ("outer_diameter", "width", "bore")):
-            size = millimetres(getattr(part, key))
-            yield Problem(f"{address}.{key}", size, _NOTHING, "a disk has sizes or given inertias, not both")
-    elif part.body != GearBody():
-        yield Problem(f"{address}.body", "a table", _NOTHING, "a gear has a body or given inertias, not both")

@@ -8,7 +8,6 @@ from typing import Any
 
 from rotorgear.errors import Problem
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.operation import Point
 from rotorgear.model.parts.problems import address as address_of
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import LIBRARY
@@ -198,7 +197,15 @@ def points(model: Tables) -> Iterator[Problem]:
         if point.on_casing is None and point.place is not None:
             yield Problem(f"{address}.place", "a place", "on = 'casings.NAME' beside it, or shaft and at")
         elif point.on_casing is not None:
-            yield from _on_casing(address, point)
+            # It has a place on the surface of the casing, which moves along x, y and z.
+            if point.place is None:
+                yield Problem(
+                    f"{address}.place", "", "missing", "required on a casing: x y z of a place on its surface"
+                )
+            if point.shaft is not None or point.at is not None:
+                yield Problem(address, "on together with shaft or at", "one of the two ways to give the place")
+            if point.direction not in ("x", "y", "z"):
+                yield Problem(f"{address}.direction", f"'{point.direction}'", "x, y or z: a surface has no rotations")
         elif point.on is None and point.shaft is None:
             yield Problem(address, "neither on nor shaft", "either on = 'bearings.left' or shaft and at")
         elif point.on is not None and (point.shaft is not None or point.at is not None):
@@ -209,16 +216,6 @@ def points(model: Tables) -> Iterator[Problem]:
             )
         elif point.on is None and point.at is None:
             yield Problem(f"{address}.at", "", "missing", "required beside shaft: z on that shaft")
-
-
-def _on_casing(address: str, point: Point) -> Iterator[Problem]:
-    """A point on a casing has a place on its surface, which moves along x, y and z."""
-    if point.place is None:
-        yield Problem(f"{address}.place", "", "missing", "required on a casing: x y z of a place on its surface")
-    if point.shaft is not None or point.at is not None:
-        yield Problem(address, "on together with shaft or at", "one of the two ways to give the place")
-    if point.direction not in ("x", "y", "z"):
-        yield Problem(f"{address}.direction", f"'{point.direction}'", "x, y or z: a surface has no rotations")
 
 
 def unknown_materials(model: Tables, broken: Broken) -> Iterator[Problem]:

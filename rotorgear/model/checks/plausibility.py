@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel
@@ -81,22 +81,19 @@ _ANGLE = 4.0 * math.pi
 
 def implausible(layout: Layout) -> Iterator[str]:
     """Yield a sentence on every value that is far from all that is built."""
-    for address, value, usual, words, slips in _judged(layout):
+    judged = chain(
+        _materials(layout),
+        _shafts(layout),
+        _gears(layout),
+        *(_mesh(f"meshes.{mesh.name}", mesh) for mesh in layout.meshes),
+        *(_bearing(layout, f"bearings.{name}", bearing) for name, bearing in layout.model.bearings.items()),
+        _couplings(layout),
+        _bodies(layout),
+        _operation(layout),
+    )
+    for address, value, usual, words, slips in judged:
         if not usual[0] <= value <= usual[1]:
             yield f"{address}: {words[0]}; usual is {words[1]}: {slips[0] if value < usual[0] else slips[1]}"
-
-
-def _judged(layout: Layout) -> Iterator[Judged]:
-    yield from _materials(layout)
-    yield from _shafts(layout)
-    yield from _gears(layout)
-    for mesh in layout.meshes:
-        yield from _mesh(f"meshes.{mesh.name}", mesh)
-    for name, bearing in layout.model.bearings.items():
-        yield from _bearing(layout, f"bearings.{name}", bearing)
-    yield from _couplings(layout)
-    yield from _bodies(layout)
-    yield from _operation(layout)
 
 
 def _mass_of(layout: Layout, shaft: str) -> float:

@@ -181,7 +181,12 @@ def tooth_numbers(
             )
     ahead = {}
     for mesh_name, gears in wanted.items():
-        found = _together([(number, gear.part.teeth or 1) for gear, number in gears])
+        # The smallest number with the wanted rests by all numbers of teeth, if there is one.
+        rests = [(number, gear.part.teeth or 1) for gear, number in gears]
+        rest, divisor = rests[0]
+        period = math.lcm(*(teeth for _, teeth in rests))
+        fits = (n for n in range(rest % divisor, period, divisor) if all((n - r) % z == 0 for r, z in rests))
+        found = next(fits, None)
         if found is None:
             unknown += [gear.name for gear, _ in gears]
         else:
@@ -219,11 +224,3 @@ def _tooth(
     if is_pinion:
         return round(turns(gear, mesh.psi, half) - phase)
     return round(turns(gear, mesh.psi + math.pi, 0.5 - half) - phase)
-
-
-def _together(wanted: list[tuple[int, int]]) -> int | None:
-    """The smallest number with the wanted rests (rest, divisor) by all divisors; None where there is none."""
-    period = math.lcm(*(divisor for _, divisor in wanted))
-    rest, divisor = wanted[0]
-    fits = (n for n in range(rest % divisor, period, divisor) if all((n - r) % z == 0 for r, z in wanted))
-    return next(fits, None)

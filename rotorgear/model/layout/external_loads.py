@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.model.layout.train import Train
-from rotorgear.model.parts.load import Load, LoadHistory
+from rotorgear.model.parts.load import LoadHistory
 from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
 
@@ -64,29 +64,29 @@ def external_loads(
     held = {train.group[shaft] for shaft in fixed}
     found = []
     for name, load in model.loads.items():
-        if not load.is_torque:
-            places = places_of(f"loads.{name}")
-            shaft = places[0].shaft
-            turns = train.ratios.get(shaft, 0) != 0 and train.group[shaft] not in held
-            ratio = train.ratio(load.order_of or shaft)
-            found.append(_external(f"loads.{name}", load, places, ratio, turns))
+        if load.is_torque:
+            continue
+        address = f"loads.{name}"
+        places = places_of(address)
+        shaft = places[0].shaft
+        counted = load.order_of or shaft
+        ratio = train.ratio(counted)
+        given = np.array([*(load.force or (0.0,) * 3), *(load.moment or (0.0,) * 3)])
+        varies = load.order is not None or load.frequency is not None
+        nothing = np.zeros(6)
+        found.append(
+            ExternalLoad(
+                address=address,
+                places=places,
+                constant=load.history.mean if load.history else nothing if varies else given,
+                amplitude=given if varies else nothing,
+                order=(load.order or 0.0) * ratio,
+                frequency=load.frequency or 0.0,
+                phase=load.phase,
+                history=load.history,
+                ratio=ratio,
+                counted=counted,
+                in_train=train.ratios.get(shaft, 0) != 0 and train.group[shaft] not in held,
+            )
+        )
     return tuple(found)
-
-
-def _external(address: str, load: Load, places: tuple[Place, ...], ratio: float, turns: bool) -> ExternalLoad:
-    given = np.array([*(load.force or (0.0,) * 3), *(load.moment or (0.0,) * 3)])
-    varies = load.order is not None or load.frequency is not None
-    nothing = np.zeros(6)
-    return ExternalLoad(
-        address=address,
-        places=places,
-        constant=load.history.mean if load.history else nothing if varies else given,
-        amplitude=given if varies else nothing,
-        order=(load.order or 0.0) * ratio,
-        frequency=load.frequency or 0.0,
-        phase=load.phase,
-        history=load.history,
-        ratio=ratio,
-        counted=load.order_of or places[0].shaft,
-        in_train=turns,
-    )

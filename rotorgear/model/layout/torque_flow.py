@@ -74,8 +74,21 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
                 "The split of the torque and the mesh stiffness that depends on it don't come to agree: "
                 "give the stiffness of one mesh of the loop as a number."
             )
-    states = _states(layout, lines, squeeze, direction)
-    return State(layout, direction, tuple(applied), states, curves, faces=faces).of_kind("dynamic")
+    # The mean state of each contact from its signed force.
+    train = layout.train
+    largest = max((abs(force) for force in squeeze), default=0.0)
+    states = []
+    for contact, force in zip(lines, squeeze, strict=True):
+        pinion_sense = train.sense(contact.pinion_shaft)
+        unloaded = abs(force) <= UNLOADED * largest
+        if unloaded:  # the shaft nearer to the input is taken to drive, in its own sense
+            drives = train.depth[contact.pinion_shaft] <= train.depth[contact.gear_shaft]
+            sense = direction * (pinion_sense if drives else -pinion_sense)
+        else:
+            sense = 1 if force > 0 else -1
+        carried = 0.0 if unloaded else abs(force)
+        states.append(MeshForce(contact, carried, sense, sense == direction * pinion_sense, assumed=unloaded))
+    return State(layout, direction, tuple(applied), tuple(states), curves, faces=faces).of_kind("dynamic")
 
 
 def _solved(layout: Layout, applied: Sequence[AppliedTorque], curves: Curves) -> tuple[list[Contact], list[float]]:
@@ -102,26 +115,6 @@ def _loaded(layout: Layout, lines: Sequence[Contact], squeeze: Sequence[float], 
                 load, sense=1 if mean >= 0.0 else -1, misalignments=askew(faces.get(mesh.name))
             )
     return found
-
-
-def _states(
-    layout: Layout, lines: Sequence[Contact], squeeze: Sequence[float], direction: int
-) -> tuple[MeshForce, ...]:
-    """Mean state of each contact from its signed force."""
-    train = layout.train
-    largest = max((abs(force) for force in squeeze), default=0.0)
-    states = []
-    for contact, force in zip(lines, squeeze, strict=True):
-        pinion_sense = train.sense(contact.pinion_shaft)
-        unloaded = abs(force) <= UNLOADED * largest
-        if unloaded:  # the shaft nearer to the input is taken to drive, in its own sense
-            drives = train.depth[contact.pinion_shaft] <= train.depth[contact.gear_shaft]
-            sense = direction * (pinion_sense if drives else -pinion_sense)
-        else:
-            sense = 1 if force > 0 else -1
-        carried = 0.0 if unloaded else abs(force)
-        states.append(MeshForce(contact, carried, sense, sense == direction * pinion_sense, assumed=unloaded))
-    return tuple(states)
 
 
 def applied_torques(layout: Layout, direction: int | None = None) -> tuple[list[AppliedTorque], list[Problem]]:

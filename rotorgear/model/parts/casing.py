@@ -76,13 +76,9 @@ class TextOrTable:
         return {"anyOf": [{"type": "string"}, table]}
 
 
-def _one_or_several(value: Any) -> Any:
-    return {ONLY_MESH: value} if isinstance(value, str) else value
-
-
 Files = Annotated[
     dict[Name, str],
-    BeforeValidator(_one_or_several),
+    BeforeValidator(lambda value: {ONLY_MESH: value} if isinstance(value, str) else value),
     WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "additionalProperties": {"type": "string"}}]}),
 ]
 

@@ -221,17 +221,18 @@ def _parse_station(value: Any) -> float | str:
         raise refuse("a position along z such as '120 mm', or 'start' or 'end' of the shaft") from error
 
 
-def _station_schema() -> dict[str, Any]:
-    length = Unit("length").schema()
-    ends = {"type": "string", "enum": ["start", "end"]}
-    return {
-        **length,
-        "anyOf": [*length["anyOf"], ends],
-        "description": "z of the place, or 'start' or 'end' of the shaft",
-    }
-
-
-Station = Annotated[float | Literal["start", "end"], BeforeValidator(_parse_station), WithJsonSchema(_station_schema())]
+_LENGTH = Unit("length").schema()
+Station = Annotated[
+    float | Literal["start", "end"],
+    BeforeValidator(_parse_station),
+    WithJsonSchema(
+        {
+            **_LENGTH,
+            "anyOf": [*_LENGTH["anyOf"], {"type": "string", "enum": ["start", "end"]}],
+            "description": "z of the place, or 'start' or 'end' of the shaft",
+        }
+    ),
+]
 
 
 def listed(count: int, expected: str) -> BeforeValidator:
