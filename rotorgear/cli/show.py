@@ -15,7 +15,6 @@ import rotorgear as rg
 from rotorgear.cli.console import console, progress_bar
 from rotorgear.cli.run import Call
 from rotorgear.errors import AnalysisError
-from rotorgear.progress import Progress
 
 # Modes that modal draws and writes for ParaView unless --shapes says otherwise.
 _LOWEST = 6
@@ -144,19 +143,16 @@ def _write_vtk(call: Call, result: Any, folder: Path) -> None:
             case "casing":
                 paths = rg.write_casing_vtk(result, folder)
             case "mesh":
-                paths = _write_teeth(call, result, folder, progress)
+                from rotorgear.analysis.teeth.inside_teeth import tooth_fields
+                from rotorgear.export.vtk_parts import write_tooth_vtk
+
+                # Both tooth meshes at one position of a mesh cycle.
+                asked = {"torque": call["torque"], "preset": result.preset, "body": call["body"], "at": call["at"]}
+                fields = tooth_fields(call.source, result.mesh, **asked, progress=progress)
+                paths = write_tooth_vtk(fields, folder)
             case _:
                 paths = rg.write_deflections(result, folder, progress=progress)
     _tell("file", paths, folder, hint)
-
-
-def _write_teeth(call: Call, result: Any, folder: Path, progress: Progress) -> list[Path]:
-    """Write both tooth meshes at one position of a mesh cycle."""
-    from rotorgear.analysis.teeth.inside_teeth import tooth_fields
-    from rotorgear.export.vtk_parts import write_tooth_vtk
-
-    asked = {"torque": call["torque"], "preset": result.preset, "body": call["body"], "at": call["at"]}
-    return write_tooth_vtk(tooth_fields(call.source, result.mesh, **asked, progress=progress), folder)
 
 
 def _shapes(call: Call, result: Any) -> list[int]:

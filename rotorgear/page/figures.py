@@ -54,8 +54,11 @@ def svg_of(picture: Any, label: str) -> str:
             out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
         )
     text = out.getvalue()
-    if len(text) > _LARGEST:
-        return _png_of(one.figure.figure, label)
+    if len(text) > _LARGEST:  # very many lines as SVG would make the page heavy
+        image = BytesIO()
+        one.figure.figure.savefig(image, format="png", dpi=150)
+        data = base64.b64encode(image.getvalue()).decode("ascii")
+        return f'<img alt="{escape(label)}" src="data:image/png;base64,{data}">'
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
@@ -66,14 +69,6 @@ def svg_of(picture: Any, label: str) -> str:
     return re.sub(
         r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', lambda found: f'<svg viewBox="{found[1]}" {head}>', text, count=1
     )
-
-
-def _png_of(figure: Any, label: str) -> str:
-    """A picture of very many lines as an image element: as SVG it would make the page heavy."""
-    out = BytesIO()
-    figure.savefig(out, format="png", dpi=150)
-    data = base64.b64encode(out.getvalue()).decode("ascii")
-    return f'<img alt="{escape(label)}" src="data:image/png;base64,{data}">'
 
 
 class Painter:

@@ -87,7 +87,13 @@ def report(
     source = "" if isinstance(model, Model) else Path(model).name
     built = model if isinstance(model, Model) else load(model)
     lines = read_rig_lines(rig) if isinstance(rig, str | Path) else tuple(rig)
-    studies = [_study(path) for path in study]
+    studies: list[Any] = []
+    for path in study:
+        stored = read(path)
+        if "convergence" not in stored.kind:
+            expected = "a convergence study was expected (rotorgear accuracy --save)"
+            raise AnalysisError(f"{path}: {expected}, this is a {stored.kind} result")
+        studies.append(stored)
     start = time.process_time()
     found = computed(built, lines, grade, progress)
     found.seconds_of_all = time.process_time() - start
@@ -108,30 +114,17 @@ def report(
         RESULTS: {name: result.to_dict() for name, result in found.results.items()},
     }
     progress(0.9, "page")
-    text = _page(built, numbers, list(sections(found, studies)), _turntable(found.results, turntable))
+    modes = found.results.get("modal")
+    surfaces = ""
+    if turntable and isinstance(modes, ModalResult):
+        from rotorgear.page.turntable import scene
+
+        surfaces = scene(modes)
+    text = _page(built, numbers, list(sections(found, studies)), surfaces)
     with replacing(target) as scratch:
         scratch.write_text(text, encoding="utf-8")
     progress(1.0, "done")
     return Report(target, dict(found.results), dict(found.missing), numbers)
-
-
-def _study(path: str | Path) -> Any:
-    stored = read(path)
-    if "convergence" not in stored.kind:
-        raise AnalysisError(
-            f"{path}: a convergence study was expected (rotorgear accuracy --save), this is a {stored.kind} result"
-        )
-    return stored
-
-
-def _turntable(results: dict[str, Result], wanted: bool) -> str:
-    """The scene of the turntable as JSON, or nothing."""
-    modes = results.get("modal")
-    if not wanted or not isinstance(modes, ModalResult):
-        return ""
-    from rotorgear.page.turntable import scene
-
-    return scene(modes)
 
 
 def _page(model: Model, numbers: dict[str, Any], parts: list[Any], turntable: str) -> str:

@@ -122,22 +122,16 @@ class CasingSurvey(Result, kind="casing"):
             heads = ("mode", "free", "mesh err.", "held", "mesh err.", "reduced", "reduction err.")
             yield grid(modes, *heads, left=0, caption=f"Modes of casing {name}")
             yield from ("Frequencies in Hz, without rigid modes; errors are relative estimates of frequencies.", "")
-            point = [Column(x, "point_m", _millimetres, "mm", entry=(j,)) for j, x in enumerate("xyz")]
+            # A coordinate below 10 um is a mesh's own rounding of a zero; stiffness in MN/m and MN m/rad.
+            point = [
+                Column(x, "point_m", lambda x: f"{x:.4g}" if abs(x) >= 0.01 else "0", "mm", entry=(j,))
+                for j, x in enumerate("xyz")
+            ]
             stiffness = [
-                Column(f"k_{x}", "stiffness", _mega, entry=(i, i))
+                Column(f"k_{x}", "stiffness", lambda k: f"{1e-6 * k:.4g}", entry=(i, i))
                 for i, x in enumerate(("x", "y", "z", "rx", "ry", "rz"))
             ]
             top = ("casings", name)
             yield table_of(row, "seats", "name", *point, *stiffness, top=top, caption=f"Seats of casing {name}")
             others = row.seats[0].others if row.seats else "free"
             yield f"Points in mm; stiffness in MN/m and MN m/rad, the other seats {others}."
-
-
-def _millimetres(x: float) -> str:
-    """A coordinate in mm; what is below 10 um is a mesh's own rounding of a zero."""
-    return f"{x:.4g}" if abs(x) >= 0.01 else "0"
-
-
-def _mega(stiffness: float) -> str:
-    """A stiffness in MN/m or MN m/rad."""
-    return f"{1e-6 * stiffness:.4g}"

@@ -98,7 +98,9 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
         yield heading(f"{title}: {kind} critical speeds to {self.top_speed * RPM_PER_RAD_S:.6g} rpm")
         part = Column("part %", "participation", ".2f", "%", where=lambda one: one.excited, without="none")
         columns = ("speed", "frequency_hz", "line", *(("damping_ratio",) if self.damped else ()), "whirl", part)
-        yield table_of(self, "speeds", *columns, "description", at=_place)
+        # A critical speed is written by columns.
+        keys = {"speed_rpm": "critical_speed_rpm"}
+        yield table_of(self, "speeds", *columns, "description", at=lambda k, key: (keys.get(key, key), k))
         # The residuals' power of ten; below 1e-12 they are rounding.
         bound = 10.0 ** math.ceil(math.log10(max(self.worst_residual, 1e-12)))
         worst = max((one.error_estimate for one in self.speeds), default=0.0)
@@ -194,8 +196,3 @@ class CriticalMap(ModelResult, kind="critical_map"):
         title = f"Undamped map: {self.line}, rpm of the input shaft"
         yield grid(rows, "N/m", "critical speeds", left=0, last=True, caption=title, titled=True)
         yield "f forward, b backward, m mixed, p planar for the shaft of the line; no letter: torsional or axial"
-
-
-def _place(k: int, key: str) -> tuple[str, int]:
-    """Where a number of a critical speed is written: in the column of its key."""
-    return ("critical_speed_rpm" if key == "speed_rpm" else key, k)

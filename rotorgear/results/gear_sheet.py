@@ -284,8 +284,16 @@ class GearSheet(Result, kind="gear"):
         yield heading(self.title or "Gears")
         for first in range(0, len(self.gears), _ABREAST):
             yield from ("", upright(self, "gears", "gear", *_gear_lines(), first=first, count=_ABREAST))
+        # The involutes that are left are told where a tip reaches below one of them.
+        cut = Column(
+            "",
+            "involute_contact_ratio",
+            where=lambda mesh: mesh.involute_contact_ratio < mesh.transverse_contact_ratio * (1.0 - 1e-9),
+        )
+        said = [one.name for one in MeshSheetRow.declarations.values() if one.column or one.name == cut.value]
+        lines = ["name", *(cut if name == cut.value else name for name in said)]
         for first in range(0, len(self.meshes), _ABREAST):
-            yield from ("", upright(self, "meshes", "mesh", *_mesh_lines(), first=first, count=_ABREAST))
+            yield from ("", upright(self, "meshes", "mesh", *lines, first=first, count=_ABREAST))
         yield from ("", *self.remarks())
         both = (("gears", self.gears), ("meshes", self.meshes))
         own = [Note(f"{table}.{one.name}", text) for table, members in both for one in members for text in one.warnings]
@@ -298,6 +306,12 @@ class GearSheet(Result, kind="gear"):
 
 def _gear_lines() -> Iterator[Column | str]:
     """What the sheet says of a gear, in its order: the name, then each line."""
+
+    def allowances(gear: GearRow) -> str:
+        upper = 1e6 * gear.upper_thickness_allowance_m
+        lower = 1e6 * gear.lower_thickness_allowance_m
+        return f"{upper:g} {lower:g}" if lower else "-"
+
     allowed = ("span_upper_m", "span_lower_m", "over_balls_upper_m", "over_balls_lower_m")
     yield "name"
     for one in GearRow.declarations.values():
@@ -306,27 +320,7 @@ def _gear_lines() -> Iterator[Column | str]:
         elif one.name in allowed:
             yield Column("", one.name, where=lambda gear: bool(gear.lower_thickness_allowance_m))
         elif one.name == "tip_relief_m":
-            yield Column("thickness allowances um", _allowances)
+            yield Column("thickness allowances um", allowances)
             yield Column("", one.name, where=lambda gear: bool(gear.tip_relief_m))
         elif one.column:
             yield one.name
-
-
-def _mesh_lines() -> Iterator[Column | str]:
-    """The same of a mesh; the involutes that are left are told where a tip reaches below one of them."""
-    yield "name"
-    for one in MeshSheetRow.declarations.values():
-        if one.name == "involute_contact_ratio":
-            yield Column("", one.name, where=_is_cut)
-        elif one.column:
-            yield one.name
-
-
-def _is_cut(mesh: MeshSheetRow) -> bool:
-    return mesh.involute_contact_ratio < mesh.transverse_contact_ratio * (1.0 - 1e-9)
-
-
-def _allowances(gear: GearRow) -> str:
-    upper = 1e6 * gear.upper_thickness_allowance_m
-    lower = 1e6 * gear.lower_thickness_allowance_m
-    return f"{upper:g} {lower:g}" if lower else "-"

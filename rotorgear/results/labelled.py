@@ -86,16 +86,13 @@ def _columns(record: Record, prefix: str = "") -> Iterator[Series]:
                     yield Series(f"{name}.{key}", declared.axes[1:], np.asarray(entry), declared)
         elif isinstance(value, np.ndarray):
             yield Series(name, declared.axes, value, declared)
-        elif isinstance(value, tuple) and declared.axes and not _left_out(record, declared.name, value):
+        elif isinstance(value, tuple) and declared.axes:
+            # Empty by its default, a field says that the model has nothing of its kind: it isn't counted by its axis.
+            if value == () and type(record).__dataclass_fields__[declared.name].default == ():
+                continue
             texts = np.empty(len(value), dtype=object)
             texts[:] = value
             yield Series(name, declared.axes, texts, declared)
-
-
-def _left_out(record: Record, name: str, value: tuple[Any, ...]) -> bool:
-    """Whether a field is empty because the model has nothing of its kind, as its default says: it isn't counted by its axis."""
-    default = type(record).__dataclass_fields__[name].default
-    return value == () and default == ()
 
 
 def data_set(result: Record) -> Any:

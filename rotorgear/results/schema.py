@@ -15,7 +15,7 @@ two of them are equal if all their values are, arrays by their entries and NaN t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, dataclass_transform, overload
@@ -107,12 +107,8 @@ class Declared:
                 yield entry
                 continue
             key = key_of(self.name, self.unit) if entry == _SAME_KEY else entry
-            factor: float | None = None
-            unit = self.unit
-            for (stored, ending), (in_file, times) in _WRITTEN_UNITS.items():
-                if self.unit == stored and key.endswith(ending):
-                    unit = in_file
-                    factor = times
+            converted = (into for (si, end), into in _WRITTEN_UNITS.items() if self.unit == si and key.endswith(end))
+            unit, factor = next(converted, (self.unit, None))
             yield Written(key, _scaled(factor), unit)
 
 
@@ -147,7 +143,10 @@ def _arranged(record: Record, values: Any, own: tuple[str, ...], axes: tuple[str
     slices = np.moveaxis(values, k, 0)
     if not named:
         return [_arranged(record, one, rest, axes[1:]) for one in slices]
-    names = "xyz" if axis in ("xyz", "component") else _names_along(record, axis)
+    names: Sequence[str] = "xyz"
+    if axis not in ("xyz", "component"):  # the record's first field of texts over this axis alone
+        naming = (one for one in record.declarations.values() if one.axes == (axis,) and one.words)
+        names = getattr(record, next(naming).name)
     if axes[1:2] == ("helix",):
         helices: dict[str, list[Any]] = {}
         for name, one in zip(names, slices, strict=True):
@@ -155,13 +154,6 @@ def _arranged(record: Record, values: Any, own: tuple[str, ...], axes: tuple[str
         return helices
     # Of the six components of a motion, x, y and z are written.
     return {name: _arranged(record, one, rest, axes[1:]) for name, one in zip(names, slices, strict=False)}
-
-
-def _names_along(record: Record, axis: str) -> tuple[str, ...]:
-    """The names that a record has along an axis: its first field of texts over that axis alone."""
-    named = (one for one in record.declarations.values() if one.axes == (axis,) and one.words)
-    names: tuple[str, ...] = getattr(record, next(named).name)
-    return names
 
 
 def _scaled(factor: float | None) -> Callable[[Any, Any], Any]:
@@ -202,31 +194,15 @@ def of(
         shown: unit that tables show it in, where neither the heading ends with it nor the key is in it.
         default, default_factory, kw_only: as of a dataclass field.
     """
-    declared = _declared(
-        "", label, unit, axes, note, form, record, json, stored, computed=False, column=column, shown=shown
-    )
+    keys = _keys(json)
+    declared = Declared("", label, unit, axes, note, form, record, keys, stored, False, column, shown, next(_places))
     more: dict[str, Any] = {"default": default} if default is not MISSING else {}
     more |= {"default_factory": default_factory} if default_factory is not MISSING else {}
     return field(metadata={"declared": declared}, kw_only=kw_only, **more)
 
 
-def _declared(
-    name: str,
-    label: str,
-    unit: str,
-    axes: tuple[str, ...],
-    note: str,
-    form: str | Callable[[Any], str],
-    record: type[Record] | None,
-    json: str | Written | tuple[str | Written, ...] | None,
-    stored: bool,
-    *,
-    computed: bool,
-    column: str,
-    shown: str,
-) -> Declared:
-    keys = () if json is None else json if isinstance(json, tuple) else (json,)
-    return Declared(name, label, unit, axes, note, form, record, keys, stored, computed, column, shown, next(_places))
+def _keys(json: str | Written | tuple[str | Written, ...] | None) -> tuple[str | Written, ...]:
+    return () if json is None else json if isinstance(json, tuple) else (json,)
 
 
 class Derived(Generic[T]):
@@ -260,11 +236,12 @@ def derived(
 
     def declare(function: Callable[[Any], T]) -> Derived[T]:
         name = function.__name__
-        declared = _declared(
-            name, label, unit, axes, note, form, record, json, False, computed=True, column=column, shown=shown
-        )
+        keys = _keys(json)
         words = "str" in str(function.__annotations__.get("return"))
-        return Derived(function, replace(declared, words=words))
+        declared = Declared(
+            name, label, unit, axes, note, form, record, keys, False, True, column, shown, next(_places), words
+        )
+        return Derived(function, declared)
 
     return declare
 

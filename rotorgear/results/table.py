@@ -410,16 +410,16 @@ def _sides(table: Table) -> Iterator[bool]:
 
 def as_html(blocks: Iterable[Block], most: int) -> str:
     """The blocks for a notebook: each line a paragraph, of each table so many rows at most."""
-    return "".join(_html_of(block, most) for block in blocks if block)
-
-
-def _html_of(block: Block, most: int) -> str:
-    if isinstance(block, Table):
-        return html_table(block, most=most)
-    if isinstance(block, Line):
-        bold = f"<b>{escape(block.bold)}</b>" if block.bold else ""
-        return f"<p>{bold}{escape(block.rest)}</p>"
-    return f"<p>{escape(block)}</p>"
+    parts = []
+    for block in filter(None, blocks):
+        if isinstance(block, Table):
+            parts.append(html_table(block, most=most))
+        elif isinstance(block, Line):
+            bold = f"<b>{escape(block.bold)}</b>" if block.bold else ""
+            parts.append(f"<p>{bold}{escape(block.rest)}</p>")
+        else:
+            parts.append(f"<p>{escape(block)}</p>")
+    return "".join(parts)
 
 
 def html_table(table: Table, *, top: tuple[str | int, ...] | None = None, most: int | None = None) -> str:

@@ -10,7 +10,6 @@ from rotorgear.model.checks.sizes import six_by_six
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.casing import Seat
 from rotorgear.model.parts.fields import MOTIONS
-from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.problems import missing, not_default, shown, told
 from rotorgear.model.parts.tables import Tables
 
@@ -114,34 +113,31 @@ def gear_bodies(model: Tables) -> Iterator[Problem]:
         why = f"the body of gears.{meshed[0]} moves in all directions"
         yield from _all_motions(model, "a gear body from a mesh", why)
     for name, gear in model.gears.items():
-        if gear.body.mesh is not None:
-            yield from _meshed(f"gears.{name}.body", gear)
-        for key in not_default(gear.body, _OF_MESHES) if gear.body.mesh is None else ():
-            what = "it says something of the mesh"
-            yield Problem(f"gears.{name}.body.{key}", "without a mesh", "mesh beside it", what)
-
-
-def _meshed(address: str, gear: Gear) -> Iterator[Problem]:
-    if gear.body.unit is None:
-        yield missing(f"{address}.unit", _UNIT)
-    for key, what in (("seat", "its bore on the shaft"), ("rim", "the face below the teeth")):
-        place = getattr(gear.body, key)
-        if place is None:
-            yield Problem(f"{address}.{key}", "", "missing", f"required beside mesh: {what}, such as a set of faces")
-        else:
-            yield from _seat(f"{address}.{key}", place)
-    shape = "the mesh has this shape already"
-    cut = "teeth cut on the shaft have no bore; leave the mesh out"
-    place = "an elastic body sits on its shaft at one place: say nodes = 1"
-    yield from told(
-        address,
-        *(
-            (key, True, "beside a mesh", "a mesh or sizes of a blank", shape)
-            for key in not_default(gear.body, _OF_SIZES)
-        ),
-        ("mesh", gear.integral, "of a gear that is cut on its shaft", "integral = false", cut),
-        ("mesh", gear.node_count == 2, "of a herringbone gear with two nodes", "one node", place),
-    )
+        body = gear.body
+        address = f"gears.{name}.body"
+        if body.mesh is None:
+            for key in not_default(body, _OF_MESHES):
+                what = "it says something of the mesh"
+                yield Problem(f"{address}.{key}", "without a mesh", "mesh beside it", what)
+            continue
+        if body.unit is None:
+            yield missing(f"{address}.unit", _UNIT)
+        for key, what in (("seat", "its bore on the shaft"), ("rim", "the face below the teeth")):
+            face = getattr(body, key)
+            if face is None:
+                wanted = f"required beside mesh: {what}, such as a set of faces"
+                yield Problem(f"{address}.{key}", "", "missing", wanted)
+            else:
+                yield from _seat(f"{address}.{key}", face)
+        beside = ("beside a mesh", "a mesh or sizes of a blank", "the mesh has this shape already")
+        cut = "teeth cut on the shaft have no bore; leave the mesh out"
+        place = "an elastic body sits on its shaft at one place: say nodes = 1"
+        yield from told(
+            address,
+            *((key, True, *beside) for key in not_default(body, _OF_SIZES)),
+            ("mesh", gear.integral, "of a gear that is cut on its shaft", "integral = false", cut),
+            ("mesh", gear.node_count == 2, "of a herringbone gear with two nodes", "one node", place),
+        )
 
 
 def counted_twice(address: str, mesh: MeshLayout) -> Iterator[Problem]:

@@ -137,20 +137,16 @@ def parse_history(text: str, name: str) -> dict[str, Any]:
                 f"rising {over[0]}s; that of {name}:{number} is {how} the row before: sort the rows, each once"
             )
     if over[0] == "angle":
-        places, by_name = _one_turn(places, by_name, name)
+        # Angles go from 0 to below a whole turn; a last row at 360 deg repeats the first one.
+        if places[0] < 0.0 or places[-1] > _TURN * (1.0 + 1e-9):
+            raise refuse(f"angles from 0 to 360 deg, one turn that begins again; {name} goes beyond")
+        if places[0] == 0.0 and places[-1] > _TURN * (1.0 - 1e-9):
+            size = max(abs(x) for values in by_name.values() for x in values)
+            if any(abs(values[-1] - values[0]) > 1e-9 * size for values in by_name.values()):
+                raise refuse(f"the same values at 360 deg as at 0 deg, where the turn begins again; {name} has others")
+            places = places[:-1]
+            by_name = {column: values[:-1] for column, values in by_name.items()}
     return {"over": over[0], "places": places, "components": tuple(by_name), "values": tuple(by_name.values())}
-
-
-def _one_turn(places: Any, by_name: dict[str, Any], name: str) -> tuple[Any, dict[str, Any]]:
-    """Angles from 0 to below a whole turn; a last row at 360 deg repeats the first one."""
-    if places[0] < 0.0 or places[-1] > _TURN * (1.0 + 1e-9):
-        raise refuse(f"angles from 0 to 360 deg, one turn that begins again; {name} goes beyond")
-    if places[0] == 0.0 and places[-1] > _TURN * (1.0 - 1e-9):
-        size = max(abs(x) for values in by_name.values() for x in values)
-        if any(abs(values[-1] - values[0]) > 1e-9 * size for values in by_name.values()):
-            raise refuse(f"the same values at 360 deg as at 0 deg, where the turn begins again; {name} has others")
-        return places[:-1], {column: values[:-1] for column, values in by_name.items()}
-    return places, by_name
 
 
 def _column(cell: str, line: str) -> tuple[str, str, str]:

@@ -87,7 +87,21 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
         if place in points:
             raise refuse(f"each point of a flank once; {line} repeats one")
         points[place] = found["deviation"]
-    grids = [_grid(tooth, side, points, name) for (tooth, side), points in flanks.items()]
+    # The points of each flank fill a grid.
+    grids = []
+    for (tooth, side), points in flanks.items():
+        places = sorted({place for place, _ in points})
+        z = sorted({station for _, station in points})
+        empty = [(place, station) for place in places for station in z if (place, station) not in points]
+        if empty:
+            whose = " ".join([*([] if tooth is None else [f"tooth {tooth}"]), *([f"{side} flank"] if side else [])])
+            where = f"{1e3 * empty[0][0]:g} mm at z = {1e3 * empty[0][1]:g} mm"
+            raise refuse(
+                f"a whole grid, each place at each z; {name}{f' ({whose})' if whose else ''} lacks {len(empty)} of "
+                f"{len(places)} x {len(z)} points, the first {where}"
+            )
+        rows_of_z = [[points[place, station] for station in z] for place in places]
+        grids.append({"tooth": tooth, "flank": side, "places": places, "z": z, "deviation": rows_of_z})
     return {"by": by[0], "grids": grids}
 
 
@@ -156,24 +170,6 @@ def _cell(cell: str, column: str, unit: str, line: str) -> Any:
     if not math.isfinite(value):
         raise refuse(f"a number as {column}; {line} has '{cell}'") from None
     return value
-
-
-def _grid(tooth: int | None, side: str | None, points: dict[tuple[float, float], float], name: str) -> dict[str, Any]:
-    """The points of one flank as a grid, which they must fill."""
-    places = sorted({place for place, _ in points})
-    z = sorted({station for _, station in points})
-    whose = " ".join(
-        word for word in ("" if tooth is None else f"tooth {tooth}", f"{side} flank" if side else "") if word
-    )
-    empty = [(place, station) for place in places for station in z if (place, station) not in points]
-    if empty:
-        where = f"{1e3 * empty[0][0]:g} mm at z = {1e3 * empty[0][1]:g} mm"
-        raise refuse(
-            f"a whole grid, each place at each z; {name}{f' ({whose})' if whose else ''} lacks {len(empty)} of "
-            f"{len(places)} x {len(z)} points, the first {where}"
-        )
-    rows = [[points[place, station] for station in z] for place in places]
-    return {"tooth": tooth, "flank": side, "places": places, "z": z, "deviation": rows}
 
 
 TopographyFile = Annotated[
