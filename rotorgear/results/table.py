@@ -424,32 +424,29 @@ def as_html(blocks: Iterable[Block], most: int) -> str:
 
 def html_table(table: Table, *, top: tuple[str | int, ...] | None = None, most: int | None = None) -> str:
     """A table as HTML; with `top`, the place of its result in the page's JSON output, each number says its own place."""
+
+    def shown(cell: Cell, left: bool) -> str:
+        text = escape(cell.text).replace("\n", "<br>")
+        if not left:
+            text = "–" if text == "-" else text.replace("-", "−")
+            key = escape(pointer((*top, *cell.path))) if cell.path and top is not None and text != "–" else ""
+            place = f' data-key="{key}" data-factor="{cell.factor}"' if key else ""
+            return f'<td class="number"{place}>{text}</td>'
+        kind = cell.text.replace(" ", "-") if cell.text in _VERDICTS else "short" if len(cell.text) < 8 else ""
+        return f'<td class="{kind}">{text}</td>' if kind else f"<td>{text}</td>"
+
     rows = table.rows[:most]
     sides = list(_sides(table))
     heads = "".join(
         f'<th scope="col"{"" if left else " class=number"}>{escape(column.label or column.heading)}</th>'
         for column, left in zip(table.columns, sides, strict=True)
     )
-    body = "\n".join(
-        "<tr>" + "".join(_html_cell(cell, left, top) for cell, left in zip(row, sides, strict=True)) + "</tr>"
-        for row in rows
-    )
+    body = "\n".join("<tr>" + "".join(map(shown, row, sides)) + "</tr>" for row in rows)
     rest = len(table.rows) - len(rows)
     more = f"\n<tr><td colspan={len(table.columns)}>... and {rest} more rows</td></tr>" if rest else ""
     caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
     head = f"<thead><tr>{heads}</tr></thead>" if table.headed else ""
     return f"<table>\n{caption}{head}\n<tbody>\n{body}{more}\n</tbody>\n</table>\n"
-
-
-def _html_cell(cell: Cell, left: bool, top: tuple[str | int, ...] | None) -> str:
-    text = escape(cell.text).replace("\n", "<br>")
-    if not left:
-        text = "–" if text == "-" else text.replace("-", "−")
-        key = escape(pointer((*top, *cell.path))) if cell.path and top is not None and text != "–" else ""
-        place = f' data-key="{key}" data-factor="{cell.factor}"' if key else ""
-        return f'<td class="number"{place}>{text}</td>'
-    kind = cell.text.replace(" ", "-") if cell.text in _VERDICTS else "short" if len(cell.text) < 8 else ""
-    return f'<td class="{kind}">{text}</td>' if kind else f"<td>{text}</td>"
 
 
 # What a rule says of a part, which the page shows in its colour.

@@ -49,7 +49,19 @@ def pressure_angle_problems(address: str, angle: float | None) -> Iterator[Probl
 def gear_problems(model: Tables) -> Iterator[Problem]:
     """Yield what is missing or impossible in the teeth of each gear by itself."""
     for name, gear in model.gears.items():
-        yield from _lumped_gear(f"gears.{name}", gear) if gear.lumped else _toothed_gear(f"gears.{name}", gear)
+        address = f"gears.{name}"
+        if not gear.lumped:
+            yield from _toothed_gear(address, gear)
+            continue
+        for key in not_default(gear, _OF_TEETH):
+            why = "a gear has teeth with a module or a base_radius, not both"
+            yield Problem(f"{address}.{key}", "a value", _NOTHING, why)
+        yield from _helix(address, gear, "base_helix_angle")
+        yield from pressure_angle_problems(f"{address}.transverse_pressure_angle", gear.transverse_pressure_angle)
+        if gear.kind == "herringbone" and gear.width is None:
+            yield missing(f"{address}.width", "width of one helix, which with the gap places the two helices")
+        if not inertia_is_given(gear) and gear.body.mesh is None:
+            yield missing(f"{address}.mass", "mass and moments of inertia of a gear that is given by its base radius")
 
 
 def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
@@ -74,18 +86,6 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
         yield from (Problem(address, "", text) for text in wrong)
     elif geometry:
         yield from _teeth(address, gear, geometry)
-
-
-def _lumped_gear(address: str, gear: Gear) -> Iterator[Problem]:
-    for key in not_default(gear, _OF_TEETH):
-        why = "a gear has teeth with a module or a base_radius, not both"
-        yield Problem(f"{address}.{key}", "a value", _NOTHING, why)
-    yield from _helix(address, gear, "base_helix_angle")
-    yield from pressure_angle_problems(f"{address}.transverse_pressure_angle", gear.transverse_pressure_angle)
-    if gear.kind == "herringbone" and gear.width is None:
-        yield missing(f"{address}.width", "width of one helix, which with the gap places the two helices")
-    if not inertia_is_given(gear) and gear.body.mesh is None:
-        yield missing(f"{address}.mass", "mass and moments of inertia of a gear that is given by its base radius")
 
 
 def _helix(address: str, gear: Gear, key: str) -> Iterator[Problem]:

@@ -99,25 +99,22 @@ def put_together(
         mesh = min(open_ones or ready, key=lambda mesh: min(train.depth[gear.shaft] for gear in mesh.gears))
         waiting.remove(mesh)
         if reached[mesh.name] == 2:
-            done.loops.append(_closed(done, mesh, fixed))
+            # The clocking of a gear that is free yet closes the loop; without one a rest is left.
+            rest = _wrapped(sum(_pitches(done, mesh, gear) for gear in mesh.gears) + 0.5, 1.0)
+            rest = 0.0 if abs(rest) < 1e-9 else rest
+            loop = Loop(mesh.name, "", 0.0, rest)
+            for gear in mesh.gears:
+                if not loop.gear and gear.name not in fixed and gear.name not in done.clocking:
+                    pitch = 2.0 * math.pi / (gear.part.teeth or 1)
+                    done.clocking[gear.name] = _wrapped(pitch * rest, pitch)
+                    loop = Loop(mesh.name, gear.name, done.clocking[gear.name], rest)
+            done.loops.append(loop)
         else:
             wanted, known = mesh.gears if mesh.gear.shaft in done.shaft else (mesh.gear, mesh.pinion)
             fit = _pitches(done, mesh, known) % 1.0 + 0.5
             tooth = _towards_pitch_point(mesh, wanted) + 2.0 * math.pi / (wanted.part.teeth or 1) * fit
             done.shaft[wanted.shaft] = tooth - done.clocking.get(wanted.name, 0.0)
         fixed |= {gear.name for gear in mesh.gears}
-
-
-def _closed(done: Assembly, mesh: MeshLayout, fixed: set[str]) -> Loop:
-    """Close a loop by the clocking of a gear that is free yet, or leave a rest."""
-    rest = _wrapped(sum(_pitches(done, mesh, gear) for gear in mesh.gears) + 0.5, 1.0)
-    rest = 0.0 if abs(rest) < 1e-9 else rest
-    for gear in mesh.gears:
-        if gear.name not in fixed and gear.name not in done.clocking:
-            pitch = 2.0 * math.pi / (gear.part.teeth or 1)
-            done.clocking[gear.name] = _wrapped(pitch * rest, pitch)
-            return Loop(mesh.name, gear.name, done.clocking[gear.name], rest)
-    return Loop(mesh.name, "", 0.0, rest)
 
 
 def _pitches(done: Assembly, mesh: MeshLayout, gear: GearLayout) -> float:
