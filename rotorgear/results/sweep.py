@@ -11,6 +11,7 @@ from rotorgear.results.portrait import ContactLines, Portrait, Portraits, Spectr
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, written
+from rotorgear.results.transient import SteadyContact
 
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
@@ -69,37 +70,16 @@ class Parameter(Record):
     unit: str = of("unit", note=' of its values, or `""` for SI')
 
 
-class SweepContact(Record):
+class SweepContact(SteadyContact):
     """A contact in one run."""
 
-    name: str = of("name", note=": mesh and helix")
-    static_force_n: float = of(
-        "static force",
-        "N",
-        note=" along the flank normal in static equilibrium, without excitation; negative on the coast flank",
-    )
     static_deflection_m: float = of("static force over mean stiffness", "m")
     peak_to_peak_m: float = of(
         "penetration of the flanks, peak to peak",
         "m",
         note=": displacement along their normal less the error of the teeth",
     )
-    peak_to_peak_transmission_error_m: float = of(
-        "transmission error, peak to peak", "m", note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2"
-    )
-    peak_to_peak_approach_m: float = of(
-        "approach, peak to peak", "m", note=" of the flanks in the transverse plane, bending and axial motion included"
-    )
     rms_approach_m: float = of("root mean square of the approach about its mean", "m")
-    mean_force_n: float = of("mean force", "N")
-    rms_force_n: float = of("root mean square of the force about its mean", "N")
-    largest_force_n: float = of("largest force", "N")
-    dynamic_factor: float = of(
-        "dynamic factor", note=": largest over static force; `null` without load on the working flank"
-    )
-    driving_share: float = of("share of the time on the working flank")
-    apart_share: float = of("contact-loss ratio")
-    back_share: float = of("share of the time on the coast flank", note=" (impact time ratio)")
     losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
     statistics_error: np.ndarray = of(
         "estimated errors of the statistics",
@@ -107,12 +87,6 @@ class SweepContact(Record):
         "statistic",
         note=", each in its unit, by a run with half or twice the steps",
     )
-
-    @property
-    def peak_to_peak_dte_m(self) -> float:
-        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
-        return self.peak_to_peak_approach_m
 
     @property
     def rms_dte_m(self) -> float:

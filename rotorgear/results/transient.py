@@ -71,25 +71,20 @@ class EnergyLedger(Record):
     )
 
 
-class ContactStatistics(Record):
-    """A contact in the time that counts."""
+class SteadyContact(Record):
+    """What a transient and a run of a sweep say of a contact in the time that counts."""
 
     name: str = of("name", note=": mesh and helix", column="contact")
     static_force_n: float = of(
         "static force",
         "N",
-        note=" along the flank normal, in static equilibrium, without excitation",
+        note=" along the flank normal, in static equilibrium, without excitation; negative on the coast flank",
         form=short,
         column="static\nN",
     )
     mean_force_n: float = of("mean force", "N", note=" in the time that counts", form=short, column="mean")
     rms_force_n: float = of("root mean square of the force about its mean", "N", form=short, column="rms")
     largest_force_n: float = of("largest force", "N", form=short, column="largest")
-    smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
-    driving_impulse_n_s: float = of(
-        "impulse on the working flank", "N s", note=": the integral of its force over that time"
-    )
-    back_impulse_n_s: float = of("impulse on the coast flank", "N s", note=", positive")
     dynamic_factor: float = of(
         "dynamic factor", note=": largest over static force; `null` without load", form=".3f", column="K_dyn"
     )
@@ -110,13 +105,23 @@ class ContactStatistics(Record):
     driving_share: float = of("share of the time on the working flank")
     apart_share: float = of("contact-loss ratio", form=".1f", column="loss\n%")
     back_share: float = of("share of the time on the coast flank", form=".1f", column="coast\n%")
-    losses: int = of("contact losses", note=": how often contact was lost", column="losses")
 
     @property
     def peak_to_peak_dte_m(self) -> float:
         """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
         warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
         return self.peak_to_peak_approach_m
+
+
+class ContactStatistics(SteadyContact):
+    """A contact in the time that counts."""
+
+    smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
+    driving_impulse_n_s: float = of(
+        "impulse on the working flank", "N s", note=": the integral of its force over that time"
+    )
+    back_impulse_n_s: float = of("impulse on the coast flank", "N s", note=", positive")
+    losses: int = of("contact losses", note=": how often contact was lost", column="losses")
 
 
 class ChannelStatistics(Record):
@@ -321,7 +326,8 @@ class TransientResult(ModelResult, kind="transient"):
                 f"ended at {self.time[-1]:.4g} s, before the {self.settle:.4g} s that are discarded: nothing counts"
             )
         yield heading(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
-        yield from (table_of(self, "contacts", tight=True), "")
+        columns = [one.name for one in SteadyContact.declarations.values() if one.column]
+        yield from (table_of(self, "contacts", *columns, "losses", tight=True), "")
         if self.channel:
             yield self._channels()
         yield ""
