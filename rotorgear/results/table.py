@@ -411,7 +411,7 @@ def _sides(table: Table) -> Iterator[bool]:
 def as_html(blocks: Iterable[Block], most: int) -> str:
     """The blocks for a notebook: each line a paragraph, of each table so many rows at most."""
     parts = []
-    for block in filter(None, blocks):
+    for block in (one for one in blocks if one):
         if isinstance(block, Table):
             parts.append(html_table(block, most=most))
         elif isinstance(block, Line):
