@@ -189,7 +189,7 @@ def mesh_map(
     clock.lap("teeth and contact")
     shape = (len(load), len(misalignment))
     notes = dict.fromkeys(note for point in figures for note in point.warnings)
-    missing = ["error estimates: `rotorgear mesh` without --over gives them for one point"]
+    missing = ["error estimates: `rotorgear mesh` gives them for one point"]
     if teeth.first_flank.single_teeth or teeth.second_flank.single_teeth:
         missing.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
     return MeshMap(
