@@ -28,7 +28,10 @@ class Note(str):
 
     def __new__(cls, part: str, what: str, why: str = "", value: str = "") -> Note:
         note = str.__new__(cls, _sentence([(part, value)], what, why, NAMED))
-        note.part, note.what, note.why, note.value = part, what, why, value
+        note.part = part
+        note.what = what
+        note.why = why
+        note.value = value
         return note
 
     def __reduce__(self) -> tuple[type[Note], tuple[str, str, str, str]]:

@@ -97,7 +97,8 @@ def compare(call: Call) -> None:
         raise AnalysisError("--points belongs to --shapes, --frf or --orders: lines have no place")
     if call.saved and what in ("frf", "orders"):
         raise AnalysisError(f"--{what} needs a model file: a saved result has its own frequencies and speeds")
-    choices, known = call.command.choices, arguments_of(verb)
+    choices = call.command.choices
+    known = arguments_of(verb)
     for name in call.command.arguments:
         if name in choices and name not in ("source", *known) and call.asked(name) is not None:
             raise AnalysisError(f"{spelling(name)} does not go with {'rig lines' if what == 'rig' else f'--{what}'}")
@@ -110,7 +111,9 @@ def export(call: Call) -> None:
     """The linear system as files of other programs."""
     from rotorgear.export.matrices import require_matrix_name
 
-    state_space, matrices, uff = call["state_space"], call["matrices"], call["uff"]
+    state_space = call["state_space"]
+    matrices = call["matrices"]
+    uff = call["uff"]
     if not (state_space or matrices or uff):
         raise AnalysisError("nothing to write: give --state-space, --matrices or --uff")
     if state_space:

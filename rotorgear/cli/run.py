@@ -40,7 +40,8 @@ class Call:
             require("tomlkit", "Writing a changed model file")
         if self["resume"] and self["save"] is None:
             raise AnalysisError("--resume needs the --save of the run that was interrupted")
-        workers, cluster = self["workers"], self["cluster"]
+        workers = self["workers"]
+        cluster = self["cluster"]
         if workers is not None and workers < 1:
             raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
         if workers is not None and cluster is not None:

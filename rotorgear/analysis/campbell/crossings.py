@@ -124,7 +124,8 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
         if not (low * high < 0.0 or (high == 0.0 and low != 0.0)):
             continue
         a, b = (float(speed) for speed in speeds[k : k + 2])
-        fa, fb = low, high
+        fa = low
+        fb = high
         s = chain.s[k]
         q = chain.q[k]
         for _ in range(60):

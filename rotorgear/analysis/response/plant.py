@@ -161,7 +161,9 @@ class GroundLoads:
         names: list[str] = []
         for casing in system.model.casings:
             body = system.layout.casing(casing)
-            K, C, M = body.ground_force, body.ground_damping, body.ground_mass
+            K = body.ground_force
+            C = body.ground_damping
+            M = body.ground_mass
             if K is None or C is None or M is None or not body.ground_sets:  # it floats, or was reduced elsewhere
                 continue
             names += [f"{casing}.{place}" for place in body.ground_sets]

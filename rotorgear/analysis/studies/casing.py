@@ -84,7 +84,8 @@ def whole_frequencies(model: Model, name: str, count: int, progress: Progress = 
     mean = fe.settings.connection == "mean"
     space = fe.free_space(held=True, rigid_seats=not mean)
     if mean:
-        shapes, seats = space.shapes, sp.csr_array(space.forces(fe.mean_weights(fe.seats)).T)
+        shapes = space.shapes
+        seats = sp.csr_array(space.forces(fe.mean_weights(fe.seats)).T)
     else:
         count_of_seats = space.seats.shape[1]
         elastic = sp.csr_array((count_of_seats, space.shapes.shape[1]))
