@@ -8,8 +8,8 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
-from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
-from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
+from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Column, exact, heading, table_of, table_over
 
 # So many crossings are listed; sidebands of a gearbox give thousands.
@@ -87,15 +87,13 @@ class Onset(Record):
     frequency_hz: float = of("frequency", "Hz", note=" there", form=".3f", column="Hz")
 
 
-# Arrays are by speed, then branch; the JSON output has a list for each branch.
-_BY_BRANCH = ("branch", "speed")
-
-
 class CampbellResult(AboutEquilibrium, kind="campbell"):
     """b branches of modes over k speeds; values are NaN where a branch does not oscillate, or is out of reach.
 
     The displacements of a branch at the p nodes and stations are `basis @ coordinates`; see `shapes`.
     """
+
+    json_axes = ("SHAFT", "MOTION", "MESH", "branch", "speed")
 
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm", note=", ascending in size")
     operating_speed: float | None = of("operating speed of the model", "rad/s", note="; `null` without one")
@@ -106,50 +104,22 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         """Speeds of the input shaft in rpm, (k,)."""
         return np.asarray(self.speeds * RPM_PER_RAD_S)
 
-    @derived(
-        "frequency",
-        "Hz",
-        "speed",
-        "branch",
-        json=Written("frequency_hz", axes=_BY_BRANCH),
-        note=" of a branch, the damped one",
-    )
+    @derived("frequency", "Hz", "speed", "branch", note=" of a branch, the damped one")
     def frequency_hz(self) -> np.ndarray:
         """Damped frequency Im s / 2 pi, (k, b)."""
         return np.asarray(self.eigenvalues.imag / (2.0 * np.pi))
 
-    @derived(
-        "natural frequency",
-        "Hz",
-        "speed",
-        "branch",
-        json=Written("natural_frequency_hz", axes=_BY_BRANCH),
-        note=", |s| / 2π",
-    )
+    @derived("natural frequency", "Hz", "speed", "branch", note=", |s| / 2π")
     def natural_frequency_hz(self) -> np.ndarray:
         """|s| / 2 pi, (k, b)."""
         return np.asarray(np.abs(self.eigenvalues) / (2.0 * np.pi))
 
-    @derived(
-        "damping ratio",
-        "",
-        "speed",
-        "branch",
-        json=Written("damping_ratio", axes=_BY_BRANCH),
-        note=", below 0 where the motion grows",
-    )
+    @derived("damping ratio", "", "speed", "branch", note=", below 0 where the motion grows")
     def damping_ratio(self) -> np.ndarray:
         """-Re s / |s|, (k, b)."""
         return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues) + 0.0)
 
-    @derived(
-        "logarithmic decrement",
-        "",
-        "speed",
-        "branch",
-        json=Written("log_decrement", axes=_BY_BRANCH),
-        note=", below 0 where the motion grows",
-    )
+    @derived("logarithmic decrement", "", "speed", "branch", note=", below 0 where the motion grows")
     def log_decrement(self) -> np.ndarray:
         """2 pi zeta / sqrt(1 - zeta^2), (k, b); negative where the motion grows."""
         return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag + 0.0)
@@ -159,11 +129,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "",
         "speed",
         "branch",
-        json=Written(
-            "whirl",
-            lambda result, whirl: [[WHIRL_WORDS[number] for number in branch] for branch in whirl.T.tolist()],
-            axes=("branch", "speed"),
-        ),
+        json=WRITTEN_WHIRL,
         note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"` or `""`; in Python numbers into `WHIRL_WORDS`',
     )
     whirl_by_shaft: dict[str, np.ndarray] = of(
@@ -172,33 +138,15 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "SHAFT",
         "speed",
         "branch",
-        json=Written("whirl_by_shaft", axes=("SHAFT", *_BY_BRANCH)),
         note=", -1 (backward circle) to +1 (forward circle)",
     )
     kinetic_by_motion: dict[str, np.ndarray] = of(
-        "share of a motion in the kinetic energy",
-        "",
-        "MOTION",
-        "speed",
-        "branch",
-        json=Written("kinetic_by_motion", axes=("MOTION", *_BY_BRANCH)),
+        "share of a motion in the kinetic energy", "", "MOTION", "speed", "branch"
     )
     strain_by_motion: dict[str, np.ndarray] = of(
-        "share of a motion in the strain energy",
-        "",
-        "MOTION",
-        "speed",
-        "branch",
-        json=Written("strain_by_motion", axes=("MOTION", *_BY_BRANCH)),
+        "share of a motion in the strain energy", "", "MOTION", "speed", "branch"
     )
-    mesh_strain: dict[str, np.ndarray] = of(
-        "share of each mesh in the strain energy",
-        "",
-        "MESH",
-        "speed",
-        "branch",
-        json=Written("mesh_strain", axes=("MESH", *_BY_BRANCH)),
-    )
+    mesh_strain: dict[str, np.ndarray] = of("share of each mesh in the strain energy", "", "MESH", "speed", "branch")
     description: tuple[str, ...] = of("what moves", "", "branch", note=", at the first speed")
     error_estimate: np.ndarray = of(
         "estimated relative discretisation error", "", "branch", note=", the larger of both ends", form=".0e"
@@ -235,13 +183,9 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         end = len(self.speeds) - 1
         columns = (
             Column("branch", lambda b: b + 1),
-            Column(
-                f"Hz at {first:.6g}", lambda b: self.frequency_hz[0, b], small, place=lambda b: ("frequency_hz", b, 0)
-            ),
-            Column(
-                f"Hz at {last:.6g}", lambda b: self.frequency_hz[-1, b], small, place=lambda b: ("frequency_hz", b, end)
-            ),
-            Column("log dec.", lambda b: self.log_decrement[-1, b], small, place=lambda b: ("log_decrement", b, end)),
+            Column(f"Hz at {first:.6g}", "frequency_hz", small, entry=(0,)),
+            Column(f"Hz at {last:.6g}", "frequency_hz", small, entry=(end,)),
+            Column("log dec.", "log_decrement", small, entry=(end,)),
             Column("whirl", lambda b: self.whirl_word(-1, b)),
         )
         yield table_over(self, "branch", *columns, "description", caption="Branches")

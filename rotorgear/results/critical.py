@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.laws import AboutEquilibrium
-from rotorgear.results.modal import WHIRL_WORDS, NodeTable, Piece
+from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 from rotorgear.results.table import Block, Column, error_words, grid, heading, table_of
@@ -132,9 +132,7 @@ class CriticalMap(ModelResult, kind="critical_map"):
         "",
         "stiffness",
         "critical_speed",
-        json=Written(
-            "whirl", lambda result, whirl: [[WHIRL_WORDS[number] for number in row] for row in whirl.tolist()]
-        ),
+        json=WRITTEN_WHIRL,
         note=' of the shaft whose line it is, `""` for a torsional or axial mode; in Python numbers into `WHIRL_WORDS`',
     )
     bearings: dict[str, np.ndarray] = of(

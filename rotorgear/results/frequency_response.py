@@ -66,6 +66,8 @@ def peak_between(x: np.ndarray, size: np.ndarray, power: int) -> Peak | None:
 class FrequencyResponse(AboutEquilibrium, kind="frf"):
     """Response of o places to unit forces (or moments) at i places, at f frequencies; Re(x e^{+iwt})."""
 
+    json_axes = ("output", "input", "frequency")
+
     speed: float = of("speed of the input shaft", "rad/s")
     frequency_hz: np.ndarray = of("frequency", "Hz", "frequency")
     inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
@@ -79,16 +81,10 @@ class FrequencyResponse(AboutEquilibrium, kind="frf"):
         "output",
         "input",
         json=(
-            Written(
-                "receptance_real",
-                lambda result, values: values.real.transpose(1, 2, 0),
-                axes=("output", "input", "frequency"),
-                note=", real part",
-            ),
+            Written("receptance_real", lambda result, values: values.real, note=", real part"),
             Written(
                 "receptance_imag",
-                lambda result, values: values.imag.transpose(1, 2, 0),
-                axes=("output", "input", "frequency"),
+                lambda result, values: values.imag,
                 note=", imaginary part; negative where the response lags",
             ),
         ),

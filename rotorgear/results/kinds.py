@@ -39,7 +39,7 @@ def keys_of(cls: type[Record], prefix: str = "") -> Iterator[Key]:
     title = [one for one in declared if one.name == "title"]
     for one in [*title, *(one for one in declared if one.name != "title")]:
         for written in one.written():
-            axes = one.axes if written.axes is None else written.axes
+            axes = one.along if written.axes is None else written.axes
             path = prefix + written.key + "".join(f".{axis}" if axis.isupper() else "[]" for axis in axes)
             unit = one.unit if written.unit is None else written.unit
             label = one.label if written.label is None else written.label

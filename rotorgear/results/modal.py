@@ -13,6 +13,7 @@ from rotorgear.results.table import Block, Column, error_words, exact, heading, 
 
 # The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
 WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
+WRITTEN_WHIRL = Written("whirl", lambda result, numbers: np.array(WHIRL_WORDS)[numbers])
 
 
 def body_name(gear: str) -> str:
@@ -180,11 +181,8 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         "m, rad",
         "POINT",
         "mode",
-        json=Written(
-            "point_amplitude",
-            axes=("POINT", "mode"),
-            note=", along its direction, of the shape with modal mass 1 kg",
-        ),
+        note=", along its direction, of the shape with modal mass 1 kg",
+        json="point_amplitude",
         default_factory=dict,
     )
 

@@ -10,37 +10,8 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
-from rotorgear.results.schema import Record, Written, derived, of
-from rotorgear.results.table import (
-    TRANSMISSION_WORDS,
-    Block,
-    Column,
-    Table,
-    error_words,
-    grid,
-    heading,
-    table_of,
-)
-
-
-def _by_mesh(key: str, *axes: str) -> Written:
-    """Values of the contacts by mesh and helix."""
-    return Written(key, axes=("MESH", "helix", *axes))
-
-
-def _by(name: str, key: str, *axes: str) -> Written:
-    """Amplitudes by a name, by order and speed."""
-    return Written(key, axes=(name, *axes, "order", "speed"))
-
-
-def _wrenches(kind: str, name: str, on: str) -> tuple[Written, Written]:
-    """Amplitudes of force and moment along x, y and z, under keys of their own."""
-    axes = (name, "AXIS", "order", "speed")
-    return (
-        Written(f"{kind}_force_n", unit="N", axes=axes, label=f"force on {on}", part=(0, 3)),
-        Written(f"{kind}_moment_n_m", unit="N m", axes=axes, label=f"moment on {on}", part=(3, 6)),
-    )
-
+from rotorgear.results.schema import Record, derived, force_and_moment, of
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Column, Table, error_words, grid, heading, table_of
 
 # Rows of a run of orders before the rest of it shares one.
 _SHOWN = 5
@@ -75,6 +46,8 @@ AIR_IMPEDANCE = 1.204 * 343.2
 class ResponseResult(AboutEquilibrium, kind="response"):
     """Linear response of a model at s speeds to o orders, complex amplitudes of Re(x e^{+iwt}) about the static forces."""
 
+    json_axes = ("MESH", "BEARING", "POINT", "PLACE", "CASING.SEAT", "CASING.SET", "CASING", "AXIS", "order", "speed")
+
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm")
     orders: tuple[str, ...] = of("name of each order", "", "order", json="order")
     ratio: np.ndarray = of("frequency over that of the input shaft", "", "order", json="frequency_ratio")
@@ -103,23 +76,16 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "N",
         "contact",
         note=": the static force of each contact, about which the response is linear",
-        json=_by_mesh("mean_mesh_force_n"),
+        json="mean_mesh_force_n",
     )
     mesh_stiffness: np.ndarray = of(
         "stiffness along the flank normal",
         "N/m",
         "contact",
         note=" about which the response is linear; of loaded teeth the mean tangent over the mesh cycle",
-        json=_by_mesh("mesh_stiffness_n_per_m"),
     )
     mesh_force: np.ndarray = of(
-        "force along the flank normal",
-        "N",
-        "order",
-        "speed",
-        "contact",
-        json=_by_mesh("mesh_force_n", "order", "speed"),
-        note=": the dynamic force, without the mean",
+        "force along the flank normal", "N", "order", "speed", "contact", note=": the dynamic force, without the mean"
     )
     transmission_error: np.ndarray = of(
         "transmission error",
@@ -127,7 +93,6 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "contact",
-        json=_by_mesh("transmission_error_m", "order", "speed"),
         note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, of each helix",
     )
     approach: np.ndarray = of(
@@ -136,22 +101,13 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "contact",
-        json=_by_mesh("approach_m", "order", "speed"),
         note=" of the flanks in the transverse plane, bending and axial motion included",
     )
     bearings: tuple[str, ...] = of("names of the bearings", "", "bearing", json=None)
-    bearing_force: np.ndarray = of(
-        "force on the shaft", "N", "order", "speed", "bearing", "xyz", json=_by("BEARING", "bearing_force_n", "AXIS")
-    )
+    bearing_force: np.ndarray = of("force on the shaft", "N", "order", "speed", "bearing", "xyz")
     points: tuple[str, ...] = of("names of the points", "", "point", json=None)
     acceleration: np.ndarray = of(
-        "acceleration of a named point",
-        "m/s^2, rad/s^2",
-        "order",
-        "speed",
-        "point",
-        json=_by("POINT", "acceleration"),
-        note=" along its direction",
+        "acceleration of a named point", "m/s^2, rad/s^2", "order", "speed", "point", note=" along its direction"
     )
     places: tuple[str, ...] = of("gears, disks and bearings by address", "", "place", json=None)
     displacement: np.ndarray = of(
@@ -161,7 +117,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "speed",
         "place",
         "component",
-        json=_by("PLACE", "displacement_m", "AXIS"),
+        json="displacement_m",
         note=" of each gear, disk and bearing; x, y and z are written",
     )
     casings: tuple[str, ...] = of(
@@ -177,7 +133,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "speed",
         "seat",
         "component",
-        json=_wrenches("casing_seat", "CASING.SEAT", "the casing"),
+        json=force_and_moment("casing_seat", "the casing"),
         note="; the moment about the point of the seat",
         default_factory=lambda: np.zeros((0, 0, 0, 6)),
         kw_only=True,
@@ -192,7 +148,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "speed",
         "ground",
         "component",
-        json=_wrenches("casing_ground", "CASING.SET", "the casing"),
+        json=force_and_moment("casing_ground", "the casing"),
         note="; the moment about the origin of the model",
         default_factory=lambda: np.zeros((0, 0, 0, 6)),
         kw_only=True,
@@ -203,7 +159,6 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "casing",
-        json=_by("CASING", "normal_velocity_m_per_s"),
         note=": root of the mean over its surface of the square of the amplitude",
         default_factory=lambda: np.zeros((0, 0, 0)),
         kw_only=True,
@@ -213,7 +168,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "m^2",
         "casing",
         note=", inside and out",
-        json=Written("casing_surface_m2", axes=("CASING",)),
+        json="casing_surface_m2",
         default_factory=lambda: np.zeros(0),
         kw_only=True,
     )
@@ -224,7 +179,6 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "order",
         "speed",
         "casing",
-        json=_by("CASING", "radiated_power_w"),
         note=" of a casing, 1/2 ρ c ∑ v_n² A with ρ c = 413 kg/m²s of air, as if all of its surface radiated like a large plate",
     )
     def radiated_power(self) -> np.ndarray:

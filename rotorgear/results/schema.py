@@ -44,22 +44,20 @@ _ENDINGS = {
     "kg": "_kg",
     "J": "_j",
     "Hz": "_hz",
+    "m/s": "_m_per_s",
     "m^3/s": "_m3_per_s",
     "mm/s": "_mm_per_s",
     "byte": "_bytes",
 }
 # A key that ends so is written in its unit: the unit stands with the written key, SI with the stored field.
-_WRITTEN_UNITS = {
-    ("rad/s", "_rpm"): ("rpm", RPM_PER_RAD_S),
-    ("rad", "_deg"): ("deg", 180.0 / math.pi),
-}
+_WRITTEN_UNITS = {("rad/s", "_rpm"): ("rpm", RPM_PER_RAD_S), ("rad", "_deg"): ("deg", 180.0 / math.pi)}
 
 
 @dataclass(frozen=True)
 class Written:
     """A key of the JSON output that is not simply the field.
 
-    `value(record, stored)` makes what is written; without it, `part` of each vector is arranged along `axes`.
+    `value(record, stored)` makes what is written; `axes` are those of it, where it does not go along those of the field.
     """
 
     key: str
@@ -68,22 +66,24 @@ class Written:
     axes: tuple[str, ...] | None = None
     label: str | None = None
     note: str | None = None
-    part: tuple[int | None, int | None] = (None, None)
 
-    def of(self, record: Record, stored: Any, own: tuple[str, ...]) -> Any:
-        """What is written of a field that is counted by the axes `own`."""
+    def of(self, record: Record, declared: Declared) -> Any:
+        """What is written of a field of the record."""
+        stored = getattr(record, declared.name)
         if self.value is not None:
-            return self.value(record, stored)
-        cut = stored
-        if self.part != (None, None):
-            kept = (..., slice(*self.part))
-            cut = {name: one[kept] for name, one in stored.items()} if isinstance(stored, dict) else stored[kept]
-        return _arranged(record, cut, own, own if self.axes is None else self.axes)
+            stored = self.value(record, stored)
+        if self.axes is not None or declared.along == declared.axes or stored is None:
+            return stored
+        return _arranged(record, stored, declared.axes, declared.along)
 
 
 @dataclass(frozen=True)
 class Declared:
-    """What a field says of itself. `place` orders the fields of a class; `computed`: not stored; see `of` for the rest."""
+    """What a field says of itself; see `of`.
+
+    `place` orders the fields of a class; `computed`: not stored; `along`: the axes along which it is written; `words`: it holds
+    texts.
+    """
 
     name: str
     label: str
@@ -98,6 +98,7 @@ class Declared:
     column: str
     shown: str
     place: int
+    along: tuple[str, ...] = ()
     words: bool = False
 
     def written(self) -> Iterator[Written]:
@@ -109,7 +110,24 @@ class Declared:
             key = key_of(self.name, self.unit) if entry == _SAME_KEY else entry
             converted = (into for (si, end), into in _WRITTEN_UNITS.items() if self.unit == si and key.endswith(end))
             unit, factor = next(converted, (self.unit, None))
-            yield Written(key, _scaled(factor), unit)
+            yield Written(key, None if factor is None else _scaled(factor), unit)
+
+
+def force_and_moment(kind: str, on: str = "the shaft") -> tuple[Written, Written]:
+    """Keys of their own for the force and the moment in vectors of six components."""
+
+    def part(cut: slice) -> Callable[[Any, Any], Any]:
+        def of(record: Record, all_six: Any) -> Any:
+            if isinstance(all_six, dict):
+                return {name: one[cut] for name, one in all_six.items()}
+            return all_six[..., cut]
+
+        return of
+
+    return (
+        Written(f"{kind}_force_n", part(slice(0, 3)), "N", label=f"force on {on}"),
+        Written(f"{kind}_moment_n_m", part(slice(3, 6)), "N m", label=f"moment on {on}"),
+    )
 
 
 def key_of(name: str, unit: str) -> str:
@@ -122,8 +140,27 @@ def key_of(name: str, unit: str) -> str:
 _COUNTED = {"MESH": "contact", "SET": "ground", "AXIS": "xyz"}
 
 
-def _arranged(record: Record, values: Any, own: tuple[str, ...], axes: tuple[str, ...]) -> Any:
-    """A field counted by the axes `own` as it is written along `axes`: complex numbers by their size.
+def _counted(axis: str, own: tuple[str, ...]) -> str:
+    """Which of a field's own axes an axis of the JSON output goes along, if it is one of them."""
+    last = axis.rpartition(".")[2]
+    counted = _COUNTED.get(last, last.lower())
+    return "component" if counted == "xyz" and "xyz" not in own else counted
+
+
+def _along(own: tuple[str, ...], order: tuple[str, ...]) -> tuple[str, ...]:
+    """A field's axes as they are written: in the order of its record, then those that this does not name."""
+    rest = list(own)
+    along = []
+    for axis in order:
+        counted = axis if axis in rest else _counted(axis, own)
+        if counted in rest:
+            rest.remove(counted)
+            along += [axis, "helix"] if counted == "contact" else [axis]
+    return (*along, *rest)
+
+
+def _arranged(record: Record, values: Any, own: tuple[str, ...], along: tuple[str, ...]) -> Any:
+    """A field counted by the axes `own` as it is written along other axes.
 
     One in small letters is a list, one in capitals a dictionary by the names that the record has along it; contacts stand by
     mesh, then by helix.
@@ -131,36 +168,51 @@ def _arranged(record: Record, values: Any, own: tuple[str, ...], axes: tuple[str
     import numpy as np
 
     if isinstance(values, dict):
-        return {name: _arranged(record, entry, own[1:], axes[1:]) for name, entry in values.items()}
-    if not axes:
-        return np.abs(values) if np.iscomplexobj(values) else values
-    named = axes[0].isupper()
-    last = axes[0].rpartition(".")[2]
-    axis = _COUNTED.get(last, last.lower())
-    axis = "component" if axis == "xyz" and "xyz" not in own else axis
-    k = own.index(axis) if axis in own else 0
+        return {name: _arranged(record, entry, own[1:], along[1:]) for name, entry in values.items()}
+    if not along:
+        return values
+    axis = _counted(along[0], own)
+    k = own.index(axis)
     rest = own[:k] + own[k + 1 :]
     slices = np.moveaxis(values, k, 0)
-    if not named:
-        return [_arranged(record, one, rest, axes[1:]) for one in slices]
-    names: Sequence[str] = "xyz"
-    if axis not in ("xyz", "component"):  # the record's first field of texts over this axis alone
-        naming = (one for one in record.declarations.values() if one.axes == (axis,) and one.words)
-        names = getattr(record, next(naming).name)
-    if axes[1:2] == ("helix",):
+    if not along[0].isupper():
+        return [_arranged(record, one, rest, along[1:]) for one in slices]
+    names = _names_along(record, axis)
+    if along[1:2] == ("helix",):
         helices: dict[str, list[Any]] = {}
         for name, one in zip(names, slices, strict=True):
-            helices.setdefault(name, []).append(_arranged(record, one, rest, axes[2:]))
+            helices.setdefault(name, []).append(_arranged(record, one, rest, along[2:]))
         return helices
     # Of the six components of a motion, x, y and z are written.
-    return {name: _arranged(record, one, rest, axes[1:]) for name, one in zip(names, slices, strict=False)}
+    return {name: _arranged(record, one, rest, along[1:]) for name, one in zip(names, slices, strict=False)}
 
 
-def _scaled(factor: float | None) -> Callable[[Any, Any], Any]:
-    if factor is None:
-        return lambda record, stored: stored
-    times = factor
-    return lambda record, stored: None if stored is None else stored * times
+def _names_along(record: Record, axis: str) -> Sequence[str]:
+    """The record's first field of texts over an axis alone."""
+    if axis in ("xyz", "component"):
+        return "xyz"
+    naming = (one for one in record.declarations.values() if one.axes == (axis,) and one.words)
+    names: Sequence[str] = getattr(record, next(naming).name)
+    return names
+
+
+def place_of(record: Record, declared: Declared, key: str, at: dict[str, int]) -> tuple[str | int, ...]:
+    """Where an entry of a field stands in the JSON output below its key, from its numbers along the field's axes."""
+    path: list[str | int] = [key]
+    for axis in declared.along:
+        counted = _counted(axis, declared.axes)
+        if axis == "helix" and axis not in at:
+            names = _names_along(record, "contact")
+            path.append(list(names[: at["contact"]]).count(names[at["contact"]]))
+        elif axis.isupper():
+            path.append(_names_along(record, counted)[at[counted]])
+        elif counted in at:
+            path.append(at[counted])
+    return tuple(path)
+
+
+def _scaled(factor: float) -> Callable[[Any, Any], Any]:
+    return lambda record, stored: None if stored is None else stored * factor
 
 
 def of(
@@ -194,15 +246,11 @@ def of(
         shown: unit that tables show it in, where neither the heading ends with it nor the key is in it.
         default, default_factory, kw_only: as of a dataclass field.
     """
-    keys = _keys(json)
+    keys = () if json is None else json if isinstance(json, tuple) else (json,)
     declared = Declared("", label, unit, axes, note, form, record, keys, stored, False, column, shown, next(_places))
     more: dict[str, Any] = {"default": default} if default is not MISSING else {}
     more |= {"default_factory": default_factory} if default_factory is not MISSING else {}
     return field(metadata={"declared": declared}, kw_only=kw_only, **more)
-
-
-def _keys(json: str | Written | tuple[str | Written, ...] | None) -> tuple[str | Written, ...]:
-    return () if json is None else json if isinstance(json, tuple) else (json,)
 
 
 class Derived(Generic[T]):
@@ -221,37 +269,28 @@ class Derived(Generic[T]):
         return self if obj is None else read_only(self.function(obj))
 
 
-def derived(
-    label: str,
-    unit: str = "",
-    *axes: str,
-    note: str = "",
-    form: str | Callable[[Any], str] = "",
-    record: type[Record] | None = None,
-    json: str | Written | tuple[str | Written, ...] | None = _SAME_KEY,
-    column: str = "",
-    shown: str = "",
-) -> Callable[[Callable[[Any], T]], Derived[T]]:
+def derived(label: str, unit: str = "", *axes: str, **said: Any) -> Callable[[Callable[[Any], T]], Derived[T]]:
     """Declare a computed field; the arguments are those of `of`."""
+    declared: Declared = of(label, unit, *axes, **said).metadata["declared"]
 
     def declare(function: Callable[[Any], T]) -> Derived[T]:
-        name = function.__name__
-        keys = _keys(json)
         words = "str" in str(function.__annotations__.get("return"))
-        declared = Declared(
-            name, label, unit, axes, note, form, record, keys, False, True, column, shown, next(_places), words
-        )
-        return Derived(function, declared)
+        return Derived(function, replace(declared, name=function.__name__, stored=False, computed=True, words=words))
 
     return declare
 
 
 @dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(of,))
 class Record:
-    """Base of results and of the records in them."""
+    """Base of results and of the records in them.
+
+    `json_axes` orders the axes of its fields in the JSON output, where that is another order than they have; "MESH" is for
+    contacts, which stand by mesh and helix.
+    """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     declarations: ClassVar[dict[str, Declared]] = {}
+    json_axes: ClassVar[tuple[str, ...]] = ()
     known: ClassVar[dict[str, type[Record]]] = {}  # all records by the name of their class, for files
 
     def __init_subclass__(cls) -> None:
@@ -267,7 +306,7 @@ class Record:
                     by_name[name] = value.declared
         inherited = {name for base in cls.__mro__[1:] for name in getattr(base, "declarations", {})}
         order = sorted(by_name.values(), key=lambda one: (one.name in inherited, one.place))
-        cls.declarations = {one.name: one for one in order}
+        cls.declarations = {one.name: replace(one, along=_along(one.axes, cls.json_axes)) for one in order}
         Record.known[record_name(cls)] = cls
         Record.known.setdefault(cls.__name__, cls)  # files of 0.1 name a record by its class alone
 
@@ -300,10 +339,8 @@ class Record:
         """Plain values for JSON; the keys are on docs/json.md."""
         out: dict[str, Any] = {}
         for declared in self.declarations.values():
-            if declared.json:
-                stored = getattr(self, declared.name)
-                for entry in declared.written():
-                    out[entry.key] = plain(entry.of(self, stored, declared.axes))
+            for entry in declared.written():
+                out[entry.key] = plain(entry.of(self, declared))
         return out
 
 
@@ -336,7 +373,7 @@ def read_only(value: Any) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """Lists, dictionaries, texts, numbers and None; a number that is not finite becomes None."""
+    """Lists, dictionaries, texts, numbers and None: complex numbers by their size, None for one that is not finite."""
     import numpy as np
 
     if isinstance(value, Record):
@@ -344,7 +381,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return _plain_array(value)
     if isinstance(value, np.generic):
-        value = value.item()
+        value = (np.abs(value) if np.iscomplexobj(value) else value).item()
     if isinstance(value, dict):
         return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -357,11 +394,9 @@ def plain(value: Any) -> Any:
 def _plain_array(values: np.ndarray) -> Any:
     import numpy as np
 
-    if values.dtype.kind != "f" or np.isfinite(values).all():
+    if values.dtype.kind not in "fc" or (values.dtype.kind == "f" and np.isfinite(values).all()):
         return values.tolist()
-    if values.ndim > 1:
-        return [_plain_array(row) for row in values]
-    return [number if math.isfinite(number) else None for number in np.atleast_1d(values).tolist()]
+    return [plain(one) for one in np.atleast_1d(values)]
 
 
 def _agree(one: Any, other: Any) -> bool:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable
-from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.schema import Record, Written, derived, force_and_moment, of
 from rotorgear.results.table import (
     Block,
     Cell,
@@ -122,25 +122,13 @@ class MeshFace(Record):
         return self.shaft_misalignment_m + self.given_misalignment_m
 
 
-def by_mesh(key: str, *axes: str) -> Written:
-    """A key under which the values of contacts stand by mesh; `axes` are those behind the contact's."""
-    return Written(key, axes=("MESH", "helix", *axes))
-
-
-def _forces(name: str, kind: str, on: str = "the shaft") -> tuple[Written, Written]:
-    """Force and moment of a support stand under keys of their own."""
-    axes = (name, "xyz")
-    return (
-        Written(f"{kind}_force_n", unit="N", axes=axes, label=f"force on {on}", part=(0, 3)),
-        Written(f"{kind}_moment_n_m", unit="N m", axes=axes, label=f"moment on {on}", part=(3, 6)),
-    )
-
-
 class StaticResult(AboutEquilibrium, kind="static"):
     """Static equilibrium of a model with p nodes and c contacts (helices of meshes, in the order of the file).
 
     `force_derivative` and `share_derivative` are the changes for a unit of each parameter; for a stiffness the unit is 100 %.
     """
+
+    json_axes = ("MESH",)
 
     speed: float | None = of(
         "speed of the input shaft", "rad/s", note=", for flanks and bearings with tables; `null` without one"
@@ -151,37 +139,20 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "N, N m",
         "LOAD",
         "component",
-        json=_forces("LOAD", "load", "the structure"),
+        json=force_and_moment("load", "the structure"),
     )
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
-    mesh_force: np.ndarray = of(
-        "force along the flank normal",
-        "N",
-        "contact",
-        json=by_mesh("mesh_force_n"),
-        note=" of each contact",
-        form=".1f",
-    )
-    mesh_force_on_gear: np.ndarray = of(
-        "force of the pinion on the gear",
-        "N",
-        "contact",
-        "xyz",
-        json=by_mesh("mesh_force_on_gear_n", "xyz"),
-        form=".0f",
-    )
+    mesh_force: np.ndarray = of("force along the flank normal", "N", "contact", note=" of each contact", form=".1f")
+    mesh_force_on_gear: np.ndarray = of("force of the pinion on the gear", "N", "contact", "xyz", form=".0f")
     mesh_stiffness: np.ndarray = of(
         "stiffness along the flank normal",
         "N/m",
         "contact",
-        json=by_mesh("mesh_stiffness_n_per_m"),
         note="; of loaded teeth the mean tangent over the mesh cycle",
     )
-    mesh_deflection: np.ndarray = of(
-        "deflection of the teeth along the flank normal", "m", "contact", json=by_mesh("mesh_deflection_m")
-    )
-    carries: np.ndarray = of("whether the contact is closed", "", "contact", json=by_mesh("mesh_carries"))
+    mesh_deflection: np.ndarray = of("deflection of the teeth along the flank normal", "m", "contact")
+    carries: np.ndarray = of("whether the contact is closed", "", "contact", json="mesh_carries")
     driver: tuple[str, ...] = of(
         "gear that drives",
         "",
@@ -192,9 +163,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
             axes=("MESH",),
         ),
     )
-    helix_share: np.ndarray = of(
-        "share of a contact in the force of its mesh", "", "contact", json=by_mesh("helix_share")
-    )
+    helix_share: np.ndarray = of("share of a contact in the force of its mesh", "", "contact")
     shares: tuple[Share, ...] = of("sharing of each gear with several meshes", "", "share", record=Share)
 
     @derived("largest sharing factor", note=", like K_gamma; 1 where no meshes share")
@@ -218,17 +187,17 @@ class StaticResult(AboutEquilibrium, kind="static"):
         kw_only=True,
     )
     bearing_force: dict[str, np.ndarray] = of(
-        "force and moment on the shaft", "N, N m", "BEARING", "component", json=_forces("BEARING", "bearing")
+        "force and moment on the shaft", "N, N m", "BEARING", "component", json=force_and_moment("bearing")
     )
     support_force: dict[str, np.ndarray] = of(
-        "force and moment on the shaft", "N, N m", "SUPPORT", "component", json=_forces("SUPPORT", "support")
+        "force and moment on the shaft", "N, N m", "SUPPORT", "component", json=force_and_moment("support")
     )
     casing_force: dict[str, np.ndarray] = of(
         "force and moment of the ground on a casing",
         "N, N m",
         "CASING",
         "component",
-        json=_forces("CASING", "casing", "the casing"),
+        json=force_and_moment("casing", "the casing"),
         note=", all that holds it together; the moment about the origin of the model",
         default_factory=dict,
         kw_only=True,
@@ -238,7 +207,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "N, N m",
         "CASING.SET",
         "component",
-        json=_forces("CASING.SET", "casing_ground", "the casing"),
+        json=force_and_moment("casing_ground", "the casing"),
         note="; the moment about the origin of the model",
         default_factory=dict,
         kw_only=True,
@@ -248,7 +217,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "N, N m",
         "CASING.SEAT",
         "component",
-        json=_forces("CASING.SEAT", "casing_seat", "the casing"),
+        json=force_and_moment("casing_seat", "the casing"),
         note="; the moment about the point of the seat",
         default_factory=dict,
         kw_only=True,
@@ -368,23 +337,13 @@ class StaticResult(AboutEquilibrium, kind="static"):
     def _meshes(self) -> Table:
         two = [len(self.contacts_of(mesh)) == 2 for mesh in self.contact_mesh]
 
-        def place(key: str, *behind: int) -> Callable[[int], tuple[str | int, ...]]:
-            def path(k: int) -> tuple[str | int, ...]:
-                mesh = self.contact_mesh[k]
-                return (key, mesh, self.contacts_of(mesh).index(k), *behind)
-
-            return path
-
         columns = (
             Column("mesh", lambda k: self._helix(self.contact_mesh[k], self.contact_helix[k])),
             Column("driver", lambda k: self.driver[k] if self.carries[k] else "open"),
-            Column("F_n N", "mesh_force", ".1f", place=place("mesh_force_n")),
-            Column("helix %", "helix_share", ".2f", "%", where=lambda k: two[k], place=place("helix_share")),
-            Column("press um", "mesh_deflection", ".3f", "um", place=place("mesh_deflection_m")),
-            *(
-                Column(f"F{x} N", "mesh_force_on_gear", ".0f", entry=(j,), place=place("mesh_force_on_gear_n", j))
-                for j, x in enumerate("xyz")
-            ),
+            Column("F_n N", "mesh_force", ".1f"),
+            Column("helix %", "helix_share", ".2f", "%", where=lambda k: two[k]),
+            Column("press um", "mesh_deflection", ".3f", "um"),
+            *(Column(f"F{x} N", "mesh_force_on_gear", ".0f", entry=(j,)) for j, x in enumerate("xyz")),
             Column("phase", lambda k: self.mesh_phase.get(self.contact_mesh[k]), ".4f"),
         )
         return table_over(self, "contact", *columns, caption="Forces between the teeth")

@@ -15,7 +15,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.schema import Declared, Record
+from rotorgear.results.schema import Declared, Record, place_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -72,7 +72,6 @@ class Column:
 
     `left`: words, which stand to the left; None: as its cells are. `label`: its heading where there is room for it. `where`: what
     says of a row whether it has such a number, `without` what stands there if not. `entry`: which one of an array.
-    `place`: what says of a row where the number stands in the JSON output, where that is arranged otherwise.
     """
 
     heading: str
@@ -84,7 +83,6 @@ class Column:
     where: Callable[[Any], bool] | None = None
     without: str = "-"
     entry: tuple[int, ...] = ()
-    place: Callable[[Any], tuple[str | int, ...]] | None = None
 
 
 @dataclass(frozen=True)
@@ -217,26 +215,24 @@ def table_over(owner: Record, axis: str, *columns: Column | str, caption: str = 
         owner: the result. axis: its name. columns: as `Column`, or fields by name; those that declare a column for none.
         caption, look: of the `Table`.
     """
-    known = {d.name: d for d in owner.declarations.values() if d.axes[:1] == (axis,) and d.record is None}
-    single = {name: d for name, d in known.items() if len(d.axes) == 1}
+    known = {d.name: d for d in owner.declarations.values() if axis in d.axes and d.record is None}
+    single = {name: d for name, d in known.items() if d.axes == (axis,)}
     shown = [one if isinstance(one, Column) else Column("", one) for one in columns or _told(single)]
-    length = len(getattr(owner, next(iter(known))))
-    rows = []
-    for k in range(length):
-        cells = []
-        for column in shown:
-            if column.where and not column.where(k):
-                cells.append(Cell(column.without, number=True))
-            elif isinstance(column.value, str):
-                declared = known[column.value]
-                key = _key(declared)
-                path: tuple[str | int, ...] = (key, k, *column.entry) if key else ()
-                path = column.place(k) if column.place else path
-                value = getattr(owner, column.value)[(k, *column.entry) if column.entry else k]
-                cells.append(_number(value, declared, column, path))
-            else:
-                cells.append(_plain(column.value(k), column.form, column.place(k) if column.place else ()))
-        rows.append(tuple(cells))
+
+    def cell(k: int, column: Column) -> Cell:
+        if column.where and not column.where(k):
+            return Cell(column.without, number=True)
+        if not isinstance(column.value, str):
+            return _plain(column.value(k), column.form)
+        declared = known[column.value]
+        others = iter(column.entry)
+        at = {own: k if own == axis else next(others) for own in declared.axes}
+        value = getattr(owner, column.value)
+        value = value[k] if isinstance(value, tuple) else value[tuple(at.values())]
+        key = _key(declared)
+        return _number(value, declared, column, place_of(owner, declared, key, at) if key else ())
+
+    rows = [tuple(cell(k, column) for column in shown) for k in range(len(getattr(owner, next(iter(single)))))]
     return Table(tuple(_labelled(known, column) for column in shown), rows, caption or _capital(axis), **look)
 
 
@@ -335,8 +331,8 @@ def _cell(record: Record, known: dict[str, Declared], column: Column, path: Call
     return _number(value, declared, column, (*path(f"{above}.{key}" if above else key), *column.entry) if key else ())
 
 
-def _plain(value: Any, form: Form, path: tuple[str | int, ...] = ()) -> Cell:
-    return Cell(written(value, form), path, number=not isinstance(value, str))
+def _plain(value: Any, form: Form) -> Cell:
+    return Cell(written(value, form), number=not isinstance(value, str))
 
 
 def _number(value: Any, declared: Declared, column: Column, path: tuple[str | int, ...]) -> Cell:

@@ -51,8 +51,7 @@ class EnergyLedger(Record):
         "J",
         "instant",
         json=_at_end(
-            "excitation_work_j",
-            "work of transmission errors, stiffness variation, unbalances and torques that vary",
+            "excitation_work_j", "work of transmission errors, stiffness variation, unbalances and torques that vary"
         ),
     )
     dissipated: np.ndarray = of(
