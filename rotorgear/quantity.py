@@ -67,6 +67,8 @@ RPM_PER_RAD_S = 30.0 / math.pi
 ZERO_CELSIUS = 273.15  # 0 deg C in K
 GRAVITY = 9.80665  # standard acceleration of gravity in m/s^2
 _TURN = 2.0 * math.pi
+# Spellings that the table of common units does not tell apart.
+_SPELLING = str.maketrans({"*": " ", "^": "", "\u00b5": "u", "\u03bc": "u"})
 # Factors to SI where a frequency and a rotational speed would be mixed up by dimensional analysis alone.
 _RPM = _TURN / 60
 _SPEED_UNITS = {
@@ -102,20 +104,15 @@ def parse_quantity(value: Any, dimension: str) -> float:
         QuantityError: not a quantity of that dimension; the text is what was expected, with an example.
     """
     wanted = DIMENSIONS[dimension]
-    if isinstance(value, bool) or not isinstance(value, numbers.Real | str):
-        raise QuantityError(_expected(wanted))
-    if not isinstance(value, str):
-        return _sensible(value, wanted)
-    match = _NUMBER_AND_UNIT.match(value)
-    if match is None or not _UNIT_TEXT.match(match[2]):
-        raise QuantityError(_expected(wanted) + ("; decimals take a point" if "," in value else ""))
-    unit = " ".join(match[2].split())
+    number, unit = _number_and_unit(value, wanted)
+    if unit is None:
+        return number
     if dimension == "temperature":
         if unit not in _TEMPERATURE_UNITS:
             raise QuantityError(f"{_expected(wanted)}; units: {', '.join(_TEMPERATURE_UNITS)}")
         factor, zero = _TEMPERATURE_UNITS[unit]
-        return _sensible(float(match[1]) * factor + zero, wanted)
-    return _sensible(_sensible(float(match[1]), wanted) * _factor(unit, dimension), wanted)
+        return _sensible(number * factor + zero, wanted)
+    return _sensible(_sensible(number, wanted) * _factor(unit, wanted), wanted)
 
 
 def parse_in_unit(value: Any, unit: str) -> float:
@@ -125,24 +122,24 @@ def parse_in_unit(value: Any, unit: str) -> float:
         QuantityError: not a quantity of that unit.
     """
     key = unit.replace(" ", "*")
-    name = next((item.name for item in DIMENSIONS.values() if item.unit == key), None)
-    if name is not None or key == "rad/rad":
-        return parse_quantity(value, name or "ratio")
-    wanted = Dimension("", unit, f"a number in {unit}", f"1 {unit}")
+    name = "ratio" if key == "rad/rad" else next((item.name for item in DIMENSIONS.values() if item.unit == key), None)
+    if name is not None:
+        return parse_quantity(value, name)
+    wanted = Dimension("", key, f"a number in {unit}", f"1 {unit}")
+    number, given = _number_and_unit(value, wanted)
+    return number if given is None else _sensible(number * _factor_by_pint(given, wanted), wanted)
+
+
+def _number_and_unit(value: Any, wanted: Dimension) -> tuple[float, str | None]:
+    """A number and its unit; a plain number is one in SI, of no unit, and has a sensible size."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real | str):
         raise QuantityError(_expected(wanted))
     if not isinstance(value, str):
-        return _sensible(value, wanted)
+        return _sensible(value, wanted), None
     match = _NUMBER_AND_UNIT.match(value)
-    needed = _base_units(key)[1]
-    try:
-        assert match is not None
-        factor, given = _base_units(_expression(" ".join(match[2].split())))
-    except Exception as error:  # pint raises many kinds, as in _factor
-        raise QuantityError(_expected(wanted)) from error
-    if given != needed:
-        raise QuantityError(_expected(wanted))
-    return _sensible(float(match[1]) * factor, wanted)
+    if match is None or not _UNIT_TEXT.match(match[2]):
+        raise QuantityError(_expected(wanted) + ("; decimals take a point" if "," in value else ""))
+    return float(match[1]), " ".join(match[2].split())
 
 
 def _expected(wanted: Dimension) -> str:
@@ -163,18 +160,21 @@ def _sensible(value: SupportsFloat, wanted: Dimension) -> float:
 
 
 @lru_cache(maxsize=512)
-def _factor(unit: str, dimension: str) -> float:
-    """Return the factor from `unit` to the SI unit of `dimension`."""
-    wanted = DIMENSIONS[dimension]
-    if dimension in ("speed", "frequency"):
-        return _cycle_factor(unit, wanted)
-    if dimension == "ratio":
+def _factor(unit: str, wanted: Dimension) -> float:
+    """Return the factor from `unit` to the SI unit of a dimension."""
+    if wanted.name in ("speed", "frequency"):
+        table = _SPEED_UNITS if wanted.name == "speed" else _FREQUENCY_UNITS
+        key = unit.replace(" ", "")
+        if key not in table:
+            raise QuantityError(f"{_expected(wanted)}; units: {', '.join(list(table)[:7])}")
+        return table[key]
+    if wanted.name == "ratio":
         if unit in ("", "%"):
             return 0.01 if unit == "%" else 1.0
         raise QuantityError(_expected(wanted))
     if not unit:
         raise QuantityError(f"{_expected(wanted)}; a number in SI stands without quotes")
-    common = COMMON_UNITS[dimension].get(unit)
+    common = COMMON_UNITS[wanted.name].get(unit.translate(_SPELLING))
     return _factor_by_pint(unit, wanted) if common is None else common
 
 
@@ -205,15 +205,6 @@ def _base_units(unit: str) -> tuple[float, dict[str, float]]:
     registry = _registry()
     factor, base = registry.get_base_units(registry.parse_units(unit.replace("^", "**")))
     return float(factor), {key: float(power) for key, power in base._units.items()}
-
-
-def _cycle_factor(unit: str, wanted: Dimension) -> float:
-    table = _SPEED_UNITS if wanted.name == "speed" else _FREQUENCY_UNITS
-    key = unit.replace(" ", "")
-    if key in table:
-        return table[key]
-    note = "; units: " + ", ".join(list(table)[:7])
-    raise QuantityError(_expected(wanted) + note)
 
 
 @lru_cache(maxsize=1)

@@ -7,20 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, WithJsonSchema, create_model, model_validator
 from pydantic_core import CoreSchema
 
-from rotorgear.model.parts.fields import (
-    Density,
-    Frequency,
-    Length,
-    Modulus,
-    Name,
-    Part,
-    PositiveLength,
-    PositiveMass,
-    PositiveRatio,
-    Ratio,
-    StiffnessPerArea,
-    listed,
-)
+from rotorgear.model.parts import fields as si
+from rotorgear.model.parts.fields import Name, Part, listed
 from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix
 
 # Lengths of the units that meshes are drawn in, in m.
@@ -38,11 +26,11 @@ class _Seat(Part):
 
     set: str | None = Field(None, description="name of a face or node set; a text in place of the table says it alone")
     axis: Literal["x", "y", "z"] | None = Field(None, description="without a set: direction of the axis of the bore")
-    center: Annotated[tuple[Length, Length], listed(2, _CENTER)] | None = Field(
+    center: Annotated[tuple[si.Length, si.Length], listed(2, _CENTER)] | None = Field(
         None, description="where the axis is: the coordinates across it, in the order x y z"
     )
-    radius: PositiveLength | None = Field(None, description="radius of the bore")
-    to: Length | None = Field(None, description="where the seat ends along the axis")
+    radius: si.PositiveLength | None = Field(None, description="radius of the bore")
+    to: si.Length | None = Field(None, description="where the seat ends along the axis")
 
     @model_validator(mode="before")
     @classmethod
@@ -64,7 +52,7 @@ else:
         __base__=_Seat,
         __doc__=_Seat.__doc__,
         __module__=__name__,
-        **{"from": (Length | None, Field(None, description="where the seat begins along the axis"))},
+        **{"from": (si.Length | None, Field(None, description="where the seat begins along the axis"))},
     )
 
 
@@ -93,7 +81,7 @@ class Join(Part):
     """Two faces that touch, such as the flanges of bolted halves."""
 
     faces: tuple[str, str] = Field(description="names of the two face sets")
-    stiffness: StiffnessPerArea | None = Field(
+    stiffness: si.StiffnessPerArea | None = Field(
         None, description="stiffness of the joint per area, the same along and across it; default: tied"
     )
 
@@ -108,7 +96,7 @@ class Casing(Part):
     matrices: str | None = Field(
         None, description="file of a body that was reduced elsewhere (.npz with stiffness and mass), in place of a mesh"
     )
-    interface: dict[Name, Annotated[tuple[Length, Length, Length], listed(3, _POINT)]] = Field(
+    interface: dict[Name, Annotated[tuple[si.Length, si.Length, si.Length], listed(3, _POINT)]] = Field(
         default_factory=dict,
         description="seats in `matrices` with their points x y z, in the order of their motions; default: as the file says",
     )
@@ -116,9 +104,9 @@ class Casing(Part):
         None, description="unit of length of the mesh: such files carry none"
     )
     material: str | None = Field(None, description="name of a material; or E, nu and density below")
-    youngs_modulus: Modulus | None = Field(None, description="Young's modulus E, in place of a material")
-    poisson_ratio: Ratio | None = Field(None, description="Poisson's ratio nu, in place of a material")
-    density: Density | None = Field(None, description="density, in place of a material")
+    youngs_modulus: si.Modulus | None = Field(None, description="Young's modulus E, in place of a material")
+    poisson_ratio: si.Ratio | None = Field(None, description="Poisson's ratio nu, in place of a material")
+    density: si.Density | None = Field(None, description="density, in place of a material")
     held: tuple[str, ...] = Field((), description="face or node sets that are held fixed")
     mounts: dict[str, Mount] = Field(default_factory=dict, description="face or node sets on springs to the ground")
     seats: dict[Name, Annotated[Seat, TextOrTable()]] = Field(
@@ -133,11 +121,11 @@ class Casing(Part):
     splits: Annotated[int, Field(ge=0, le=4, strict=True)] = Field(
         0, description="how often every element is split in eight: the same body in a finer mesh"
     )
-    modes_to: Frequency | None = Field(
+    modes_to: si.Frequency | None = Field(
         None,
         description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20, or more where an "
         "analysis asks for frequencies beyond half of theirs",
     )
-    damping_ratio: Ratio = Field(0.0, description="damping ratio of every elastic mode of the casing by itself")
-    mass: PositiveMass | None = Field(None, description="mass, if it is known: the mesh is checked against it")
-    mass_tolerance: PositiveRatio = Field(0.05, description="how far the mesh's mass may be off that mass")
+    damping_ratio: si.Ratio = Field(0.0, description="damping ratio of every elastic mode of the casing by itself")
+    mass: si.PositiveMass | None = Field(None, description="mass, if it is known: the mesh is checked against it")
+    mass_tolerance: si.PositiveRatio = Field(0.05, description="how far the mesh's mass may be off that mass")

@@ -1,6 +1,7 @@
 """Field types of the parts: each carries its unit, its bounds and its place in the JSON Schema.
 
-A part is its own schema: the loader, the error text, the reference page and the schema file all come from these fields.
+A part is its own schema: the loader, the error text, the reference page and the schema file all come from these fields. Parts
+write `si.Length` for a length that is held in SI.
 """
 
 from __future__ import annotations

@@ -12,24 +12,9 @@ from pydantic import Field
 
 from rotorgear.gears.geometry.backlash import Allowance
 from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.casing import Seat, TextOrTable
-from rotorgear.model.parts.fields import (
-    Angle,
-    Flag,
-    Frequency,
-    Inertia,
-    Length,
-    Mass,
-    Name,
-    NonNegativeLength,
-    Part,
-    PositiveLength,
-    PositiveRatio,
-    Ratio,
-    SignedRatio,
-    Station,
-    Whole,
-)
+from rotorgear.model.parts.fields import Flag, Name, Part, Station, Whole
 from rotorgear.model.parts.topography import TopographyFile
 
 # Modifications of a flank that are depths.
@@ -39,29 +24,29 @@ DEPTHS = ("root_relief", "crowning", "profile_crowning", "profile_slope", "end_r
 class Flank(Part):
     """Modifications and errors of the flanks, along the flank normal. Tip relief stands in the gear itself."""
 
-    root_relief: NonNegativeLength = Field(0.0, description="linear relief at the form circle")
-    root_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the root relief starts")
-    crowning: NonNegativeLength = Field(0.0, description="lead crowning: parabolic relief at both ends of the face")
-    profile_crowning: NonNegativeLength = Field(
+    root_relief: si.NonNegativeLength = Field(0.0, description="linear relief at the form circle")
+    root_relief_diameter: si.PositiveLength | None = Field(None, description="diameter at which the root relief starts")
+    crowning: si.NonNegativeLength = Field(0.0, description="lead crowning: parabolic relief at both ends of the face")
+    profile_crowning: si.NonNegativeLength = Field(
         0.0, description="profile crowning (barrelling): parabolic relief at form circle and tip"
     )
-    profile_slope: Length = Field(0.0, description="depth at the tip less that at the form circle")
-    end_relief: NonNegativeLength = Field(0.0, description="linear relief at both ends of the face")
-    end_relief_length: NonNegativeLength = Field(0.0, description="length of the end relief along the face")
-    helix_slope: Length = Field(0.0, description="depth at the end of larger z less that at the end of smaller z")
-    bias: Length = Field(
+    profile_slope: si.Length = Field(0.0, description="depth at the tip less that at the form circle")
+    end_relief: si.NonNegativeLength = Field(0.0, description="linear relief at both ends of the face")
+    end_relief_length: si.NonNegativeLength = Field(0.0, description="length of the end relief along the face")
+    helix_slope: si.Length = Field(0.0, description="depth at the end of larger z less that at the end of smaller z")
+    bias: si.Length = Field(
         0.0, description="twist of the flank: profile slope at the end of larger z less that at the end of smaller z"
     )
-    tip_rounding: NonNegativeLength = Field(
+    tip_rounding: si.NonNegativeLength = Field(
         0.0, description="radius of the rounded tip edge; the involute ends where it begins"
     )
-    tip_chamfer: NonNegativeLength = Field(
+    tip_chamfer: si.NonNegativeLength = Field(
         0.0, description="radial height of the chamfered tip edge; the involute ends below it"
     )
     topography: TopographyFile | None = Field(
         None, description="CSV file of measured deviations, beside the model file, added to the rest"
     )
-    pitch_errors: dict[Name, Length] = Field(
+    pitch_errors: dict[Name, si.Length] = Field(
         default_factory=dict,
         description="tooth number -> how far its flank stands back along the line of action; tooth 0 meshes first",
     )
@@ -70,12 +55,14 @@ class Flank(Part):
 class GearBody(Part):
     """A gear's blank, for its mass and its compliance: rim, web and hub, or a finite-element mesh. What is left out is solid."""
 
-    bore: NonNegativeLength | None = Field(None, description="bore; default: the shaft's diameter there")
-    rim_thickness: PositiveLength | None = Field(None, description="thickness of the rim below the tooth roots")
-    web_thickness: PositiveLength | None = Field(None, description="thickness of the web along z, between rim and hub")
-    web_position: Length = Field(0.0, description="z of the web's middle from the middle of the face")
-    hub_diameter: PositiveLength | None = Field(None, description="outer diameter of the hub")
-    hub_width: PositiveLength | None = Field(None, description="width of the hub along z")
+    bore: si.NonNegativeLength | None = Field(None, description="bore; default: the shaft's diameter there")
+    rim_thickness: si.PositiveLength | None = Field(None, description="thickness of the rim below the tooth roots")
+    web_thickness: si.PositiveLength | None = Field(
+        None, description="thickness of the web along z, between rim and hub"
+    )
+    web_position: si.Length = Field(0.0, description="z of the web's middle from the middle of the face")
+    hub_diameter: si.PositiveLength | None = Field(None, description="outer diameter of the hub")
+    hub_width: si.PositiveLength | None = Field(None, description="width of the hub along z")
     mesh: str | None = Field(
         None,
         description="file of a finite-element mesh of an elastic body, beside the model file; z is its axis, and its middle "
@@ -95,11 +82,11 @@ class GearBody(Part):
         "rigid",
         description="whether the shaft holds the bore as a rigid body (RBE2), or in its mean motion alone (RBE3)",
     )
-    modes_to: Frequency | None = Field(
+    modes_to: si.Frequency | None = Field(
         None, description="highest frequency of the modes of the mesh on its bore that are kept; default: the lowest 20"
     )
-    damping_ratio: Ratio = Field(0.0, description="damping ratio of every mode of the mesh on its bore")
-    mass_tolerance: PositiveRatio = Field(
+    damping_ratio: si.Ratio = Field(0.0, description="damping ratio of every mode of the mesh on its bore")
+    mass_tolerance: si.PositiveRatio = Field(
         0.05, description="how far the mesh's mass and inertias may be off those that the gear states"
     )
 
@@ -111,57 +98,59 @@ class Gear(Part):
     at: Station = Field(description="z of the gear's middle, or 'start' or 'end'")
     kind: Literal["spur", "helical", "herringbone"] = Field(description="spur, helical or herringbone")
     teeth: Whole | None = Field(None, description="number of teeth")
-    normal_module: PositiveLength | None = Field(None, description="normal module m_n")
-    normal_pressure_angle: Angle = Field(
+    normal_module: si.PositiveLength | None = Field(None, description="normal module m_n")
+    normal_pressure_angle: si.Angle = Field(
         0.3490658503988659, description="normal pressure angle alpha_n; default 20 deg"
     )
-    helix_angle: Angle | None = Field(None, description="helix angle beta at the reference circle, positive")
+    helix_angle: si.Angle | None = Field(None, description="helix angle beta at the reference circle, positive")
     hand: Literal["right", "left"] | None = Field(
         None, description="hand of the helix; of a herringbone: of the helix at the smaller z"
     )
-    width: PositiveLength | None = Field(None, description="face width (of one helix)")
+    width: si.PositiveLength | None = Field(None, description="face width (of one helix)")
     integral: Flag = Field(
         False,
         description="whether the teeth are cut on the shaft: in meshes with tilt = true they bend and twist with it along "
         "the face",
     )
-    gap: NonNegativeLength = Field(0.0, description="gap between the helices of a herringbone")
-    profile_shift: SignedRatio = Field(0.0, description="profile shift coefficient x")
-    addendum_factor: PositiveRatio = Field(1.0, description="addendum of the rack over m_n")
-    dedendum_factor: PositiveRatio = Field(1.25, description="dedendum of the rack over m_n")
-    tip_diameter: PositiveLength | None = Field(None, description="tip diameter; default: from addendum and shift")
-    root_radius_factor: Ratio | None = Field(
+    gap: si.NonNegativeLength = Field(0.0, description="gap between the helices of a herringbone")
+    profile_shift: si.SignedRatio = Field(0.0, description="profile shift coefficient x")
+    addendum_factor: si.PositiveRatio = Field(1.0, description="addendum of the rack over m_n")
+    dedendum_factor: si.PositiveRatio = Field(1.25, description="dedendum of the rack over m_n")
+    tip_diameter: si.PositiveLength | None = Field(None, description="tip diameter; default: from addendum and shift")
+    root_radius_factor: si.Ratio | None = Field(
         None, description="tip radius of the rack over m_n, which cuts the root fillet; default: that of ISO 53"
     )
-    tip_relief: NonNegativeLength = Field(
+    tip_relief: si.NonNegativeLength = Field(
         0.0, description="linear tip relief C_a at the tip circle, normal to the flank"
     )
-    tip_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the tip relief starts")
+    tip_relief_diameter: si.PositiveLength | None = Field(None, description="diameter at which the tip relief starts")
     flank: Flank = Field(default_factory=Flank, description="further modifications and errors of the flanks")
-    upper_thickness_allowance: Length = Field(
+    upper_thickness_allowance: si.Length = Field(
         0.0, description="upper allowance E_sns of the normal tooth thickness, 0 or negative, for the backlash"
     )
-    lower_thickness_allowance: Length | None = Field(
+    lower_thickness_allowance: si.Length | None = Field(
         None, description="lower allowance E_sni of the normal tooth thickness; default: the upper one"
     )
-    ball_diameter: PositiveLength | None = Field(
+    ball_diameter: si.PositiveLength | None = Field(
         None,
         description="diameter of the balls or pins that the gear is measured over; default: the ideal one, rounded up",
     )
     accuracy_grade: Whole | None = Field(None, description="flank tolerance class 1 to 11 of ISO 1328-1, for K_v")
-    base_radius: PositiveLength | None = Field(None, description="base radius of a lumped gear, in place of the module")
-    transverse_pressure_angle: Angle | None = Field(None, description="transverse pressure angle of a lumped gear")
-    base_helix_angle: Angle | None = Field(None, description="base helix angle of a lumped helical gear")
-    clocking: Angle | None = Field(
+    base_radius: si.PositiveLength | None = Field(
+        None, description="base radius of a lumped gear, in place of the module"
+    )
+    transverse_pressure_angle: si.Angle | None = Field(None, description="transverse pressure angle of a lumped gear")
+    base_helix_angle: si.Angle | None = Field(None, description="base helix angle of a lumped helical gear")
+    clocking: si.Angle | None = Field(
         None,
         description="angle of a tooth's middle from the mark of the shaft, about +z; default: what closes a loop, else 0",
     )
     nodes: Literal[1, 2] | None = Field(
         None, description="herringbone: 2 = a node for each helix, joined by the shaft (default); 1 = one rigid node"
     )
-    mass: Mass | None = Field(None, description="mass of the whole gear; default: from the blank")
-    polar_inertia: Inertia | None = Field(None, description="moment of inertia about z of the whole gear")
-    diametral_inertia: Inertia | None = Field(None, description="moment of inertia about x and y through its middle")
+    mass: si.Mass | None = Field(None, description="mass of the whole gear; default: from the blank")
+    polar_inertia: si.Inertia | None = Field(None, description="moment of inertia about z of the whole gear")
+    diametral_inertia: si.Inertia | None = Field(None, description="moment of inertia about x and y through its middle")
     body: GearBody = Field(default_factory=GearBody, description="shape of the blank, for mass and compliance")
     material: str | None = Field(None, description="material of the blank; default: the shaft's")
 

@@ -12,23 +12,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from rotorgear.model.parts.fields import (
-    Angle,
-    Frequency,
-    Part,
-    PositiveRatio,
-    PositiveTime,
-    Power,
-    Ratio,
-    SignedRatio,
-    Station,
-    Time,
-    Torque,
-    UnbalanceSize,
-    Unit,
-    listed,
-    refuse,
-)
+from rotorgear.model.parts import fields as si
+from rotorgear.model.parts.fields import Part, Station, Unit, listed, refuse
 from rotorgear.model.parts.topography import csv_rows, from_csv
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 
@@ -38,8 +23,8 @@ class Unbalance(Part):
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the unbalance, or 'start' or 'end'")
-    magnitude: UnbalanceSize = Field(description="mass times eccentricity")
-    phase: Angle = Field(0.0, description="direction of the unbalance at the time 0, from +x about +z")
+    magnitude: si.UnbalanceSize = Field(description="mass times eccentricity")
+    phase: si.Angle = Field(0.0, description="direction of the unbalance at the time 0, from +x about +z")
 
 
 COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
@@ -183,34 +168,36 @@ class Load(Part):
     at: Station | None = Field(
         None, description="z of the place; default of a torque: start for an input, end for an output"
     )
-    torque: Torque | None = Field(
+    torque: si.Torque | None = Field(
         None, description="size of the torque; one load, an output as a rule, may leave it out and takes the rest"
     )
-    power: Power | None = Field(None, description="power, in place of the torque")
-    speed_power: SignedRatio = Field(
+    power: si.Power | None = Field(None, description="power, in place of the torque")
+    speed_power: si.SignedRatio = Field(
         0.0,
         description="transient: the torque goes with this power of the speed; 2 for a propeller, -1 for constant power",
     )
-    ripple: Ratio = Field(0.0, description="transient and response: amplitude of the torque's ripple as a share of it")
-    ripple_order: PositiveRatio = Field(1.0, description="periods of the ripple in a turn of its shaft")
-    step_to: Ratio = Field(1.0, description="transient: share of the torque that remains after a step")
-    step_at: Time = Field(0.0, description="transient: time at which the step begins")
-    step_duration: PositiveTime = Field(0.001, description="transient: how long the step takes")
+    ripple: si.Ratio = Field(
+        0.0, description="transient and response: amplitude of the torque's ripple as a share of it"
+    )
+    ripple_order: si.PositiveRatio = Field(1.0, description="periods of the ripple in a turn of its shaft")
+    step_to: si.Ratio = Field(1.0, description="transient: share of the torque that remains after a step")
+    step_at: si.Time = Field(0.0, description="transient: time at which the step begins")
+    step_duration: si.PositiveTime = Field(0.001, description="transient: how long the step takes")
     gear: str | None = Field(
         None, description="name of the gear that a force acts on, in place of shaft and at; in the middle of its face"
     )
     point: str | None = Field(None, description="name of the point that a force acts at, in place of shaft and at")
     force: ForceVector | None = Field(None, description="force along x, y and z")
     moment: MomentVector | None = Field(None, description="moment about x, y and z")
-    order: PositiveRatio | None = Field(
+    order: si.PositiveRatio | None = Field(
         None,
         description="force and moment go as cos(order * angle + phase) with the angle of a shaft; default: constant",
     )
     order_of: str | None = Field(None, description="name of the shaft whose angle counts; default: that it acts on")
-    frequency: Frequency | None = Field(
+    frequency: si.Frequency | None = Field(
         None, description="force and moment go as cos(2 pi frequency * time + phase), in place of an order"
     )
-    phase: Angle = Field(0.0, description="phase at angle or time 0")
+    phase: si.Angle = Field(0.0, description="phase at angle or time 0")
     history: HistoryFile | None = Field(
         None,
         description="forces and moments over time, or over the angle of a shaft, in place of force and moment",

@@ -13,22 +13,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from rotorgear.gears.stiffness_models import MODELS
-from rotorgear.model.parts.fields import (
-    Angle,
-    Damping,
-    Flag,
-    Force,
-    Length,
-    NonNegativeLength,
-    Part,
-    PositiveLength,
-    PositiveRatio,
-    Ratio,
-    Unit,
-    Viscosity,
-    Whole,
-    refuse,
-)
+from rotorgear.model.parts import fields as si
+from rotorgear.model.parts.fields import Flag, Part, Unit, Whole, refuse
 from rotorgear.quantity import DIMENSIONS, nearest
 
 _LEAST_VALUES = 3
@@ -124,7 +110,7 @@ class ToothFeTable(Part):
         description="rim: a few teeth held below their roots; ring: a full disc held at its bore or inside of the rim; wheel: "
         "rim, web and hub of the gear's body; default: wheel for a gear with rim and web, else rim",
     )
-    rim_thickness: PositiveRatio = Field(3.0, description="depth of the rim's held circle below the root over m_n")
+    rim_thickness: si.PositiveRatio = Field(3.0, description="depth of the rim's held circle below the root over m_n")
     pitches: Whole = Field(7, description="rim: pitches of the arc, an odd number of at least 3; its end cuts are held")
     exclude_torsion: bool | None = Field(
         None,
@@ -137,24 +123,24 @@ class ErrorHarmonic(Part):
     """A harmonic of the transmission error: amplitude times cos(harmonic times the angle of the mesh + phase)."""
 
     harmonic: Whole = Field(description="1 for the mesh frequency, 2 for twice that, ...")
-    amplitude: NonNegativeLength = Field(description="amplitude along the flank normal (half of peak to peak)")
-    phase: Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
+    amplitude: si.NonNegativeLength = Field(description="amplitude along the flank normal (half of peak to peak)")
+    phase: si.Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
 
 
 class StiffnessHarmonic(Part):
     """A harmonic of the mesh stiffness: a share of the mean times cos(harmonic times the angle of the mesh + phase)."""
 
     harmonic: Whole = Field(description="1 for the mesh frequency, 2 for twice that, ...")
-    amplitude: Ratio = Field(description="amplitude as a share of the mean stiffness")
-    phase: Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
+    amplitude: si.Ratio = Field(description="amplitude as a share of the mean stiffness")
+    phase: si.Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
 
 
 class CornerImpact(Part):
     """A half-sine force between the flanks once a mesh cycle, as teeth that come into contact too early give."""
 
-    force: Force = Field(description="peak of the force of one helix")
-    duration: Ratio = Field(description="duration in pitches, below 1")
-    at: Ratio = Field(0.0, description="its start in the cycle in pitches; 0 when a contact is at the pitch point")
+    force: si.Force = Field(description="peak of the force of one helix")
+    duration: si.Ratio = Field(description="duration in pitches, below 1")
+    at: si.Ratio = Field(0.0, description="its start in the cycle in pitches; 0 when a contact is at the pitch point")
 
 
 class Mesh(Part):
@@ -167,23 +153,23 @@ class Mesh(Part):
         "mesh period; a Fourier series { mean, amplitudes, phases }; or the name of a stiffness model, which takes the "
         "mean load of the torque flow"
     )
-    damping_ratio: Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
-    damping: Damping | None = Field(
+    damping_ratio: si.Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
+    damping: si.Damping | None = Field(
         None, description="damping coefficient along the flank normal, in place of the ratio"
     )
     equivalent_mass: Literal["torsion", "general"] = Field(
         "torsion", description="m_e of the damping ratio: from the rotations only, or from all motions of the two gears"
     )
-    centre_distance_allowance: NonNegativeLength = Field(
+    centre_distance_allowance: si.NonNegativeLength = Field(
         0.0, description="the centre distance may deviate by so much to both sides, for the backlash"
     )
-    application_factor: PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
-    stagger: Ratio = Field(
+    application_factor: si.PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
+    stagger: si.Ratio = Field(
         0.0,
         description="herringbone: share of a pitch by which the pinion's teeth at the larger z are ahead, where the input shaft "
         "turns about +z; 0 in phase, 0.5 staggered",
     )
-    misalignment: Length = Field(
+    misalignment: si.Length = Field(
         0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
     )
     tilt: Flag = Field(
@@ -192,23 +178,23 @@ class Mesh(Part):
         "statics finds misalignment and load distribution together with the shafts",
     )
     tooth_fe: ToothFeTable = Field(default_factory=ToothFeTable, description="settings of stiffness = 'tooth_fe'")
-    contact_position: Length = Field(
+    contact_position: si.Length = Field(
         0.0, description="place of the contact along the line of action from the pitch point, positive towards recess"
     )
-    centre_line_angle: Angle | None = Field(
+    centre_line_angle: si.Angle | None = Field(
         None, description="direction from pinion to gear from +x, only where the shafts have no positions"
     )
-    pressure_angle: Angle | None = Field(
+    pressure_angle: si.Angle | None = Field(
         None, description="working transverse pressure angle, only where the shafts have no positions"
     )
-    index_error: Length = Field(
+    index_error: si.Length = Field(
         0.0,
         description="gap along the flank normal that must close before this mesh carries (timing error of a branch)",
     )
-    helix_index_error: Length = Field(
+    helix_index_error: si.Length = Field(
         0.0, description="gap that the helix at the larger z of a herringbone has beside that"
     )
-    phase: Angle | None = Field(
+    phase: si.Angle | None = Field(
         None,
         description="angle of the mesh at the time 0, counted from contact at the pitch point; default: what follows from "
         "teeth, clocking and centre lines",
@@ -220,11 +206,11 @@ class Mesh(Part):
         (), description="harmonics of the mesh stiffness about its mean"
     )
     corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth; default: none")
-    friction_coefficient: Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")
-    lubricant_viscosity: Viscosity | None = Field(
+    friction_coefficient: si.Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")
+    lubricant_viscosity: si.Viscosity | None = Field(
         None, description="viscosity of the oil: friction by Benedict and Kelley's formula, in place of a coefficient"
     )
-    backlash: NonNegativeLength | None = Field(
+    backlash: si.NonNegativeLength | None = Field(
         None, description="backlash along the flank normal; without it the teeth never part in a transient"
     )
     coast_flank: Literal["line", "own normals"] = Field(
@@ -241,7 +227,7 @@ class Mesh(Part):
         description="non-adhesive: the contact force never pulls; adhesive: damping may pull while the flanks touch; "
         "penetration: the damping coefficient is proportional to the penetration",
     )
-    regularisation_depth: PositiveLength | None = Field(
+    regularisation_depth: si.PositiveLength | None = Field(
         None,
         description="penetration over which contact damping grows from zero to its full value, so that the force is "
         "continuous; default: 2 % of the mean deflection. With penetration: the penetration at which the coefficient has its "

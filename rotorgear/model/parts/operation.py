@@ -6,32 +6,19 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rotorgear.model.parts.fields import (
-    Gravity,
-    Length,
-    Part,
-    Power,
-    Rate,
-    Ratio,
-    Speed,
-    Station,
-    Time,
-    Torque,
-    Whole,
-    listed,
-    refuse,
-)
+from rotorgear.model.parts import fields as si
+from rotorgear.model.parts.fields import Part, Station, Whole, listed, refuse
 
 
 class Operation(Part):
     """The operating point. Power or torque here is that of the input shaft; the output shaft takes all of it."""
 
     input_shaft: str = Field(description="name of the shaft whose speed is the reference")
-    speed: Speed | None = Field(None, description="speed of the input shaft, positive about +z")
-    power: Power | None = Field(None, description="power into the input shaft")
-    torque: Torque | None = Field(None, description="torque into the input shaft, in the sense of its rotation")
+    speed: si.Speed | None = Field(None, description="speed of the input shaft, positive about +z")
+    power: si.Power | None = Field(None, description="power into the input shaft")
+    torque: si.Torque | None = Field(None, description="torque into the input shaft, in the sense of its rotation")
     output_shaft: str | None = Field(None, description="name of the shaft that takes the power")
-    gravity: Gravity | None = Field(
+    gravity: si.Gravity | None = Field(
         None, description="acceleration of gravity along x, y and z, for statics and transients; default: none"
     )
 
@@ -39,13 +26,13 @@ class Operation(Part):
 class ModelDamping(Part):
     """Damping of the model as a whole."""
 
-    rayleigh_alpha: Rate = Field(0.0, description="alpha of C = alpha M + beta K")
-    rayleigh_beta: Time = Field(
+    rayleigh_alpha: si.Rate = Field(0.0, description="alpha of C = alpha M + beta K")
+    rayleigh_beta: si.Time = Field(
         0.0,
         description="beta of C = alpha M + beta K, of the symmetric part of K: cross-coupled and circulatory terms damp "
         "nothing; tangents of nonlinear elements and rolling bearings take part in linear analyses only",
     )
-    modal_ratio: Ratio = Field(0.0, description="damping ratio added to that of every mode that is not rigid")
+    modal_ratio: si.Ratio = Field(0.0, description="damping ratio added to that of every mode that is not rigid")
 
 
 _PLACE = "the coordinates x y z of a place, such as ['0 mm', '280 mm', '200 mm']"
@@ -58,7 +45,7 @@ class Point(Part):
         None,
         description="address of a part, such as 'bearings.input_left' or 'gears.wheel', or of a casing: 'casings.box'",
     )
-    place: Annotated[tuple[Length, Length, Length], listed(3, _PLACE)] | None = Field(
+    place: Annotated[tuple[si.Length, si.Length, si.Length], listed(3, _PLACE)] | None = Field(
         None, description="on a casing: x y z of a place; the point is that of its surface which is next to it"
     )
     shaft: str | None = Field(None, description="name of a shaft, in place of a part")

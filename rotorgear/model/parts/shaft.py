@@ -6,33 +6,17 @@ from typing import Literal, NamedTuple
 
 from pydantic import Field
 
-from rotorgear.model.parts.fields import (
-    Density,
-    Flag,
-    Inertia,
-    Length,
-    Mass,
-    Modulus,
-    NonNegativeLength,
-    Part,
-    Position,
-    PositiveLength,
-    PositiveRatio,
-    Ratio,
-    SignedRatio,
-    Station,
-    Time,
-    Whole,
-)
+from rotorgear.model.parts import fields as si
+from rotorgear.model.parts.fields import Flag, Part, Station, Whole
 
 
 class Material(Part):
     """An isotropic elastic material: two of E, G and nu are enough."""
 
-    youngs_modulus: Modulus = Field(description="Young's modulus E")
-    density: Density = Field(description="density")
-    poisson_ratio: Ratio | None = Field(None, description="Poisson's ratio nu; follows from G where that is given")
-    shear_modulus: Modulus | None = Field(None, description="shear modulus G; follows from nu where that is given")
+    youngs_modulus: si.Modulus = Field(description="Young's modulus E")
+    density: si.Density = Field(description="density")
+    poisson_ratio: si.Ratio | None = Field(None, description="Poisson's ratio nu; follows from G where that is given")
+    shear_modulus: si.Modulus | None = Field(None, description="shear modulus G; follows from nu where that is given")
 
     @property
     def nu(self) -> float:
@@ -65,21 +49,21 @@ LIBRARY = {
 class Section(Part):
     """Part of a shaft between two values of z, cylindrical or conical."""
 
-    length: PositiveLength = Field(description="length along z")
-    outer_diameter: PositiveLength = Field(description="outer diameter (at the left end of a cone)")
-    bore: NonNegativeLength = Field(0.0, description="inner diameter (at the left end of a cone)")
-    outer_diameter_end: PositiveLength | None = Field(None, description="outer diameter at the right end of a cone")
-    bore_end: NonNegativeLength | None = Field(None, description="inner diameter at the right end of a cone")
-    mass_outer_diameter: PositiveLength | None = Field(
+    length: si.PositiveLength = Field(description="length along z")
+    outer_diameter: si.PositiveLength = Field(description="outer diameter (at the left end of a cone)")
+    bore: si.NonNegativeLength = Field(0.0, description="inner diameter (at the left end of a cone)")
+    outer_diameter_end: si.PositiveLength | None = Field(None, description="outer diameter at the right end of a cone")
+    bore_end: si.NonNegativeLength | None = Field(None, description="inner diameter at the right end of a cone")
+    mass_outer_diameter: si.PositiveLength | None = Field(
         None, description="outer diameter that counts for the mass, where it differs from that for the stiffness"
     )
-    mass_outer_diameter_end: PositiveLength | None = Field(
+    mass_outer_diameter_end: si.PositiveLength | None = Field(
         None, description="the same at the right end; default: as at the left end"
     )
-    mass_bore: NonNegativeLength | None = Field(None, description="inner diameter that counts for the mass")
-    mass_bore_end: NonNegativeLength | None = Field(None, description="the same at the right end")
+    mass_bore: si.NonNegativeLength | None = Field(None, description="inner diameter that counts for the mass")
+    mass_bore_end: si.NonNegativeLength | None = Field(None, description="the same at the right end")
     material: str | None = Field(None, description="name of a material; default: the shaft's")
-    shear_coefficient: PositiveRatio | None = Field(None, description="shear coefficient kappa; default: Cowper's")
+    shear_coefficient: si.PositiveRatio | None = Field(None, description="shear coefficient kappa; default: Cowper's")
     rigid: Flag = Field(False, description="true: moves as a rigid body (it keeps its mass)")
     elements: Whole | None = Field(None, description="elements of this section; overrides --elements")
 
@@ -104,18 +88,18 @@ class Section(Part):
 class Shaft(Part):
     """A shaft: an axis parallel to z, and sections from its start on. Without sections it is one rigid point."""
 
-    position: Position | None = Field(
+    position: si.Position | None = Field(
         None, description="(x, y) of the axis; may be left out where no gear on the shaft needs a centre distance"
     )
-    start: Length = Field(0.0, description="z of the left end of the first section")
+    start: si.Length = Field(0.0, description="z of the left end of the first section")
     sections: tuple[Section, ...] = Field((), description="sections from left to right")
     material: str = Field("steel", description="name of a material, from [materials] or the library")
     shear_deformation: Flag = Field(True, description="false: no shear deformation (kappa G A infinite)")
     mass_matrix: Literal["consistent", "lumped"] = Field("consistent", description="inertia of the elements")
-    internal_damping: Time = Field(
+    internal_damping: si.Time = Field(
         0.0, description="viscous rotating damping eta of the material: C = eta K of the shaft"
     )
-    speed_ratio: SignedRatio | None = Field(
+    speed_ratio: si.SignedRatio | None = Field(
         None, description="speed relative to the input shaft, only where no mesh or coupling leads to this shaft"
     )
 
@@ -162,12 +146,12 @@ class Disk(Part):
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the middle, or 'start' or 'end'")
-    mass: Mass | None = Field(None, description="mass")
-    polar_inertia: Inertia | None = Field(None, description="moment of inertia about z")
-    diametral_inertia: Inertia | None = Field(None, description="moment of inertia about x and y through the middle")
-    outer_diameter: PositiveLength | None = Field(None, description="outer diameter of a plain cylinder")
-    bore: NonNegativeLength | None = Field(None, description="its bore; default: the shaft's diameter there")
-    width: PositiveLength | None = Field(None, description="its width")
+    mass: si.Mass | None = Field(None, description="mass")
+    polar_inertia: si.Inertia | None = Field(None, description="moment of inertia about z")
+    diametral_inertia: si.Inertia | None = Field(None, description="moment of inertia about x and y through the middle")
+    outer_diameter: si.PositiveLength | None = Field(None, description="outer diameter of a plain cylinder")
+    bore: si.NonNegativeLength | None = Field(None, description="its bore; default: the shaft's diameter there")
+    width: si.PositiveLength | None = Field(None, description="its width")
     material: str | None = Field(None, description="its material; default: the shaft's")
 
 
@@ -176,4 +160,4 @@ class PointMass(Part):
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the place, or 'start' or 'end'")
-    mass: Mass = Field(description="mass")
+    mass: si.Mass = Field(description="mass")

@@ -8,23 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
+from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.bearings.geometry import BearingGeometry, Oil
 from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
-from rotorgear.model.parts.fields import (
-    Damping,
-    Mass,
-    Matrix6,
-    Part,
-    RotationalDamping,
-    RotationalStiffness,
-    SignedDamping,
-    SignedStiffness,
-    Speed,
-    Station,
-    Stiffness,
-)
+from rotorgear.model.parts.fields import Part, Station
 from rotorgear.model.parts.problems import class_at
 from rotorgear.quantity import QuantityError, parse_in_unit
 
@@ -66,39 +55,39 @@ class _SixBySix(Part):
 class StiffnessMatrix(_SixBySix):
     """Stiffness of a bearing, support or coupling."""
 
-    radial: Stiffness | None = Field(None, description="along x and y")
-    x: Stiffness | None = Field(None, description="along x")
-    y: Stiffness | None = Field(None, description="along y")
-    axial: Stiffness | None = Field(None, description="along z")
-    xy: SignedStiffness | None = Field(None, description="cross term: force along x from a displacement along y")
-    yx: SignedStiffness | None = Field(None, description="cross term: force along y from a displacement along x")
-    tilt: RotationalStiffness | None = Field(None, description="about x and y")
-    tilt_x: RotationalStiffness | None = Field(None, description="about x")
-    tilt_y: RotationalStiffness | None = Field(None, description="about y")
-    torsion: RotationalStiffness | None = Field(None, description="about z")
-    matrix: Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
+    radial: si.Stiffness | None = Field(None, description="along x and y")
+    x: si.Stiffness | None = Field(None, description="along x")
+    y: si.Stiffness | None = Field(None, description="along y")
+    axial: si.Stiffness | None = Field(None, description="along z")
+    xy: si.SignedStiffness | None = Field(None, description="cross term: force along x from a displacement along y")
+    yx: si.SignedStiffness | None = Field(None, description="cross term: force along y from a displacement along x")
+    tilt: si.RotationalStiffness | None = Field(None, description="about x and y")
+    tilt_x: si.RotationalStiffness | None = Field(None, description="about x")
+    tilt_y: si.RotationalStiffness | None = Field(None, description="about y")
+    torsion: si.RotationalStiffness | None = Field(None, description="about z")
+    matrix: si.Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
 
 
 class DampingMatrix(_SixBySix):
     """Viscous damping of a bearing, support or coupling."""
 
-    radial: Damping | None = Field(None, description="along x and y")
-    x: Damping | None = Field(None, description="along x")
-    y: Damping | None = Field(None, description="along y")
-    axial: Damping | None = Field(None, description="along z")
-    xy: SignedDamping | None = Field(None, description="cross term: force along x from a velocity along y")
-    yx: SignedDamping | None = Field(None, description="cross term: force along y from a velocity along x")
-    tilt: RotationalDamping | None = Field(None, description="about x and y")
-    tilt_x: RotationalDamping | None = Field(None, description="about x")
-    tilt_y: RotationalDamping | None = Field(None, description="about y")
-    torsion: RotationalDamping | None = Field(None, description="about z")
-    matrix: Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
+    radial: si.Damping | None = Field(None, description="along x and y")
+    x: si.Damping | None = Field(None, description="along x")
+    y: si.Damping | None = Field(None, description="along y")
+    axial: si.Damping | None = Field(None, description="along z")
+    xy: si.SignedDamping | None = Field(None, description="cross term: force along x from a velocity along y")
+    yx: si.SignedDamping | None = Field(None, description="cross term: force along y from a velocity along x")
+    tilt: si.RotationalDamping | None = Field(None, description="about x and y")
+    tilt_x: si.RotationalDamping | None = Field(None, description="about x")
+    tilt_y: si.RotationalDamping | None = Field(None, description="about y")
+    torsion: si.RotationalDamping | None = Field(None, description="about z")
+    matrix: si.Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
 
 
 class TableRow(Part):
     """A bearing's matrices at one speed of its shaft."""
 
-    speed: Speed = Field(description="speed of the bearing's own shaft, without sign")
+    speed: si.Speed = Field(description="speed of the bearing's own shaft, without sign")
     stiffness: StiffnessMatrix = Field(description="stiffness at that speed")
     damping: DampingMatrix | None = Field(None, description="damping at that speed; default: none")
 
@@ -106,7 +95,7 @@ class TableRow(Part):
 class Pedestal(Part):
     """A flexible pedestal with mass in series with a bearing. A direction without stiffness is rigid."""
 
-    mass: Mass = Field(0.0, description="mass that moves with the bearing's housing")
+    mass: si.Mass = Field(0.0, description="mass that moves with the bearing's housing")
     stiffness: StiffnessMatrix = Field(description="stiffness to ground along x, y and z")
     damping: DampingMatrix | None = Field(None, description="damping to ground along x, y and z")
 
