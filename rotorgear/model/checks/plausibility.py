@@ -10,14 +10,14 @@ import math
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import chain, pairwise
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any
 
 from pydantic import BaseModel
 
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.parts.bearings.geometry import Judged
-from rotorgear.model.parts.fields import Unit
+from rotorgear.model.parts.bearings.geometry import UNIT, Judged
+from rotorgear.model.parts.fields import unit_of
 from rotorgear.model.parts.gear import DEPTHS
 from rotorgear.model.parts.load import Load, LoadHistory
 from rotorgear.model.parts.operation import Operation
@@ -25,53 +25,11 @@ from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
 from rotorgear.quantity import GRAVITY, RPM_PER_RAD_S
 
-# What a value is asked that may be wrong either way, and a share that is too large.
-_ASK = ("is its unit right?", "is its unit right?")
-_PERCENT = ("", "percent meant?")
-# Usual ranges. Speed of sound sqrt(E/rho) in m/s: rubber to beryllium.
-_SOUND = (300.0, 14e3)
 # Densities of solids in kg/m^3, and the units that slip.
 _SOLID = (1.4e3, 2.3e4)
 _DENSITIES = {"g/cm^3": 1e3, "kg/mm^3": 1e9, "t/mm^3": 1e12}
-# Length of a shaft over its largest diameter, and of its largest over its smallest diameter.
-_SLENDER = (0.05, 200.0)
-_STEPPED = 60.0
-# Face width over base diameter; normal module in m.
-_WIDTH = (0.01, 5.0)
-_MODULE = (0.05e-3, 0.1)
-# Mesh stiffness over width in N/m^2 (ISO 6336-1: 1.4e10 to 2.5e10 for steel), and alone in N/m.
-_MESH_PER_WIDTH = (5e8, 3e11)
-_MESH = (1e5, 1e12)
-# Radius of gyration in m; eccentricity of an unbalance in m.
-_GYRATION = (1e-3, 10.0)
-_ECCENTRICITY = 1e-3
-# Errors, reliefs and gaps of flanks over module; face width over module; base diameter over that of the thinnest shaft.
-_ERROR = 0.2
-_DEPTH = 0.1
-_PER_MODULE = (0.8, 300.0)
-_PER_SHAFT = 60.0
-_DAMPING = 0.5
-_VISCOSITY = (5e-5, 3.0)
-# Sag of a rotor on its bearings in m; stiffness of a bearing in N/m that nothing reaches, and what is usual.
-_SAG = 1e-3
-_STIFFEST = 1e12
+# Usual stiffness of a bearing.
 _SPRING = "1e6 to 1e10 N/m"
-# Damping of a bearing over the critical one; twist of a coupling under the torque of the operating point in rad.
-_OVERDAMPED = 1e3
-_TWIST = 0.5
-# Surface of a shaft, and gears at their base circles, in m/s.
-_SURFACE = 600.0
-_FLANKS = 400.0
-# Speed over the first bending frequency of a shaft on its bearings.
-_SUPERCRITICAL = 60.0
-# Shear stress of the thinnest part of a shaft in Pa under its torque; stress along a shaft under a force, and by its own weight.
-_SHEAR = (3e4, 1.5e9)
-_STRESS = 1.5e9
-_WEIGHT = 3e8
-_WEIGHTS = (1.5, 300.0)
-_ALPHA = 1e4
-_BETA = 1e-2
-_RIPPLE = 3.0
 # A file of so many rows is sampled; a gap of so many of their spacings is one of missing rows.
 _MANY = 20
 _GAP = 10.0
@@ -91,9 +49,10 @@ def implausible(layout: Layout) -> Iterator[str]:
         _bodies(layout),
         _operation(layout),
     )
-    for address, value, usual, words, slips in judged:
-        if not usual[0] <= value <= usual[1]:
-            yield f"{address}: {words[0]}; usual is {words[1]}: {slips[0] if value < usual[0] else slips[1]}"
+    for address, value, (low, high), got, usual, slips in judged:
+        if not low <= value <= high:
+            slip = slips if isinstance(slips, str) else slips[value > high]
+            yield f"{address}: {got}; usual is {usual.format(low, high)}: {slip}"
 
 
 def _mass_of(layout: Layout, shaft: str) -> float:
@@ -106,28 +65,41 @@ def _mass_of(layout: Layout, shaft: str) -> float:
     return total + sum(body.body.mass for body in layout.bodies if body.shaft == shaft)
 
 
+def _thickest(sections: Iterable[Section]) -> float:
+    """Largest outer diameter (m) at the left ends of some sections; 0 without any."""
+    return max((section.outer_diameter for section in sections), default=0.0)
+
+
 def _thinnest(sections: Iterable[Section]) -> float:
     """Least outer diameter (m) of the sections that can bend; 0 without any."""
     return min((section.outer_diameter for section in sections if not section.rigid), default=0.0)
 
 
 def _materials(layout: Layout) -> Iterator[Judged]:
+    """By the speed of sound, of rubber to beryllium."""
     for name, material in layout.model.materials.items():
-        sound = math.sqrt(material.youngs_modulus / material.density)
-        speed = (f", with which sound runs at {sound:.3g} m/s", f"{_SOUND[0]:g} to {_SOUND[1]:g} m/s")
+        E = material.youngs_modulus
+        key = "youngs_modulus"
+        got = f"{E:.6g} N/m^2"
+        slips: str | tuple[str, str] = (
+            f"{'MPa' if E > 5e3 else 'GPa'} meant?",
+            f"{UNIT[:-1]}, and that of the density?",
+        )
         if material.density < 50.0:
             known = [unit for unit, factor in _DENSITIES.items() if _SOLID[0] <= factor * material.density <= _SOLID[1]]
-            for unit in known[:1]:  # else without mass on purpose
-                words = (f"{material.density:.6g} kg/m^3{speed[0]}", speed[1])
-                yield f"materials.{name}.density", sound, _SOUND, words, (f"{unit} meant?", f"{unit} meant?")
-        else:
-            low = "MPa meant?" if material.youngs_modulus > 5e3 else "GPa meant?"
-            words = (f"{material.youngs_modulus:.6g} N/m^2{speed[0]}", speed[1])
-            slips = (low, "is its unit right, and that of the density?")
-            yield f"materials.{name}.youngs_modulus", sound, _SOUND, words, slips
+            if not known:  # without mass on purpose
+                continue
+            key = "density"
+            got = f"{material.density:.6g} kg/m^3"
+            slips = f"{known[0]} meant?"
+        sound = math.sqrt(E / material.density)
+        got = f"{got}, with which sound runs at {sound:.3g} m/s"
+        yield f"materials.{name}.{key}", sound, (300.0, 14e3), got, "{:g} to {:g} m/s", slips
 
 
 def _shafts(layout: Layout) -> Iterator[Judged]:
+    """Length over the largest diameter, and the largest diameter over the smallest."""
+    usual = (0.05, 200.0)
     for name, shaft in layout.model.shafts.items():
         largest = [max(section.outer_diameter, section.outer_diameter_end or 0.0) for section in shaft.sections]
         if not largest:
@@ -136,13 +108,11 @@ def _shafts(layout: Layout) -> Iterator[Judged]:
         thin = min(largest)
         slender = shaft.length / thick
         got = f"{shaft.length:.4g} m long and up to {thick:.4g} m thick, {slender:.3g} diameters"
-        words = (got, f"{_SLENDER[0]:g} to {_SLENDER[1]:g} diameters")
-        slip = "is a length or diameter in mm?"
-        yield f"shafts.{name}", slender, _SLENDER, words, (slip, slip)
-        if _SLENDER[0] <= slender <= _SLENDER[1]:
+        yield f"shafts.{name}", slender, usual, got, "{:g} to {:g} diameters", "is a length or diameter in mm?"
+        if usual[0] <= slender <= usual[1]:
             address = f"shafts.{name}.sections[{largest.index(thick)}].outer_diameter"
-            words = (f"{thick:.4g} m beside {thin:.4g} m", f"up to {_STEPPED:g} times as much")
-            yield address, thick, (0.0, _STEPPED * thin), words, ("", "mm meant?")
+            got = f"{thick:.4g} m beside {thin:.4g} m"
+            yield address, thick / thin, (0.0, 60.0), got, "up to {1:g} times as much", "mm meant?"
 
 
 def _gears(layout: Layout) -> Iterator[Judged]:
@@ -152,54 +122,53 @@ def _gears(layout: Layout) -> Iterator[Judged]:
         width = gear.part.width
         diameter = 2.0 * gear.base_radius
         if module is not None:
-            words = (f"{module:.4g} m", "0.05 to 100 mm")
-            yield f"{address}.normal_module", module, _MODULE, words, ("mm meant?", "mm meant?")
+            got = f"{module:.4g} m"
+            yield f"{address}.normal_module", module, (0.05e-3, 0.1), got, "0.05 to 100 mm", "mm meant?"
         if width and diameter:
             got = f"{width:.4g} m on a base diameter of {diameter:.4g} m"
-            words = (got, f"{_WIDTH[0]:g} to {_WIDTH[1]:g} of it")
-            yield f"{address}.width", width / diameter, _WIDTH, words, (_ASK[0], "mm meant?")
+            yield f"{address}.width", width / diameter, (0.01, 5.0), got, "{:g} to {:g} of it", (UNIT, "mm meant?")
         if module is not None and width:
-            words = (f"{width:.4g} m, {width / module:.3g} modules", "5 to 60 modules")
-            slips = ("is the module in inches, or the width in another unit?", _ASK[1])
-            yield f"{address}.width", width / module, _PER_MODULE, words, slips
+            got = f"{width:.4g} m, {width / module:.3g} modules"
+            slips = ("is the module in inches, or the width in another unit?", UNIT)
+            yield f"{address}.width", width / module, (0.8, 300.0), got, "5 to 60 modules", slips
         if module is not None:
             depths = {f"flank.{key}": getattr(gear.part.flank, key) for key in DEPTHS}
             for key, depth in {"tip_relief": gear.part.tip_relief, **depths}.items():
-                words = (f"{depth:.4g} m at a module of {module:.4g} m", f"up to {_DEPTH:g} of it")
-                yield f"{address}.{key}", abs(depth), (0.0, _DEPTH * module), words, ("", "um meant?")
+                got = f"{depth:.4g} m at a module of {module:.4g} m"
+                yield f"{address}.{key}", abs(depth) / module, (0.0, 0.1), got, "up to {1:g} of it", "um meant?"
         thin = _thinnest(gear.shaft_part.sections)
         if thin and diameter:
             got = f"{diameter:.4g} m of its base circle on a shaft of {thin:.4g} m"
-            words = (got, f"up to {_PER_SHAFT:g} times as much")
-            yield address, diameter / thin, (0.0, _PER_SHAFT), words, ("", "mm meant?")
+            yield address, diameter / thin, (0.0, 60.0), got, "up to {1:g} times as much", "mm meant?"
 
 
 def _mesh(address: str, mesh: MeshLayout) -> Iterator[Judged]:
     part = mesh.part
     given = mesh.given_mean
     if given is not None:
+        # Over the width in N/m^2 (ISO 6336-1: 1.4e10 to 2.5e10 for steel), or alone in N/m.
         width = mesh.width * mesh.helices
-        low, high = (_MESH_PER_WIDTH[0] * width, _MESH_PER_WIDTH[1] * width) if width else _MESH
-        words = (f"{given:.4g} N/m", f"{low:.2g} to {high:.2g} N/m")
-        yield f"{address}.stiffness", given, (low, high), words, ("N/um or N/(mm um) meant?", _ASK[1])
+        usual = (5e8 * width, 3e11 * width) if width else (1e5, 1e12)
+        slips = ("N/um or N/(mm um) meant?", UNIT)
+        yield f"{address}.stiffness", given, usual, f"{given:.4g} N/m", "{:.2g} to {:.2g} N/m", slips
     module = mesh.pinion.part.normal_module
     if module:
         for item in part.transmission_error:
-            words = (f"{item.amplitude:.4g} m at a module of {module:.4g} m", f"up to {_ERROR:g} of it")
-            error = (0.0, _ERROR * module)
-            yield f"{address}.transmission_error", item.amplitude, error, words, ("", "um meant?")
+            share = item.amplitude / module
+            got = f"{item.amplitude:.4g} m at a module of {module:.4g} m"
+            yield f"{address}.transmission_error", share, (0.0, 0.2), got, "up to {1:g} of it", "um meant?"
         for key in ("backlash", "index_error"):
             gap = getattr(part, key) or 0.0
-            words = (f"{gap:.4g} m", "below the module")
-            yield f"{address}.{key}", abs(gap), (0.0, module), words, ("", "um or mm meant?")
-    words = (f"{part.friction_coefficient:.4g}", "0.02 to 0.1")
-    yield f"{address}.friction_coefficient", part.friction_coefficient, (0.0, 1.0), words, _PERCENT
+            got = f"{gap:.4g} m"
+            yield f"{address}.{key}", abs(gap), (0.0, module), got, "below the module", "um or mm meant?"
+    friction = part.friction_coefficient
+    yield f"{address}.friction_coefficient", friction, (0.0, 1.0), f"{friction:.4g}", "0.02 to 0.1", "percent meant?"
     oil = part.lubricant_viscosity
     if oil:
-        words = (f"{oil:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
-        yield f"{address}.lubricant_viscosity", oil, _VISCOSITY, words, (_ASK[0], "mPa s (cP) meant?")
-    words = (f"{part.damping_ratio:.4g}", "0.02 to 0.2")
-    yield f"{address}.damping_ratio", part.damping_ratio, (0.0, _DAMPING), words, _PERCENT
+        slips = (UNIT, "mPa s (cP) meant?")
+        yield f"{address}.lubricant_viscosity", oil, (5e-5, 3.0), f"{oil:.4g} Pa s", "{:g} to {:g} Pa s", slips
+    ratio = part.damping_ratio
+    yield f"{address}.damping_ratio", ratio, (0.0, 0.5), f"{ratio:.4g}", "0.02 to 0.2", "percent meant?"
 
 
 def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]:
@@ -213,16 +182,14 @@ def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]
         yield from _stiffness(f"{address}.pedestal.stiffness", bearing.pedestal.stiffness, weight, given=True)
     diameters = [section.outer_diameter for section in layout.model.shafts[bearing.shaft].sections]
     for kind, geometry in bearing.geometries.items():
-        for key, value, usual, words, slips in geometry.judged():
-            yield f"{address}.{kind}.{key}", value, usual, words, slips
+        for key, *judged in geometry.judged():
+            yield f"{address}.{kind}.{key}", *judged
         if diameters:  # the size of what surrounds the shaft against the shaft
             size = geometry.surrounds
-            thin = min(diameters)
-            thick = max(diameters)
-            fits = (geometry.fits[0] * thin, geometry.fits[1] * thick)
-            got = f"{size:.4g} m on a shaft of {thin:.4g} to {thick:.4g} m"
-            words = (got, f"{fits[0]:.2g} to {fits[1]:.2g} m")
-            yield f"{address}.{kind}.{geometry.ring}", size, fits, words, (_ASK[0], "mm meant?")
+            fits = (geometry.fits[0] * min(diameters), geometry.fits[1] * max(diameters))
+            got = f"{size:.4g} m on a shaft of {min(diameters):.4g} to {max(diameters):.4g} m"
+            slips = (UNIT, "mm meant?")
+            yield f"{address}.{kind}.{geometry.ring}", size, fits, got, "{:.2g} to {:.2g} m", slips
     if bearing.stiffness is not None and bearing.damping is not None:
         # Damping across the shaft against that which is critical with its stiffness and the mass of the rotor.
         stiffness = max(bearing.stiffness.as_rows()[i][i] for i in range(2))
@@ -230,7 +197,7 @@ def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]
         if stiffness > 0.0 and mass:
             ratio = damping / (2.0 * math.sqrt(stiffness * mass))
             got = f"{damping:.4g} N s/m, {ratio:.3g} of the critical damping"
-            yield f"{address}.damping", ratio, (0.0, _OVERDAMPED), (got, f"up to {_OVERDAMPED:g} of it"), _ASK
+            yield f"{address}.damping", ratio, (0.0, 1e3), got, "up to {1:g} of it", UNIT
 
 
 def _stiffness(address: str, matrix: StiffnessMatrix, weight: float, *, given: bool = False) -> Iterator[Judged]:
@@ -239,14 +206,14 @@ def _stiffness(address: str, matrix: StiffnessMatrix, weight: float, *, given: b
     across = [rows[i][i] for i in range(2) if rows[i][i] or not given]
     if not any(any(row) for row in rows):
         if not given:
-            yield address, 0.0, (1.0, 1.0), ("0 in all directions", _SPRING), ("it holds nothing; leave it out", "")
+            yield address, 0.0, (1.0, 1.0), "0 in all directions", _SPRING, "it holds nothing; leave it out"
     elif across:
         softest = min(across)
-        yield address, max(across), (-math.inf, _STIFFEST), (f"{max(across):.4g} N/m", _SPRING), _ASK
+        yield address, max(across), (-math.inf, 1e12), f"{max(across):.4g} N/m", _SPRING, UNIT
         if max(across) > 0.0:
             sag = f"{softest:.4g} N/m, on which its rotor sags by {1e3 * weight / (softest or 1.0):.3g} mm"
-            words = (sag if softest else "no stiffness across", _SPRING)
-            yield address, weight, (0.0, _SAG * softest), words, ("", "N/mm or N/um meant?")
+            got = sag if softest else "no stiffness across"
+            yield address, weight, (0.0, 1e-3 * softest), got, _SPRING, "N/mm or N/um meant?"
 
 
 def _couplings(layout: Layout) -> Iterator[Judged]:
@@ -261,30 +228,27 @@ def _couplings(layout: Layout) -> Iterator[Judged]:
         ratio = abs(float(layout.train.ratio(coupling.from_shaft)))
         if stiffness > 0.0 and ratio:
             twist = torque / ratio / stiffness
-            whole = (
-                f"{stiffness:.4g} N m/rad, which the whole torque of the operating point would twist by {twist:.3g} rad"
-            )
-            words = (whole, f"up to {_TWIST:g} rad")
-            yield f"couplings.{name}.stiffness", twist, (0.0, _TWIST), words, ("", "kN m/rad meant?")
+            what = f"which the whole torque of the operating point would twist by {twist:.3g} rad"
+            got = f"{stiffness:.4g} N m/rad, {what}"
+            yield f"couplings.{name}.stiffness", twist, (0.0, 0.5), got, "up to {1:g} rad", "kN m/rad meant?"
 
 
 def _bodies(layout: Layout) -> Iterator[Judged]:
+    """Radii of gyration of bodies, and eccentricities of unbalances."""
     for body in layout.bodies:
         mass = body.body.mass
         polar = body.body.polar_inertia
         if mass and polar:
             radius = math.sqrt(polar / mass)
             got = f"{polar:.4g} kg m^2 on {mass:.4g} kg, a radius of gyration of {radius:.3g} m"
-            slip = "kg mm^2 or g meant?"
-            words = (got, f"{_GYRATION[0]:g} to {_GYRATION[1]:g} m")
-            yield f"{body.part}.polar_inertia", radius, _GYRATION, words, (slip, slip)
+            yield f"{body.part}.polar_inertia", radius, (1e-3, 10.0), got, "{:g} to {:g} m", "kg mm^2 or g meant?"
     for name, unbalance in layout.model.unbalances.items():
         mass = _mass_of(layout, unbalance.shaft)
         if mass:
             size = unbalance.magnitude
-            got = f"{size:.4g} kg m, which puts its rotor off by {1e3 * size / mass:.3g} mm"
-            words = (got, f"up to {1e3 * _ECCENTRICITY:g} mm")
-            yield f"unbalances.{name}.magnitude", size, (0.0, _ECCENTRICITY * mass), words, ("", "g mm meant?")
+            off = 1e3 * size / mass
+            got = f"{size:.4g} kg m, which puts its rotor off by {off:.3g} mm"
+            yield f"unbalances.{name}.magnitude", off, (0.0, 1.0), got, "up to {1:g} mm", "g mm meant?"
 
 
 def _operation(layout: Layout) -> Iterator[Judged]:
@@ -293,23 +257,22 @@ def _operation(layout: Layout) -> Iterator[Judged]:
     if model.operation and any(model.operation.gravity or ()):
         size = math.sqrt(sum(x * x for x in model.operation.gravity or ()))
         slips = ("is it in g?", "mm/s^2 meant?")
-        yield "operation.gravity", size, _WEIGHTS, (f"{size:.4g} m/s^2", "9.81 m/s^2"), slips
+        yield "operation.gravity", size, (1.5, 300.0), f"{size:.4g} m/s^2", "9.81 m/s^2", slips
     ratio = model.damping.modal_ratio
     alpha = model.damping.rayleigh_alpha
     beta = model.damping.rayleigh_beta
-    yield "damping.modal_ratio", ratio, (0.0, _DAMPING), (f"{ratio:.4g}", "0.005 to 0.05"), _PERCENT
-    yield "damping.rayleigh_beta", beta, (0.0, _BETA), (f"{beta:.4g} s", f"up to {_BETA:g} s"), ("", "us meant?")
-    yield "damping.rayleigh_alpha", alpha, (0.0, _ALPHA), (f"{alpha:.4g} 1/s", f"up to {_ALPHA:g} 1/s"), _ASK
+    yield "damping.modal_ratio", ratio, (0.0, 0.5), f"{ratio:.4g}", "0.005 to 0.05", "percent meant?"
+    yield "damping.rayleigh_beta", beta, (0.0, 1e-2), f"{beta:.4g} s", "up to {1:g} s", "us meant?"
+    yield "damping.rayleigh_alpha", alpha, (0.0, 1e4), f"{alpha:.4g} 1/s", "up to {1:g} 1/s", UNIT
     yield from [item for item in _speeds(layout) if item[1] > item[2][1]][:1]
     # Stress of the thickest section of a shaft under its own weight in the middle between its ends.
     for name, shaft in model.shafts.items():
-        thick = max((section.outer_diameter for section in shaft.sections), default=0.0)
+        thick = _thickest(shaft.sections)
         if thick:
             mass = _mass_of(layout, name)
             stress = 8.0 * GRAVITY * mass * shaft.length / (math.pi * thick**3)
             got = f"{mass:.4g} kg with what it carries, under which it would have {1e-6 * stress:.3g} MPa"
-            slips = ("", "is a mass in g, or a density off?")
-            yield f"shafts.{name}", stress, (0.0, _WEIGHT), (got, "up to 300 MPa"), slips
+            yield f"shafts.{name}", stress, (0.0, 3e8), got, "up to 300 MPa", "is a mass in g, or a density off?"
     yield from _loads(layout)
     for name, load in model.loads.items():
         if load.history is not None:
@@ -329,27 +292,26 @@ def _speeds(layout: Layout) -> Iterator[Judged]:
     speeds = {name: abs(model.operation.speed * layout.train.ratio(name)) for name in model.shafts}
 
     def row(shaft: str, value: float, most: float, what: str, usual: str) -> Judged:
-        words = (f"{speeds[shaft] * RPM_PER_RAD_S:.4g} rpm of shaft '{shaft}', {what}", usual)
-        return "operation.speed", value, (0.0, most), words, ("", "rpm meant?")
+        got = f"{speeds[shaft] * RPM_PER_RAD_S:.4g} rpm of shaft '{shaft}', {what}"
+        return "operation.speed", value, (0.0, most), got, usual, "rpm meant?"
 
-    def runs(shaft: str, value: float, most: float, what: str) -> Judged:
-        return row(shaft, value, most, f"{what} at {value:.3g} m/s", f"up to {most:g} m/s")
+    def runs(shaft: str, diameter: float, most: float, what: str) -> Judged:
+        value = 0.5 * diameter * speeds[shaft]
+        return row(shaft, value, most, f"{what} at {value:.3g} m/s", "up to {1:g} m/s")
 
     for name, shaft in model.shafts.items():
-        largest = max((section.outer_diameter for section in shaft.sections), default=0.0)
-        yield runs(name, 0.5 * largest * speeds[name], _SURFACE, "whose surface runs")
+        yield runs(name, _thickest(shaft.sections), 600.0, "whose surface runs")
     for gear in layout.gears:
-        yield runs(gear.shaft, gear.base_radius * speeds[gear.shaft], _FLANKS, f"whose gear '{gear.name}' runs")
+        yield runs(gear.shaft, 2.0 * gear.base_radius, 400.0, f"whose gear '{gear.name}' runs")
     for name, bearing in model.bearings.items():
         if (inside := bearing.geometry) is not None:
-            value = 0.5 * inside.surrounds * speeds[bearing.shaft]
-            yield runs(bearing.shaft, value, inside.fastest, inside.runs.format(name))
+            yield runs(bearing.shaft, inside.surrounds, inside.fastest, inside.runs.format(name))
     for name in model.shafts if model.has("bending") else ():
         first = _first_bending(layout, name)
         if first:
             times = speeds[name] / first
             what = f"{times:.3g} times its first bending frequency on rigid bearings"
-            yield row(name, times, _SUPERCRITICAL, what, f"up to {_SUPERCRITICAL:g} times")
+            yield row(name, times, 60.0, what, "up to {1:g} times")
 
 
 def _first_bending(layout: Layout, name: str) -> float | None:
@@ -380,30 +342,36 @@ def _loads(layout: Layout) -> Iterator[Judged]:
     }
     if model.operation:
         given["operation"] = (model.operation, model.operation.input_shaft)
-    speed = model.operation.speed if model.operation else None
     for address, (part, shaft) in given.items():
         thinnest = _thinnest(model.shafts[shaft].sections)
         ripple = getattr(part, "ripple", 0.0)
-        yield f"{address}.ripple", ripple, (0.0, _RIPPLE), (f"{ripple:.4g}", "0 to 1"), _PERCENT
+        yield f"{address}.ripple", ripple, (0.0, 3.0), f"{ripple:.4g}", "0 to 1", "percent meant?"
         if not thinnest:
             continue
         force = math.sqrt(sum(x * x for x in getattr(part, "force", None) or ()))
         yield _along(f"{address}.force", force, thinnest)
-        turning = abs(speed * layout.train.ratio(shaft)) if speed else 0.0
+        turning = abs((model.operating_speed or 0.0) * layout.train.ratio(shaft))
         torque = part.torque or (part.power / turning if part.power and turning else 0.0)
         if torque:
             stress = 16.0 * torque / (math.pi * thinnest**3)
             thick = f"in a shaft of {1e3 * thinnest:.3g} mm"
-            words = (f"{torque:.4g} N m, a shear stress of {1e-6 * stress:.3g} MPa {thick}", "0.03 to 1500 MPa")
+            got = f"{torque:.4g} N m, a shear stress of {1e-6 * stress:.3g} MPa {thick}"
             slips = ("kN m or kW meant?", "N mm or W meant?")
-            yield f"{address}.{'torque' if part.torque else 'power'}", stress, _SHEAR, words, slips
+            yield (
+                f"{address}.{'torque' if part.torque else 'power'}",
+                stress,
+                (3e4, 1.5e9),
+                got,
+                "0.03 to 1500 MPa",
+                slips,
+            )
 
 
 def _along(address: str, force: float, thickness: float) -> Judged:
     """A force against the strength of a shaft of a thickness along its axis."""
     stress = 4.0 * force / (math.pi * thickness**2)
     got = f"{force:.4g} N, a stress of {1e-6 * stress:.3g} MPa in a shaft of {1e3 * thickness:.3g} mm"
-    return address, stress, (0.0, _STRESS), (got, "up to 1500 MPa"), _ASK
+    return address, stress, (0.0, 1.5e9), got, "up to 1500 MPa", UNIT
 
 
 def _history(address: str, history: LoadHistory, thinnest: float) -> Iterator[Judged]:
@@ -418,24 +386,16 @@ def _history(address: str, history: LoadHistory, thinnest: float) -> Iterator[Ju
     if len(spacings) >= _MANY:
         begin = history.places[spacings.index(widest)]
         unit = "s" if history.over == "time" else "rad"
-        words = (f"no row from {begin:.6g} to {begin + widest:.6g} {unit}", f"one every {usual:.4g} {unit}")
+        got = f"no row from {begin:.6g} to {begin + widest:.6g} {unit}"
         slip = "are rows missing? it is taken as linear between them"
-        yield address, widest, (0.0, _GAP * usual), words, ("", slip)
+        yield address, widest, (0.0, _GAP * usual), got, f"one every {usual:.4g} {unit}", slip
 
 
 @lru_cache
 def _angle_names(part: type[BaseModel]) -> tuple[str, ...]:
     """Names of the fields of a part that are angles."""
-
-    def marked(kind: Any) -> bool:
-        if get_origin(kind) is Annotated:
-            return any(isinstance(item, Unit) and item.dimension == "angle" for item in get_args(kind)[1:])
-        return any(marked(each) for each in get_args(kind))
-
-    def is_angle(field: Any) -> bool:
-        return marked(field.annotation) or any(isinstance(m, Unit) and m.dimension == "angle" for m in field.metadata)
-
-    return tuple(name for name, field in part.model_fields.items() if is_angle(field))
+    units = {name: unit_of(field) for name, field in part.model_fields.items()}
+    return tuple(name for name, unit in units.items() if unit and unit.dimension == "angle")
 
 
 def _angles(address: str, part: Any) -> Iterator[Judged]:
@@ -448,7 +408,7 @@ def _angles(address: str, part: Any) -> Iterator[Judged]:
         for name in type(part).model_fields:
             value = getattr(part, name)
             if name in angles and isinstance(value, float):
-                words = (f"{value:.6g} rad, {math.degrees(value):.6g} deg", "-720 to 720 deg")
-                yield f"{address}.{name}", value, (-_ANGLE, _ANGLE), words, ("deg meant?", "deg meant?")
+                got = f"{value:.6g} rad, {math.degrees(value):.6g} deg"
+                yield f"{address}.{name}", value, (-_ANGLE, _ANGLE), got, "-720 to 720 deg", "deg meant?"
             elif isinstance(value, tuple | BaseModel):
                 yield from _angles(f"{address}.{name}", value)

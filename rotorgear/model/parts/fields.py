@@ -108,13 +108,13 @@ class Part(BaseModel):
 
 def in_words(part: Part, key: str) -> str:
     """The value of a field with its unit; of a table in it the first quantity, of a list the first few entries."""
-    return _words(getattr(part, key), _unit_of(type(part).model_fields[key]))
+    return _words(getattr(part, key), unit_of(type(part).model_fields[key]))
 
 
 def _words(value: Any, unit: Unit | None) -> str:
     if isinstance(value, Part):
         fields = type(value).model_fields
-        given = (key for key in fields if isinstance(getattr(value, key), float) and _unit_of(fields[key]))
+        given = (key for key in fields if isinstance(getattr(value, key), float) and unit_of(fields[key]))
         return next((in_words(value, key) for key in given), "")
     if isinstance(value, tuple | dict):
         entries = list(value.values()) if isinstance(value, dict) else list(value)
@@ -125,10 +125,10 @@ def _words(value: Any, unit: Unit | None) -> str:
     return str(value)
 
 
-def _unit_of(about: Any) -> Unit | None:
+def unit_of(about: Any) -> Unit | None:
     """The unit in the type of a field, however deep it stands."""
     for item in (*getattr(about, "metadata", ()), *get_args(getattr(about, "annotation", about))):
-        found = item if isinstance(item, Unit) else _unit_of(item) if get_args(item) else None
+        found = item if isinstance(item, Unit) else unit_of(item) if get_args(item) else None
         if found:
             return found
     return None

@@ -62,6 +62,11 @@ class Tables(Part):
         return motion in self.motions
 
     @property
+    def operating_speed(self) -> float | None:
+        """Speed of the reference shaft at the operating point in rad/s; None where the file gives none."""
+        return self.operation.speed if self.operation else None
+
+    @property
     def reference_shaft(self) -> str:
         """The shaft whose speed is the reference: the input shaft, else the first one."""
         return self.operation.input_shaft if self.operation else next(iter(self.shafts))

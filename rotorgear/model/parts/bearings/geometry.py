@@ -20,8 +20,11 @@ from rotorgear.quantity import ZERO_CELSIUS
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
 
-# Key, value by which it is judged, what is usual; value and usual range as they are printed; likely slips below and above.
-Judged = tuple[str, float, tuple[float, float], tuple[str, str], tuple[str, str]]
+# Key, value by which it is judged, usual range; value as it is printed, range as it is printed with its limits in the place of
+# {0} and {1}; the likely slip of a unit, or those below and above.
+Judged = tuple[str, float, tuple[float, float], str, str, str | tuple[str, str]]
+# What is asked of a value that may be wrong in more ways.
+UNIT = "is its unit right?"
 
 
 class BearingGeometry(Part):
@@ -77,15 +80,9 @@ class BearingGeometry(Part):
         return "", "", ""
 
 
-# Usual: radial clearance over radius of a film; viscosity in Pa s; temperature of an inlet in K; density of oils in kg/m^3.
-_FILM = (1e-4, 0.02)
-
-_VISCOSITY = (5e-5, 3.0)
-
-
-_INLET = (233.15, 423.15)
-
-_OIL = (500.0, 2000.0)
+# Grades of ISO 3448 below and from 100 mm^2/s on.
+_THIN = Literal["VG 10", "VG 15", "VG 22", "VG 32", "VG 46", "VG 68"]
+_THICK = Literal["VG 100", "VG 150", "VG 220", "VG 320", "VG 460", "VG 680", "VG 1000"]
 
 
 class Oil(BearingGeometry):
@@ -98,24 +95,7 @@ class Oil(BearingGeometry):
     viscosity: Viscosity | None = Field(
         None, description="dynamic viscosity of the oil in the film, whatever its temperature; or give the oil"
     )
-    oil: (
-        Literal[
-            "VG 10",
-            "VG 15",
-            "VG 22",
-            "VG 32",
-            "VG 46",
-            "VG 68",
-            "VG 100",
-            "VG 150",
-            "VG 220",
-            "VG 320",
-            "VG 460",
-            "VG 680",
-            "VG 1000",
-        ]
-        | None
-    ) = Field(
+    oil: Literal[_THIN, _THICK] | None = Field(
         None,
         description="grade of ISO 3448 of a mineral oil, in place of the viscosity: the film has that of its temperature in heat "
         "balance",
@@ -193,14 +173,14 @@ class Oil(BearingGeometry):
         """Gap, viscosity, temperature and density."""
         clearance: float = self.clearance  # type: ignore[attr-defined]  # each kind has one, in words of its own
         share = clearance / (0.5 * self.surrounds)
-        words = (f"{clearance:.4g} m, {share:.2g} of the radius", f"{_FILM[0]:g} to {_FILM[1]:g}")
-        yield "clearance", share, _FILM, words, ("is its unit right?", "um meant?")
+        got = f"{clearance:.4g} m, {share:.2g} of the radius"
+        yield "clearance", share, (1e-4, 0.02), got, "{:g} to {:g}", (UNIT, "um meant?")
         if self.viscosity is not None:
-            words = (f"{self.viscosity:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
-            yield "viscosity", self.viscosity, _VISCOSITY, words, ("is its unit right?", "mPa s (cP) meant?")
+            got = f"{self.viscosity:.4g} Pa s"
+            yield "viscosity", self.viscosity, (5e-5, 3.0), got, "{:g} to {:g} Pa s", (UNIT, "mPa s (cP) meant?")
         if self.inlet_temperature is not None:
-            words = (f"{self.inlet_temperature - ZERO_CELSIUS:.4g} degC", "-40 to 150 degC")
-            slips = ("degC meant, not K?", "is its unit right?")
-            yield "inlet_temperature", self.inlet_temperature, _INLET, words, slips
-        words = (f"{self.density:.4g} kg/m^3", f"{_OIL[0]:g} to {_OIL[1]:g} kg/m^3")
-        yield "density", self.density, _OIL, words, ("g/cm^3 meant?", "is its unit right?")
+            celsius = self.inlet_temperature - ZERO_CELSIUS
+            slips = ("degC meant, not K?", UNIT)
+            yield "inlet_temperature", celsius, (-40.0, 150.0), f"{celsius:.4g} degC", "{:g} to {:g} degC", slips
+        got = f"{self.density:.4g} kg/m^3"
+        yield "density", self.density, (500.0, 2000.0), got, "{:g} to {:g} kg/m^3", ("g/cm^3 meant?", UNIT)

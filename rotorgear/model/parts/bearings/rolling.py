@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from rotorgear.errors import Problem
 from rotorgear.forces.designations import SERIES, class_clearance, inner_geometry
-from rotorgear.model.parts.bearings.geometry import BearingGeometry, Judged
+from rotorgear.model.parts.bearings.geometry import UNIT, BearingGeometry, Judged
 from rotorgear.model.parts.fields import Angle, Force, NonNegativeLength, PositiveLength, PositiveRatio, Whole, refuse
 from rotorgear.quantity import millimetres
 
@@ -18,14 +18,6 @@ if TYPE_CHECKING:
     from rotorgear.forces.ball_bearing import BallBearing
     from rotorgear.forces.law import ForceLaw
     from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
-
-# Of the diameter of an element: clearance and preload; share of its circle that the elements of a row fill; length of a roller.
-_CLEARANCE = 0.05
-_PRESSED = 0.02
-_FILLED = (0.15, 1.0)
-_LONG = (0.2, 30.0)
-# Preload over elements times diameter squared in Pa: some five times the static capacity.
-_PRELOAD = 3e8
 
 
 class RollingElements(BearingGeometry):
@@ -235,17 +227,24 @@ class RollingElements(BearingGeometry):
     def judged(self) -> Iterator[Judged]:
         """Clearance, preload, number and length of rolling elements against their diameter."""
         size = self.element_diameter
-        for key, most in (("clearance", _CLEARANCE), ("preload_displacement", _PRESSED)):
+        for key, most in (("clearance", 0.05), ("preload_displacement", 0.02)):
             value = getattr(self, key)
-            words = (f"{value:.4g} m", f"up to {most:g} of the diameter of an element")
-            yield key, value, (0.0, most * size), words, ("", "um meant?")
+            yield (
+                key,
+                value / size,
+                (0.0, most),
+                f"{value:.4g} m",
+                "up to {1:g} of the diameter of an element",
+                "um meant?",
+            )
+        # Share of its circle that the elements of a row fill.
         filled = self.elements * size / (math.pi * self.pitch_diameter)
-        words = (f"{size:.4g} m, of which {self.elements} fill {filled:.2g} of their circle", "0.15 to 1 of it")
-        yield "element_diameter", filled, _FILLED, words, ("is its unit right?", "is its unit right?")
+        got = f"{size:.4g} m, of which {self.elements} fill {filled:.2g} of their circle"
+        yield "element_diameter", filled, (0.15, 1.0), got, "0.15 to 1 of it", UNIT
+        # Some five times the static capacity.
         pressure = self.preload_force / (self.elements * size**2)
-        squares = f"{1e-6 * pressure:.3g} MPa on the squares of the diameters"
-        words = (f"{self.preload_force:.4g} N, {squares}", "up to 300 MPa")
-        yield "preload_force", pressure, (0.0, _PRELOAD), words, ("", "is its unit right?")
+        got = f"{self.preload_force:.4g} N, {1e-6 * pressure:.3g} MPa on the squares of the diameters"
+        yield "preload_force", pressure, (0.0, 3e8), got, "up to 300 MPa", UNIT
         if self.length is not None:
-            words = (f"{self.length:.4g} m, {self.length / size:.3g} diameters", f"{_LONG[0]:g} to {_LONG[1]:g}")
-            yield "length", self.length / size, _LONG, words, ("is its unit right?", "mm meant?")
+            got = f"{self.length:.4g} m, {self.length / size:.3g} diameters"
+            yield "length", self.length / size, (0.2, 30.0), got, "{:g} to {:g}", (UNIT, "mm meant?")

@@ -9,15 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import Field
 
 from rotorgear.errors import Problem
-from rotorgear.model.parts.bearings.geometry import Judged, Oil
+from rotorgear.model.parts.bearings.geometry import UNIT, Judged, Oil
 from rotorgear.model.parts.fields import Angle, PositiveLength, Ratio, Whole
 from rotorgear.quantity import millimetres
 
 if TYPE_CHECKING:
     from rotorgear.forces.thrust_film import ThrustFilm
-
-# Usual depth of the taper over the clearance.
-_TAPER = (0.02, 50.0)
 
 
 class ThrustGeometry(Oil):
@@ -100,6 +97,6 @@ class ThrustGeometry(Oil):
         yield from film
         if self.taper is not None:
             share = self.taper / self.clearance
-            words = (f"{self.taper:.4g} m, {share:.3g} of the clearance", f"{_TAPER[0]:g} to {_TAPER[1]:g} of it")
-            yield "taper", share, _TAPER, words, ("is its unit right?", "um meant?")
+            got = f"{self.taper:.4g} m, {share:.3g} of the clearance"
+            yield "taper", share, (0.02, 50.0), got, "{:g} to {:g} of it", (UNIT, "um meant?")
         yield density
