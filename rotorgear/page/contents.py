@@ -69,7 +69,7 @@ def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Conten
         progress: callable that is told fraction and step.
     """
     found = Contents(model)
-    speed = model.operation.speed if model.operation else None
+    speed = model.operating_speed
     progress(0.02, "model")
     found.run("check", lambda: check(model))
     if model.meshes:

@@ -90,7 +90,7 @@ def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarra
     if top > 0.0:
         low = max(1e-4 * top, 0.5 * float(sizes[sizes > 0.0].min()))
         axis.set_ylim(low, top * (top / low) ** _HEADROOM)
-    operating = result.model.operation.speed if result.model.operation else None
+    operating = result.model.operating_speed
     first, last = sorted((float(result.speeds[0]), float(result.speeds[-1])))
     if operating and first <= operating <= last:
         axis.axvline(operating * RPM_PER_RAD_S, color=GREY, lw=0.9, ls="--")

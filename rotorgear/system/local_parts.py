@@ -87,8 +87,7 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
     Raises:
         AnalysisError: the oil of a film would flow in as no liquid.
     """
-    operation = system.model.operation
-    built_for = -1.0 if operation and (operation.speed or 0.0) < 0.0 else 1.0
+    built_for = -1.0 if (system.model.operating_speed or 0.0) < 0.0 else 1.0
     for name, bearing in system.model.bearings.items():
         if not bearing.has_law:
             continue
@@ -205,8 +204,7 @@ def load_parts(system: System) -> Iterator[LocalPart]:
         return
     from rotorgear.forces.torque_curve import TorqueCurve
 
-    operation = system.model.operation
-    speed = abs(operation.speed) if operation and operation.speed else 0.0
+    speed = abs(system.model.operating_speed or 0.0)
     for item, load in varying:
         ratio = float(system.train.ratio(item.shaft))
         law = TorqueCurve(

@@ -16,7 +16,7 @@ Verb = Callable[[rg.Model], Any]
 
 
 def _speed(model: rg.Model) -> float:
-    speed = model.operation.speed if model.operation else None
+    speed = model.operating_speed
     return speed if speed else 100.0
 
 

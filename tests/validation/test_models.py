@@ -15,7 +15,7 @@ from tests.paths import MODELS, SHIPPED
 @pytest.mark.parametrize("file", SHIPPED)
 def test_a_shipped_model_loads_and_gives_its_modes_at_its_speed(file: Path) -> None:
     model = rg.load(file)
-    speed = model.operation.speed if model.operation else None
+    speed = model.operating_speed
     result = rg.modal(model, speed=speed, modes=5)
     assert len(result) == min(5, rg.System(model).n)
     assert np.all(result.damping_ratio > -1e-9)

@@ -113,7 +113,7 @@ def ripple(mesh: PairGeometry) -> list[float]:
 
 def run(model: rg.Model) -> tuple[float, float, float]:
     """K_v (largest force over mean force), mean and largest force (N) of the left helix in steady motion."""
-    speed = model.operation.speed if model.operation else 0.0
+    speed = model.operating_speed or 0.0
     period = 2.0 * math.pi / ((speed or 0.0) * (model.gears["pinion_left"].teeth or 1))
     result = rg.transient(
         model, steps=STEPS, records=STEPS, discard=SETTLE * period, time=COUNT * period, error_estimate=False

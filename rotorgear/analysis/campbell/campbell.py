@@ -26,7 +26,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
-from rotorgear.analysis.common.request import check_request, check_whole, missed, operating_speed
+from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import errors_of, total_error
@@ -175,7 +175,7 @@ class _Diagram:
         """Follow the modes of each group that are asked for at any speed of the track."""
         low = float(asked.min())
         high = float(asked.max())
-        operating = operating_speed(found.system.model)
+        operating = found.system.model.operating_speed
         extra = [*found.family.knots] + ([operating] if operating is not None and low < operating < high else [])
         new = [speed for speed in extra if np.min(np.abs(asked - speed)) > _SAME_SPEED * max(high - low, 1e-300)]
         grid = merged(sorted([*map(float, asked), *map(float, new)]), high - low)
@@ -254,7 +254,7 @@ class _Diagram:
 
     def operating_place(self) -> int | None:
         """Number of the operating speed on the track; None where it lies outside, or there is none."""
-        operating = operating_speed(self.found.system.model)
+        operating = self.found.system.model.operating_speed
         if operating is None:
             return None
         grid = self.grid
@@ -293,7 +293,7 @@ class _Diagram:
             return {name: spread(values) for name, values in shares.items()}
 
         margin: tuple[Margin, ...] = ()
-        operating = operating_speed(system.model)
+        operating = system.model.operating_speed
         place = self.operating_place()
         known = [] if place is None else [chain for chain in chains if np.isfinite(chain.s[place])]
         if operating is not None and place is not None and known:
@@ -348,7 +348,7 @@ class _Diagram:
         still = max(sum(len(part.real) for part in found.at(speed)) for speed in grid)
         if still:
             notes.append("motions that do not oscillate (overdamped): they have no frequency to draw")
-        if operating_speed(system.model) is None:
+        if system.model.operating_speed is None:
             notes.append("margins: the model has no operating speed")
         elif self.operating_place() is None:
             notes.append("margins: the operating speed lies outside of the range")

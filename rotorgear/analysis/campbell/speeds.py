@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.excitation import excitation_orders
-from rotorgear.analysis.common.request import check_whole, operating_speed, speed_in_si
+from rotorgear.analysis.common.request import check_whole, speed_in_si
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.modal.mode_count import expected_modes
 from rotorgear.analysis.static.state_at import linear_system
@@ -36,7 +36,7 @@ def highest_speed(model: Model, given: float | str | None = None) -> float:
     """
     if given is not None:
         return speed_in_si(given)
-    operating = operating_speed(model)
+    operating = model.operating_speed
     if not operating:
         raise AnalysisError(
             "the model has no operating speed, so say up to which speed to look (--to, such as '12000 rpm')"
@@ -50,7 +50,7 @@ def mesh_reach(model: Model) -> tuple[float | None, str]:
     It is a little above the first order of every mesh at the operating speed. None: so few modes lie below it that the default
     number reaches further, or so many that they are followed only when asked for.
     """
-    speed = operating_speed(model)
+    speed = model.operating_speed
     highest = (
         max((line.frequency_hz(speed) for line in excitation_orders(model, (), (1,))), default=0.0) if speed else 0.0
     )

@@ -9,7 +9,6 @@ import numpy as np
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import operating_speed
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
@@ -41,7 +40,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         elements: number of basic elements in each shaft segment, for the number of degrees of freedom (default: 1).
     """
     system = flow_system(model, Plan(elements or 1))
-    speed = operating_speed(model)
+    speed = model.operating_speed
     masses = _masses(system)
     casings = {name: float(system.layout.casing(name).body_mass) for name in model.casings}
     rpm = None if speed is None else speed * RPM_PER_RAD_S

@@ -44,8 +44,8 @@ def model_warnings(system: System) -> Iterator[str]:
     if not system.state.applied and model.meshes:
         yield "no torque is given: driving flanks follow from the sense of rotation, power flowing out from the input shaft"
     for name, bearing in model.bearings.items():
-        if bearing.table and model.operation and model.operation.speed is not None:
-            turning = abs(train.ratio(bearing.shaft) * model.operation.speed)
+        if bearing.table and model.operating_speed is not None:
+            turning = abs(train.ratio(bearing.shaft) * model.operating_speed)
             if not bearing.table[0].speed <= turning <= bearing.table[-1].speed:
                 yield f"bearings.{name}: its table does not reach the operating speed"
     # A coupling ties its two points as if they were at one place: far apart, a shaft likely starts where it should not.

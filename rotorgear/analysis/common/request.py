@@ -33,14 +33,9 @@ def quantity(value: object, dimension: str, name: str) -> float:
         raise AnalysisError(f"{name}: got {value!r}, expected {error}") from None
 
 
-def operating_speed(model: Model) -> float | None:
-    """Speed of the input shaft at the operating point in rad/s; None without one."""
-    return model.operation.speed if model.operation else None
-
-
 def speed_or_operating(given: float | str | None, model: Model) -> float | None:
     """The speed that is asked for in rad/s, that of operation where none is; None where the model has none either."""
-    return operating_speed(model) if given is None else speed_in_si(given)
+    return model.operating_speed if given is None else speed_in_si(given)
 
 
 def direction_of(speed: float | None) -> int | None:

@@ -121,7 +121,7 @@ def optimise(
         )
     share_of(participation, "participation", "0.01")
     check_whole("the number of searches", searches)
-    operating = model.operation.speed if model.operation else None
+    operating = model.operating_speed
     if speeds is None and not operating:
         raise AnalysisError("no speed: give --speeds, or [operation] speed in the model file")
     wanted = [speed_in_si(speed) for speed in ([operating] if speeds is None else speeds)]

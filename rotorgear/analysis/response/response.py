@@ -18,7 +18,6 @@ from rotorgear.analysis.common.request import (
     check_request,
     check_whole,
     missed,
-    operating_speed,
     speed_in_si,
 )
 from rotorgear.analysis.common.stations import shapes_at_stations
@@ -237,7 +236,7 @@ def _speeds(
     """Speeds in rad/s, in rising order of size, all of one sense, and a sentence where films have chosen the lowest."""
     begun = ""
     if given is None:
-        operating = operating_speed(model)
+        operating = model.operating_speed
         if not operating and (start is None or stop is None):
             raise AnalysisError(
                 "no speeds: give start and stop (--from, --to), or [operation] a speed: the run-up then goes to a fifth above it"
@@ -266,7 +265,7 @@ def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, re
         if asked == 0.0 or np.sign(asked) != np.sign(speeds[0]):
             raise AnalysisError("the speed of the deflection shapes must have the sense of the run-up and not be 0")
         return asked
-    operating = operating_speed(model)
+    operating = model.operating_speed
     if operating and np.sign(operating) == np.sign(speeds[0]) and abs(speeds[0]) <= abs(operating) <= abs(speeds[-1]):
         return operating
     largest = [float(np.abs(item.stacked).max(initial=0.0)) for item in readings]

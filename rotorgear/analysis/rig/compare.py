@@ -337,8 +337,7 @@ def compare(
         raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
     else:
         result = source
-    operation = result.model.operation
-    turning = result.speed if result.speed is not None else (operation.speed if operation else None)
+    turning = result.speed if result.speed is not None else result.model.operating_speed
     return compare_lines(
         result.frequency_hz,
         result.description,

@@ -174,8 +174,7 @@ def compare_shapes(
         pairs += [(int(lines[line]), int(left[mode])) for line, mode in others]
     pairs.sort()
     chance = _chance(modes, rig_hz, alike, spread, tolerance, samples, seed)
-    operation = model.operation
-    turning = result.speed if result.speed is not None else (operation.speed if operation else None)
+    turning = result.speed if result.speed is not None else model.operating_speed
     excitations = excitation_lines(model, turning) if turning else ()
     matches = []
     for line, mode in pairs:

@@ -91,7 +91,7 @@ def operating_speed_of(model: Model) -> float:
     Raises:
         AnalysisError: the model has none.
     """
-    speed = model.operation.speed if model.operation else None
+    speed = model.operating_speed
     if not speed:
         raise AnalysisError("rules of standards need the speed of [operation]")
     return speed

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from rotorgear.analysis.common.request import operating_speed
 from rotorgear.analysis.static.along_faces import equilibrate_along_faces
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.solve import equilibrate
@@ -36,7 +35,7 @@ def state_speed(model: Model, speeds: Sequence[float | None], direction: int) ->
     operating speed in the sense +1 or -1 of the state.
     """
     asked = [speed for speed in speeds if speed is not None]
-    operating = operating_speed(model) or 0.0
+    operating = model.operating_speed or 0.0
     if not asked:
         return direction * abs(operating)
     return operating if operating * min(asked, key=abs) > 0.0 else asked[0]

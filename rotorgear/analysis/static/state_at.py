@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.analysis.common.request import operating_speed
 from rotorgear.model.layout.spring import Spring, constant_spring, given_spring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
@@ -124,7 +123,7 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
         return state
     from rotorgear.analysis.static.solve import equilibrate, operating_points
 
-    running = state.direction * abs(operating_speed(model) or 0.0)
+    running = state.direction * abs(model.operating_speed or 0.0)
     at = sorted({running if speed is None else float(speed) for speed in speeds}, key=abs)
     system = flow_system(model).with_state(state.of_kind("static"))
     # Each begins where the one before stands.

@@ -189,7 +189,7 @@ class PointMaker:
         Raises:
             AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
         """
-        speed = model.operation.speed if model.operation else None
+        speed = model.operating_speed
         if not model.operation or not speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
         slow = 1.0 if speed > 0.0 else -1.0

@@ -51,7 +51,7 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
         base_force: F_bt (N) of one helix; None where no load is known.
     """
     mesh = model.layout.mesh(name)
-    speed = model.operation.speed if model.operation else None
+    speed = model.operating_speed
     grades = [gear.part.accuracy_grade for gear in mesh.gears]
     if grades[0] is None or grades[1] is None:
         return "K_v: give accuracy_grade of both gears"
@@ -220,7 +220,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
             for gear in (mesh.part.pinion, mesh.part.gear)
             if sum(gear in (other.pinion, other.gear) for other in model.meshes.values()) > 1
         ]
-    speed = model.operation.speed if model.operation else None
+    speed = model.operating_speed
     cosine = math.cos(pair.working_transverse_pressure_angle)
     return MeshSheetRow(
         name=mesh.name,

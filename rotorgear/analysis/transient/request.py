@@ -75,8 +75,7 @@ def run_up(
     """
     if isinstance(speed, Sequence) and not isinstance(speed, str):
         raise AnalysisError("speed_to: goes with one speed to start from, not with pairs of time and speed")
-    operation = (model.model if isinstance(model, System) else model).operation
-    first = speed if speed is not None else (operation.speed if operation else None)
+    first = speed if speed is not None else (model.model if isinstance(model, System) else model).operating_speed
     if first is None or time is None:
         raise AnalysisError(
             "speed_to (--speed-to) needs a speed to start from (--speed) and a time for the run-up (--time)"

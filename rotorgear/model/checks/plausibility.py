@@ -182,8 +182,8 @@ def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]
         yield from _stiffness(f"{address}.pedestal.stiffness", bearing.pedestal.stiffness, weight, given=True)
     diameters = [section.outer_diameter for section in layout.model.shafts[bearing.shaft].sections]
     for kind, geometry in bearing.geometries.items():
-        for key, *judged in geometry.judged():
-            yield f"{address}.{kind}.{key}", *judged
+        for key, value, usual, got, words, slips in geometry.judged():
+            yield f"{address}.{kind}.{key}", value, usual, got, words, slips
         if diameters:  # the size of what surrounds the shaft against the shaft
             size = geometry.surrounds
             fits = (geometry.fits[0] * min(diameters), geometry.fits[1] * max(diameters))
@@ -287,9 +287,9 @@ def _operation(layout: Layout) -> Iterator[Judged]:
 def _speeds(layout: Layout) -> Iterator[Judged]:
     """Speeds of shafts, gears and bearings: the first that is beyond all that is built is told."""
     model = layout.model
-    if not model.operation or not model.operation.speed:
+    if not model.operating_speed:
         return
-    speeds = {name: abs(model.operation.speed * layout.train.ratio(name)) for name in model.shafts}
+    speeds = {name: abs(model.operating_speed * layout.train.ratio(name)) for name in model.shafts}
 
     def row(shaft: str, value: float, most: float, what: str, usual: str) -> Judged:
         got = f"{speeds[shaft] * RPM_PER_RAD_S:.4g} rpm of shaft '{shaft}', {what}"

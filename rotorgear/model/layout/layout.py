@@ -115,7 +115,7 @@ class Layout:
     @property
     def direction(self) -> int:
         """+1 or -1: sense in which the reference shaft turns at the operating speed; +1 where the file gives none."""
-        speed = self.model.operation.speed if self.model.operation else None
+        speed = self.model.operating_speed
         return -1 if speed is not None and speed < 0.0 else 1
 
     @cached_property

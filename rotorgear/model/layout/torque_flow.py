@@ -126,7 +126,7 @@ def applied_torques(layout: Layout, direction: int | None = None) -> tuple[list[
             the positive sense, and turn with it; moments from outside stay where they are, and have the sign that this asks for.
     """
     loads, problems = _loads(layout)
-    operation = layout.model.operation
+    speed = layout.model.operating_speed
     sense = direction or layout.direction
     # Constant moments about z of loads from outside on shafts that turn take part in the balance.
     found = [
@@ -139,8 +139,8 @@ def applied_torques(layout: Layout, direction: int | None = None) -> tuple[list[
     for name, load in loads.items():
         place = layout.load_place(load)
         torque = load.torque
-        if load.power is not None and operation is not None and operation.speed:
-            torque = load.power / abs(operation.speed * layout.train.ratio(load.on_shaft))
+        if load.power is not None and speed:
+            torque = load.power / abs(speed * layout.train.ratio(load.on_shaft))
         if torque is None:  # an open end, which takes the rest
             open_ends.append((name, load, place))
         else:

@@ -19,7 +19,7 @@ from tests.paths import MODELS
 @pytest.mark.parametrize("name", ["helical_pair", "geared_pair", "split_torque", "backlash_pair"])
 def test_modes_with_the_rigid_motions_answer_an_impulse_as_the_inertia_does(name: str) -> None:
     model = rg.load(MODELS / f"{name}.toml")
-    speed = (model.operation.speed if model.operation else None) or 100.0
+    speed = (model.operating_speed) or 100.0
     system = local_model(System(model, plan=Plan(elements=1, order=2)), Rotation.constant(speed), speed).local
     D = system.velocity_terms(speed) + (system.damping_about - system.D)
     found = complex_modes(system.M, D, system.stiffness_about, system.B.toarray())
