@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from rotorgear.analysis.studies.casing import casing_convergence_study
 from rotorgear.analysis.studies.meshes import (
@@ -107,33 +106,17 @@ def accuracy(
     Raises:
         AnalysisError: no such analysis, or an argument that belongs to another one.
     """
+    arguments = dict(locals())
     if analysis in _ELSEWHERE:
         raise AnalysisError(f"--analysis: {analysis} has no study of its own: {_ELSEWHERE[analysis]}")
     if analysis not in STUDIES:
         names = list(STUDIES)
         raise AnalysisError(f"--analysis: got '{analysis}', expected {', '.join(names[:-1])} or {names[-1]}")
-    arguments: dict[str, Any] = {
-        "speed": speed,
-        "stop": stop,
-        "modes": modes,
-        "fmax": fmax,
-        "at": at,
-        "reference": reference,
-        "mesh": mesh,
-        "torque": torque,
-        "bearing": bearing,
-        "time": time,
-        "modal_damping": modal_damping,
-        "casing": casing,
-        "coupled": coupled,
-        "finest": finest,
-        "excite": excite,
-    }
-    given = {name: value for name, value in arguments.items() if value is not None}
+    given = {name: value for name, value in arguments.items() if value is not None and name != "analysis"}
     taken = {name: inspect.signature(study).parameters for name, study in STUDIES.items()}
     for name in given:
         if name not in taken[analysis]:
             homes = [other for other, parameters in taken.items() if name in parameters]
             spelled = _SPELLED.get(name, name).replace("_", "-")
             raise AnalysisError(f"--{spelled} belongs to --analysis {' or '.join(homes)}, not to {analysis}")
-    return STUDIES[analysis](model, **given, progress=progress)
+    return STUDIES[analysis](**given)

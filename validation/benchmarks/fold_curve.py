@@ -11,9 +11,8 @@ import time
 
 import numpy as np
 
-from rotorgear.analysis.orbits.curves import special_curves
-from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
-from rotorgear.analysis.orbits.follow import main_branches
+from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of, told_of
+from rotorgear.analysis.orbits.follow import main_branches, special_curves
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, scale_of
 from rotorgear.analysis.orbits.verify import first_node
 from rotorgear.progress import silent
@@ -43,20 +42,19 @@ def equations(torque: str, *torques: str) -> tuple[HarmonicOrbits, SystemFamily]
 def main() -> None:
     """Follow the curve and print."""
     along = range_of(loaded("flexible_pair"), SPEED, SPEEDS)
-    across = range_of(loaded("flexible_pair"), "operation.torque", TORQUES)
+
     rpm = 30.0 / np.pi
     with single_thread(0):
         orbits, family = equations(TORQUES[0], *TORQUES)
         first = first_node(orbits, family, from_transient=False, progress=silent)
         branches = main_branches(orbits, first, Walk(), silent)
         begun = time.process_time()
-        curves = special_curves(branches, family, Walk(longest=STEP, most=POINTS), silent)
+        curves = special_curves(branches, family, told_of(family), Walk(longest=STEP, most=POINTS), silent)
         used = time.process_time() - begun
         for curve in curves:
-            ends = [curve.points[0], curve.points[-1]]
-            places = [f"{along.at(one.p) * rpm:.2f} rpm, {across.at(one.q):.3f} N m" for one in ends]
+            places = [f"{curve.value[k] * rpm:.2f} rpm, {curve.second[k]:.3f} N m" for k in (0, -1)]
             print(f"{curve.kind}: {' to '.join(places)}, {curve.ended}")
-        count = sum(len(curve.points) for curve in curves)
+        count = sum(len(curve.value) for curve in curves)
         print(f"{count} points, {used:.1f} CPU s")
         other, _ = equations(TORQUES[1])
         begin = at_value(other, other.unknowns(orbits.coefficients(first.y)), first.p)

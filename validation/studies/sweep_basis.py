@@ -12,9 +12,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.axes import axis_of, points_of
+from rotorgear.analysis.sweep.axes import axis_of
 from rotorgear.analysis.sweep.request import Request
-from rotorgear.analysis.sweep.sweep import _READY, _ready, reduce_large
+from rotorgear.analysis.sweep.sweep import ready_points
 from rotorgear.progress import silent
 from rotorgear.solvers.sparse.factor import single_thread
 
@@ -30,8 +30,7 @@ def main() -> None:
     for modes in MODES:
         request = Request("each", 1, 10, 10, 0, None, 1e-4, 1e-3, 1, 1.0, modes, 0.02, None)
         with single_thread(0):
-            _, large, failure, _ = _ready(model, axes, points_of(axes), None, request, silent)
-            reduction = reduce_large(large, failure, request.reduction, silent, _READY)[2]
+            _, _, failure, _, reduction = ready_points(model, axes, None, request, silent)
         assert reduction is not None, failure
         closed, apart = 100.0 * reduction.closed, 100.0 * reduction.apart
         print(f"{modes:5}  {reduction.coordinates:11}  {closed:4.0f} %  {apart:4.0f} %  up to {reduction.up_to:.0f} Hz")

@@ -38,6 +38,14 @@ def speed_or_operating(given: float | str | None, model: Model) -> float | None:
     return model.operating_speed if given is None else speed_in_si(given)
 
 
+def needed_speed(given: float | str | None, model: Model) -> float:
+    """The speed that is asked for in rad/s, or the operating one; AnalysisError where there is neither."""
+    speed = speed_or_operating(given, model)
+    if speed is None:
+        raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
+    return speed
+
+
 def direction_of(speed: float | None) -> int | None:
     """+1 or -1, the sense of a speed; None without one, which leaves it to the model."""
     return None if not speed else int(np.sign(speed))

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,6 +24,7 @@ from rotorgear.solvers.time.local_system import LocalSystem
 _ROUNDING = 1e-11
 _MOST = 32
 _MATRICES = ("M", "D", "K", "G", "B")
+_OF_LAWS = ("parameters", "reference_stiffness", "reference_damping")
 _ABOUT = {
     "stiffness_about": ("K", "B", "reference_stiffness"),
     "damping_about": ("D", "B", "reference_damping"),
@@ -31,39 +33,54 @@ _ABOUT = {
 
 @dataclass(frozen=True)
 class Between:
-    """Polynomials through systems at k shares of a range: barycentric weights (k,), numbers by name (k, ...).
+    """Polynomials through systems at k shares of a range, their Chebyshev points: numbers by name (k, ...).
 
     `factor`: by which numbers are multiplied, at a share.
     """
 
     shares: np.ndarray
-    weights: np.ndarray
     first: LocalSystem
     varying: dict[str, np.ndarray]
     factor: Callable[[float], float]
 
     def at(self, share: float) -> LocalSystem:
         """The system at a share."""
-        own = _mixed(self.shares, self.weights, self.varying, share, self.factor)
+        own = self.numbers(share)
         first = self.first
-        changed: dict[str, object] = {}
-        for name in _MATRICES:
-            if name in own:
-                A = getattr(first, name)
-                changed[name] = sp.csc_array((own[name], A.indices, A.indptr), shape=A.shape)
-        for name in ("load", "watched"):
-            if name in own:
-                changed[name] = own[name]
-        inner = {key: own[key] for key in ("parameters", "reference_stiffness", "reference_damping") if key in own}
+        changed: dict[str, Any] = {name: own[name] for name in ("load", "watched") if name in own}
+        for name in own.keys() & set(_MATRICES):
+            A = getattr(first, name)
+            changed[name] = sp.csc_array((own[name], A.indices, A.indptr), shape=A.shape)
+        inner: dict[str, Any] = {key: own[key] for key in _OF_LAWS if key in own}
         if inner:
-            changed["forces"] = replace(first.forces, **inner)  # type: ignore[arg-type]
+            changed["forces"] = replace(first.forces, **inner)
         if "speeds" in own:
             changed["rotation"] = replace(first.rotation, speeds=own["speeds"])
-        made = replace(first, **changed)  # type: ignore[arg-type]
+        made = replace(first, **changed)
         for name, parts in _ABOUT.items():
             if not any(part in own for part in parts):
                 made.__dict__[name] = getattr(first, name)  # a cached property of the same arguments
         return made
+
+    def numbers(self, share: float) -> dict[str, np.ndarray]:
+        """The numbers that vary, at a share."""
+        off = share - self.shares
+        at = np.flatnonzero(off == 0.0)
+        if at.size:
+            return {name: values[at[0]] for name, values in self.varying.items()}
+        # Barycentric weights.
+        parts = (-1.0) ** np.arange(len(off))
+        parts[[0, -1]] *= 0.5
+        parts /= off
+        parts /= parts.sum()
+        parts *= np.array([self.factor(one) for one in self.shares]) / self.factor(share)
+        whole = parts.sum()
+        # About the first of them, so that numbers that stay the same stay so to the last bit: a count is no 2.9999.
+        found = {}
+        for name, values in self.varying.items():
+            mixed = whole * values[0] + np.tensordot(parts, values - values[0], axes=1)
+            found[name] = np.where(np.all(values == values[0], axis=0), values[0], mixed)
+        return found
 
 
 def between(
@@ -84,14 +101,8 @@ def between(
             own = {name: getattr(system, name).data for name in _MATRICES if getattr(system, name) is not None}
             if system.watched is not None:
                 own["watched"] = system.watched
-            forces = system.forces
-            known[share] = own | {
-                "load": system.load,
-                "parameters": forces.parameters,
-                "reference_stiffness": forces.reference_stiffness,
-                "reference_damping": forces.reference_damping,
-                "speeds": system.rotation.speeds,
-            }
+            own |= {name: getattr(system.forces, name) for name in _OF_LAWS}
+            known[share] = own | {"load": system.load, "speeds": system.rotation.speeds}
         return known[share]
 
     degree = 2
@@ -99,20 +110,21 @@ def between(
         coarse = _points(degree)
         fine = _points(2 * degree)
         rows = [numbers_at(share) for share in coarse]
-        if not _alike(systems[0.0], [systems[share] for share in coarse]):
+        if not all(_alike(systems[0.0], systems[share]) for share in coarse):
             return None
         varying = {
             name: np.array([row[name] for row in rows])
             for name, values in rows[0].items()
             if not all(np.array_equal(values, row[name]) for row in rows)
         }
+        found = Between(coarse, systems[0.0], varying, factor)
         sizes = {name: np.abs(values).max(axis=0) for name, values in varying.items()}
         worst = 0.0
         for share in fine[1::2]:
             exact = numbers_at(share)
-            if not _alike(systems[0.0], [systems[share]]):
+            if not _alike(systems[0.0], systems[share]):
                 return None
-            guess = _mixed(coarse, _weights(degree), varying, share, factor)
+            guess = found.numbers(share)
             for name, values in exact.items():
                 if name in varying:
                     size = np.maximum(sizes[name], 1e-6 * sizes[name].max())
@@ -120,7 +132,7 @@ def between(
                 elif not np.array_equal(values, rows[0][name]):
                     return None
         if worst <= _ROUNDING:
-            return Between(coarse, _weights(degree), systems[0.0], varying, factor)
+            return found
         degree *= 2
     return None
 
@@ -132,52 +144,15 @@ def _points(degree: int) -> np.ndarray:
     return all_points[:: _MOST // degree]
 
 
-def _weights(degree: int) -> np.ndarray:
-    """Barycentric weights of Chebyshev points."""
-    weights = (-1.0) ** np.arange(degree + 1)
-    weights[[0, -1]] *= 0.5
-    return weights
-
-
-def _mixed(
-    shares: np.ndarray,
-    weights: np.ndarray,
-    varying: dict[str, np.ndarray],
-    share: float,
-    factor: Callable[[float], float],
-) -> dict[str, np.ndarray]:
-    off = share - shares
-    at = np.flatnonzero(off == 0.0)
-    if at.size:
-        return {name: values[at[0]] for name, values in varying.items()}
-    parts = weights / off
-    parts /= parts.sum()
-    parts *= np.array([factor(one) for one in shares]) / factor(share)
-    whole = parts.sum()
-    # About the first of them, so that numbers that stay the same stay so to the last bit: a count is no 2.9999.
-    found = {}
-    for name, values in varying.items():
-        same = np.all(values == values[0], axis=0)
-        mixed = whole * values[0] + np.tensordot(parts, values - values[0], axes=1)
-        found[name] = np.where(same, values[0], mixed)
-    return found
-
-
-def _alike(first: LocalSystem, others: list[LocalSystem]) -> bool:
-    """Whether systems differ in numbers alone."""
-    for other in others:
-        for name in _MATRICES:
-            A = getattr(first, name)
-            B = getattr(other, name)
-            if (A is None) != (B is None):
+def _alike(first: LocalSystem, other: LocalSystem) -> bool:
+    """Whether two systems differ in numbers alone."""
+    for A, B in ((getattr(first, name), getattr(other, name)) for name in _MATRICES):
+        if A is None or B is None:
+            if A is not B:
                 return False
-            if A is not None and not (
-                A.nnz == B.nnz and np.array_equal(A.indices, B.indices) and np.array_equal(A.indptr, B.indptr)
-            ):
-                return False
-        a = first.forces
-        b = other.forces
-        same = np.array_equal(a.kind, b.kind) and np.array_equal(a.parameters_first, b.parameters_first)
-        if not same or a.forces != b.forces or first.rotation.speeds.shape != other.rotation.speeds.shape:
+        elif not (np.array_equal(A.indices, B.indices) and np.array_equal(A.indptr, B.indptr)):
             return False
-    return True
+    a = first.forces
+    b = other.forces
+    same = np.array_equal(a.kind, b.kind) and np.array_equal(a.parameters_first, b.parameters_first)
+    return same and a.forces == b.forces and first.rotation.speeds.shape == other.rotation.speeds.shape

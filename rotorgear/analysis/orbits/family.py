@@ -1,25 +1,27 @@
-"""The local system of a model over one or two parameters, and what of it excites."""
+"""The local system of a model over one or two parameters, what of it excites, and the places where its motions are told."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.orbits.between import Between, between
-from rotorgear.analysis.sweep.axes import number_places
-from rotorgear.analysis.sweep.point import orders_of, shared_period
+from rotorgear.analysis.sweep.axes import axis_of, number_places
+from rotorgear.analysis.sweep.point import depends_on_speed, orders_of, shared_period
 from rotorgear.analysis.transient.request import prepare
 from rotorgear.errors import AnalysisError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.old_names import current_address
+from rotorgear.note import Note
 from rotorgear.solvers.batch.columns import PRESCRIBED
 from rotorgear.solvers.periodic.plant import Plant, Plants
+from rotorgear.solvers.periodic.samples import Cycle
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.local import LocalModel
@@ -28,6 +30,8 @@ from rotorgear.system.local import LocalModel
 MOST_TURNS = 8
 SPEED = "operation.speed"
 _KEPT = 400
+# Dofs up to which damping by modes is a matrix.
+_MOST_DENSE = 600
 # Shares beyond the ends of a range at which a step is looked at before it is cut: numbers between exact systems hold there, too.
 _BEYOND = 0.05
 
@@ -53,8 +57,6 @@ def range_of(model: Model, address: str, ends: str | Sequence[float | str]) -> R
     Raises:
         AnalysisError: no two different values, or an address that leads nowhere.
     """
-    from rotorgear.analysis.sweep.axes import axis_of
-
     address = current_address(address)
     parts = ends.split(":") if isinstance(ends, str) else list(ends)
     if len(parts) != 2:
@@ -65,16 +67,12 @@ def range_of(model: Model, address: str, ends: str | Sequence[float | str]) -> R
         raise AnalysisError(f"over {address}: both ends are {first:g}, expected two different values")
     data = tables_of(model)
     places = number_places(data, address)
-    found = []
-    for value in (first, last):
-        own = Model(**changed(data, [(places, axis.text(value))]))
-        read = value_at(tables_of(own), places[0])
-        read = read.get("radial") if isinstance(read, dict) else read
-        if not isinstance(read, int | float):
-            raise AnalysisError(f"over {address}: it is no number that can be followed")
-        found.append(float(read))
-    per_unit = (found[1] - found[0]) / (last - first) if axis.unit else 1.0
-    return Range(address, found[0], found[1], axis.unit, per_unit)
+    # Both ends in SI, as the model reads them.
+    read = [value_at(tables_of(Model(**changed(data, [(places, axis.text(x))]))), places[0]) for x in axis.values]
+    begin, end = (value.get("radial") if isinstance(value, dict) else value for value in read)
+    if not (isinstance(begin, int | float) and isinstance(end, int | float)):
+        raise AnalysisError(f"over {address}: it is no number that can be followed")
+    return Range(address, float(begin), float(end), axis.unit, (end - begin) / (last - first) if axis.unit else 1.0)
 
 
 class SystemFamily:
@@ -85,8 +83,8 @@ class SystemFamily:
     """
 
     def __init__(self, model: Model, ranges: Sequence[Range], excite: str | None, elements: int | None) -> None:
+        self.ranges = ranges
         self._data = tables_of(model)
-        self._ranges = ranges
         self._places = [number_places(self._data, one.address) for one in ranges]
         self._elements = elements
         self._speed_axis = next((i for i, one in enumerate(ranges) if one.address == SPEED), None)
@@ -98,22 +96,17 @@ class SystemFamily:
         self._through: Between | None = None
         self._asked_between = False
         first = self.model_at([0.0] * len(ranges))
-        if not first.operation or not first.operation.speed:
+        if not first.operating_speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or follow over it")
-        # Whether another speed changes nothing but the rotation. The place of a journal goes with it: its heat balance, and the
-        # teeth that feel the tilt of its shaft.
+        # The axis of a speed that changes nothing but the rotation. The place of a journal goes with it: its heat balance, and
+        # the teeth that feel the tilt of its shaft.
         films = [bearing.film for bearing in first.bearings.values() if bearing.film is not None]
-        self._free_speed = self._speed_axis is not None and not (
-            first.operation.power is not None
-            or any(load.power is not None or load.speed_power for load in first.loads.values())
-            or any(bearing.table for bearing in first.bearings.values())
-            or any(shaft.internal_damping for shaft in first.shafts.values())
-            or any(film.settles for film in films)
-            or (films and first.meshes)
-            or first.nonlinear_elements
-        )
-        self.local, self.rest, self.static_force, _ = self._built([0.0] * len(ranges))
-        self.order, self.excited, self.notes = _excitation(self.local, excite)
+        held = depends_on_speed(first) or any(film.settles for film in films) or (films and first.meshes)
+        self._turning = None if held else self._speed_axis
+        self.local = self._built([0.0] * len(ranges))
+        self.order, excited, self.notes = _excitation(self.local, excite)
+        # What excites, in words.
+        self.label = ", ".join(excited)
         self._varied = [i for i, part in enumerate(self.local.parts) if _keeps(part.law, self.order)]
         # A force that neither varies nor depends on the motion is a load.
         self._acting = [
@@ -123,41 +116,30 @@ class SystemFamily:
         ]
         self.parts = tuple(self.local.parts[i] for i in self._acting)
 
-    @property
-    def label(self) -> str:
-        """What excites, in words."""
-        return ", ".join(self.excited)
-
     def model_at(self, shares: Sequence[float]) -> Model:
         """The model at shares of the ranges."""
-        values = [one.at(share) for one, share in zip(self._ranges, shares, strict=True)]
+        values = [one.at(share) for one, share in zip(self.ranges, shares, strict=True)]
         return Model(**changed(self._data, zip(self._places, values, strict=True)))
 
-    def _built(self, shares: Sequence[float]) -> tuple[LocalModel, object, np.ndarray, float]:
-        task = prepare(self.model_at(shares), None, self._elements)
-        local = task.local
+    def _built(self, shares: Sequence[float]) -> LocalModel:
+        local = prepare(self.model_at(shares), None, self._elements).local
         ratio = local.system.model.damping.modal_ratio
-        if ratio:
-            local = replace(local, local=with_modal_damping(local.local, ratio))
-        return local, task.rest, task.rest_force, task.largest
+        return replace(local, local=with_modal_damping(local.local, ratio)) if ratio else local
 
     def system(self, shares: Sequence[float]) -> LocalSystem:
         """The local system at shares of the ranges, what does not excite at its mean."""
         key = list(shares)
-        speed = None
-        if self._free_speed:
-            assert self._speed_axis is not None
-            speed = self._ranges[self._speed_axis].at(key[self._speed_axis])
-            key[self._speed_axis] = 0.0
+        if self._turning is not None:
+            key[self._turning] = 0.0
         own = self._systems.get(tuple(key))
         if own is None:
             own = self._between(key) or self._exact(key)
             if len(self._systems) > _KEPT:
                 self._systems.clear()
             self._systems[tuple(key)] = own
-        if speed is None:
+        if self._turning is None:
             return own
-        turned = replace(own, rotation=Rotation.constant(speed))
+        turned = replace(own, rotation=Rotation.constant(self.ranges[self._turning].at(shares[self._turning])))
         # Sums of the same matrices: computed once for both.
         for name in ("stiffness_about", "damping_about"):
             turned.__dict__[name] = getattr(own, name)
@@ -165,26 +147,25 @@ class SystemFamily:
 
     def _exact(self, shares: Sequence[float]) -> LocalSystem:
         """The system assembled at shares of the ranges."""
-        return self._with_means((self._built(shares)[0] if any(shares) else self.local).local)
+        return self._with_means((self._built(shares) if any(shares) else self.local).local)
 
     def _between(self, shares: Sequence[float]) -> LocalSystem | None:
         """The system between exact ones where a single range, besides a speed that only turns, leads there smoothly."""
-        moving = [i for i in range(len(shares)) if not (self._free_speed and i == self._speed_axis)]
+        moving = [i for i in range(len(shares)) if i != self._turning]
         if len(moving) != 1 or shares[moving[0]] in (0.0, 1.0) or not -_BEYOND < shares[moving[0]] < 1.0 + _BEYOND:
             return None
         own = moving[0]
         if not self._asked_between:
             self._asked_between = True
-            base = [0.0] * len(shares)
-            over = self._ranges[own]
+            over = self.ranges[own]
 
             def exact(share: float) -> LocalSystem:
-                return self._exact([*base[:own], share, *base[own + 1 :]])
+                return self._exact([share if i == own else 0.0 for i in range(len(shares))])
 
-            if own == self._speed_axis:
-                self._through = between(exact, lambda share: over.at(share) / over.begin)
-            else:
-                self._through = between(exact)
+            def factor(share: float) -> float:
+                return over.at(share) / over.begin if own == self._speed_axis else 1.0
+
+            self._through = between(exact, factor)
         return self._through.at(shares[own]) if self._through else None
 
     def _varies(self, i: int) -> bool:
@@ -208,11 +189,11 @@ class SystemFamily:
 
     def shares_at(self, p: float) -> list[float]:
         """Shares of all ranges with the first one at p."""
-        return [p, *[0.0] * (len(self._ranges) - 1)]
+        return [p, *[0.0] * (len(self.ranges) - 1)]
 
     def plant(self, *shares: float) -> Plant:
         """The plant at shares of the ranges, those not given 0."""
-        shares = (*shares, *[0.0] * (len(self._ranges) - len(shares)))
+        shares = (*shares, *[0.0] * (len(self.ranges) - len(shares)))
         if shares not in self._known:
             if len(self._known) > _KEPT:
                 self._known.clear()
@@ -226,8 +207,8 @@ def _keeps(law: LocalLaw, order: float) -> bool:
     return all(abs(ratio - round(ratio)) < 1e-6 and round(ratio) >= 1 for ratio in ratios)
 
 
-def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str, ...], tuple[str, ...]]:
-    """Base order, labels of what excites, and sentences on what is at its mean.
+def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str, ...], tuple[Note, ...]]:
+    """Base order, labels of what excites, and facts on what is at its mean.
 
     Raises:
         AnalysisError: nothing repeats, or only after too long a time.
@@ -236,9 +217,8 @@ def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str
         if why := part.law.unsettled():
             raise AnalysisError(f"{part.part}: {why.replace('sweeps', 'orbits').replace('sweep', 'orbits')}")
     varying = [part for part in local.parts if not part.law.steady]
-    if excite is None:
-        chosen = varying
-    else:
+    chosen = varying
+    if excite is not None:
         name = excite.rpartition(".")[2]
         chosen = [p for p in varying if name in (p.part.rpartition(".")[2], p.label)]
         chosen = chosen or [p for p in varying if p.part.rpartition(".")[2].startswith(name)]
@@ -253,9 +233,7 @@ def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str
             f"{named}: cages never repeat with the teeth, so there are no periodic motions; give a stiffness in place of the "
             "rolling elements, or take sweep"
         )
-    orders: list[Fraction] = []
-    for part in chosen:
-        orders += orders_of(part.law, part.label)
+    orders = [order for part in chosen for order in orders_of(part.law, part.label)]
     if not orders:
         raise AnalysisError(
             "nothing excites: no transmission error, stiffness variation, unbalance or torque ripple repeats as the shafts turn"
@@ -273,8 +251,8 @@ def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str
     base = float(fastest / turns)
     labels = tuple(dict.fromkeys(p.part for p in varying if _keeps(p.law, base)))
     still = sorted({p.part for p in varying if not _keeps(p.law, base)})
-    notes = (f"excitation by {', '.join(still)}: at its mean, because one stage excites at a time",) if still else ()
-    return base, labels, notes
+    notes = [Note("", f"excitation by {', '.join(still)}", "at its mean, because one stage excites at a time")]
+    return base, labels, tuple(notes if still else ())
 
 
 def with_modal_damping(local: LocalSystem, ratio: float) -> LocalSystem:
@@ -298,4 +276,75 @@ def with_modal_damping(local: LocalSystem, ratio: float) -> LocalSystem:
     return replace(local, D=sp.csc_array(local.D + (MV * (2.0 * ratio * w)) @ MV.T))
 
 
-_MOST_DENSE = 600
+_PLACES = ("bearings", "nonlinear_elements", "unbalances")
+
+
+@dataclass(frozen=True)
+class Told:
+    """All that a result tells of a motion, by columns of the local displacements.
+
+    Attributes:
+        contact: labels of the mesh contacts; contact_column, contact_law: their columns and the numbers of their laws.
+        transverse: (c,) displacement of a contact over its approach in the transverse plane.
+        place: names of the others, such as "bearings.front x"; place_column: theirs; place_unit: m or rad.
+    """
+
+    contact: tuple[str, ...]
+    contact_column: np.ndarray
+    contact_law: np.ndarray
+    transverse: np.ndarray
+    place: tuple[str, ...]
+    place_column: np.ndarray
+    place_unit: tuple[str, ...]
+
+    @property
+    def columns(self) -> np.ndarray:
+        """The local displacements that tell one motion from another: of the contacts; without any, of the places."""
+        if self.contact:
+            return self.contact_column
+        along = [unit == "m" for unit in self.place_unit]
+        return self.place_column[along] if any(along) else self.place_column
+
+    def extremes(self, cycle: Cycle) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest approach of the contacts, (c, 2), and displacements of the places, (k, 2)."""
+        both = cycle.extremes()
+        return both[self.contact_column] / self.transverse[:, None], both[self.place_column]
+
+
+def told_of(family: SystemFamily) -> Told:
+    """Contacts and the displacements across bearings, nonlinear elements and at unbalances.
+
+    Raises:
+        AnalysisError: the model has neither.
+    """
+    plant = family.plant(0.0)
+    firsts = plant.forces.first[:-1]
+    law = np.array([i for i, part in enumerate(family.parts) if part.is_mesh], int)
+    elements = family.local.system.model.nonlinear_elements
+    places: list[tuple[str, int, str]] = []
+    for part, first in zip(family.parts, firsts, strict=True):
+        table = part.part.partition(".")[0]
+        axes = DOF_NAMES[: part.law.components] if table in _PLACES else ()
+        if table == "nonlinear_elements":
+            axes = elements[part.label].directions
+        # A displacement that supports hold is always zero.
+        places += [
+            (f"{part.part} {axis}", k, "rad" if axis in DOF_NAMES[3:] else "m")
+            for k, axis in enumerate(axes, int(first))
+            if plant.B[:, k].any()
+        ]
+    told = Told(
+        contact=tuple(family.parts[i].label for i in law),
+        contact_column=firsts[law],
+        contact_law=law,
+        transverse=np.array([family.parts[i].transverse for i in law]),
+        place=tuple(label for label, _, _ in places),
+        place_column=np.array([k for _, k, _ in places], int),
+        place_unit=tuple(unit for _, _, unit in places),
+    )
+    if not told.columns.size:
+        raise AnalysisError(
+            "nothing tells one motion from another: orbits looks at meshes, bearings of rolling elements or oil films, nonlinear "
+            "elements and unbalances, and the model has none of them; response solves for its forced motions"
+        )
+    return told

@@ -7,25 +7,24 @@ Error of motions along a branch: from twice the harmonics and instants, or from 
 
 from __future__ import annotations
 
-import time as clock
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_whole, missed
-from rotorgear.analysis.orbits.curves import Curve, special_curves
-from rotorgear.analysis.orbits.family import Range, SystemFamily, range_of
-from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches
-from rotorgear.analysis.orbits.places import Told, told_of
+from rotorgear.analysis.orbits.family import SystemFamily, Told, range_of, told_of
+from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches, special_curves
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
 from rotorgear.results.orbits import OrbitBranch, OrbitsResult, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.arclength import Node, Walk
@@ -77,7 +76,7 @@ def largest_error(branch: Branch, columns: np.ndarray) -> float:
         if better is not None:
             coarse = orbits.cycle(node.y, node.p).displacement
             found.append(float(change(coarse, finer.cycle(better, node.p).displacement, columns).max()))
-    return float(max(found, default=float("nan")))
+    return max(found, default=float("nan"))
 
 
 def change(coarse: np.ndarray, better: np.ndarray, columns: np.ndarray) -> np.ndarray:
@@ -97,7 +96,17 @@ HARMONICS = 30
 # Instants for each harmonic: aliasing, not the cut, sets the error.
 INSTANTS = 16
 METHODS = ("auto", "harmonic balance", "shooting")
+# How often harmonics and instants are doubled to reach an accuracy.
+_DOUBLINGS = 2
 _UNLOADED = 1e-6
+# Where branches and curves end that have reached what was asked for.
+_PLANNED = (
+    "the end of the range",
+    "the branch closed",
+    "the end of the second range",
+    "the end of the first range",
+    "the curve closed",
+)
 
 
 @recorded
@@ -142,46 +151,45 @@ def orbits(
         AnalysisError: nothing repeats, or only after too long a time; nothing tells motions apart; laws without periodic
             motions; or a request that makes no sense.
     """
-    begun = clock.perf_counter()
+    clock = Clock()
     _check(over, harmonics, instants, method, accuracy, step, points)
     ranges = [range_of(model, address, ends) for address, ends in over.items()]
-    along = ranges[0]
+    plan = Walk(longest=step, most=points)
+    curves: tuple[SpecialCurve, ...] = ()
     with single_thread(0):
         progress(0.0, "model")
         family = SystemFamily(model, ranges, excite, elements)
         told = told_of(family)
-        scale = scale_of(family.plant(0.0))
-        H = harmonics or HARMONICS
-        laps = {"model": clock.perf_counter() - begun}
-        doublings = 0
-        while True:
+        plant = family.plant(0.0)
+        scale = scale_of(plant)
+        clock.lap("model")
+        for doublings in range(_DOUBLINGS + 1):
+            H = (harmonics or HARMONICS) * 2**doublings
             N = instants * 2**doublings if instants else INSTANTS * H
             N += N % 2
             problem, why = equations_of(method, family, Grid(H, N, family.order), scale)
-            from_rest = partial(settled, problem, family, progress=progress) if _small(family.plant(0.0)) else None
-            used = clock.process_time()
+            from_rest = partial(settled, problem, family, progress=progress) if _small(plant) else None
+            used = time.process_time()
             first = first_node(problem, family, from_transient=from_transient, progress=progress)
-            branches = main_branches(problem, first, Walk(longest=step, most=points), progress, from_rest)
+            branches = main_branches(problem, first, plan, progress, from_rest)
             if switch:
-                for branch in list(branches):
-                    branches += doubled_branches(branch, Walk(longest=step, most=points), progress)
-            used = clock.process_time() - used
+                branches += [twice for branch in branches for twice in doubled_branches(branch, plan, progress)]
+            used = time.process_time() - used
             progress(0.95, "error estimate")
             error = largest_error(branches[0], told.columns)
-            if accuracy is None or error <= accuracy or doublings >= 2 or isinstance(problem, ShootingOrbits):
+            if accuracy is None or error <= accuracy or isinstance(problem, ShootingOrbits):
                 break
-            doublings += 1
-            H *= 2
-        curves = special_curves(branches, family, Walk(longest=step, most=points), progress) if len(ranges) > 1 else []
-        laps["branches"] = clock.perf_counter() - begun - laps["model"]
+        if len(ranges) > 1:
+            curves = special_curves(branches, family, told, plan, progress)
+        clock.lap("branches")
         progress(0.97, "statistics")
-        fields = gathered(branches, told, family, along, H)
-        laps["statistics"] = clock.perf_counter() - begun - sum(laps.values())
-        checks = verified(branches, family, told.columns, along) if verify else ()
-    laps["total"] = clock.perf_counter() - begun
+        fields = gathered(branches, told, family, H)
+        clock.lap("statistics")
+        checks = verified(branches, family, told.columns) if verify else ()
     short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
     progress(1.0, "done")
     count = sum(len(branch.nodes) for branch in branches)
+    system = family.local.system
     return OrbitsResult(
         model=model,
         address=tuple(one.address for one in ranges),
@@ -194,20 +202,20 @@ def orbits(
         place_unit=told.place_unit,
         statistic=STATISTICS,
         **fields,  # type: ignore[arg-type]
-        curves=gathered_curves(curves, told, ranges),
+        curves=curves,
         verifications=checks,
         harmonics=H,
         instants=N,
         error_estimate=error,
         cpu_per_point=used / max(count, 1),
         dofs=family.local.local.n,
-        seconds=laps,
+        seconds=clock.total(),
         method=why,
         status=short or "success",
         left_out=(
-            *left_out(family.local.system, "time", family.plant(0.0).speed),
+            *left_out(system, "time", plant.speed),
             *transient_left_out(family.local),
-            *mean_torsion_notes(family.local.system, family.plant(0.0).speed),
+            *mean_torsion_notes(system, plant.speed),
             *family.notes,
             *_modes_left_out(problem),
         ),
@@ -287,44 +295,32 @@ def _small(plant: Plant) -> bool:
     return _coordinates(plant) <= MOST_COORDINATES
 
 
-def _modes_left_out(problem: AnyOrbits) -> tuple[str, ...]:
-    if isinstance(problem, ShootingOrbits):
-        return ()
-    basis = problem.modes(0.0)
-    if basis.complete:
-        return ()
-    return (
-        f"of Floquet multipliers: modes beyond the lowest {basis.count} (to {basis.highest / 2.0 / np.pi:.4g} Hz) but for the "
-        "static shapes of the contacts; the motions themselves hold all",
-    )
+def _modes_left_out(problem: AnyOrbits) -> Iterator[Note]:
+    if isinstance(problem, ShootingOrbits) or (basis := problem.modes(0.0)).complete:
+        return
+    modes = f"modes beyond the lowest {basis.count} (to {basis.highest / 2.0 / np.pi:.4g} Hz)"
+    why = f"{modes} but for the static shapes of the contacts; the motions themselves hold all"
+    yield Note("", "of Floquet multipliers", why)
 
 
-def _warnings(family: SystemFamily, branches: list[Branch], curves: list[Curve]) -> list[str]:
+def _warnings(family: SystemFamily, branches: list[Branch], curves: tuple[SpecialCurve, ...]) -> Iterator[str]:
     plant = family.plant(0.0)
     rates = plant.D + plant.D.T
-    notes = []
     if not any(law.uses_velocity for law in plant.forces.laws) and not (rates.nnz and abs(rates).max() > 0.0):
-        notes.append(
-            "nothing damps the model: at a resonance its motions have no bound, and no branch comes past one; "
-            "give damping.modal_ratio or the damping of bearings and meshes"
-        )
-    notes += [
-        f"branch {branch.name} ended early, at {len(branch.nodes)} points: {branch.ended}"
-        for branch in branches
-        if branch.ended not in ("the end of the range", "the branch closed")
-    ]
-    planned = ("the end of the second range", "the end of the first range", "the curve closed")
-    notes += [
-        f"curve of the {curve.kind} ended early, at {len(curve.points)} points: {curve.ended}"
-        for curve in curves
-        if curve.ended not in planned
-    ]
+        why = "at a resonance its motions have no bound, and no branch comes past one"
+        remedy = "give damping.modal_ratio or the damping of bearings and meshes"
+        yield Note("", "nothing damps the model", f"{why}; {remedy}")
+    ends = [(f"branch {branch.name}", len(branch.nodes), branch.ended) for branch in branches]
+    ends += [(f"curve of the {curve.kind}", len(curve.value), curve.ended) for curve in curves]
+    for what, count, why in ends:
+        if why not in _PLANNED:
+            yield Note("", f"{what} ended early, at {count} points", why)
     if not any(one.stable for branch in branches for one in branch.nodes):
-        notes.append("no motion of the range is stable: a transient settles on none of them")
+        yield Note("", "no motion of the range is stable", "a transient settles on none of them")
     # Modes of a casing may end too low for the faster end of the range.
     local = family.local
     fastest = max(abs(family.plant(share).speed) for share in (0.0, 1.0))
-    return [*notes, *time_warnings(local.system.model, local.local.forces.laws, fastest)]
+    yield from time_warnings(local.system.model, local.local.forces.laws, fastest)
 
 
 # Multipliers of a point that are kept.
@@ -333,18 +329,15 @@ _MULTIPLIERS = 12
 _LUCK = 0.03
 
 
-def gathered(
-    branches: list[Branch], told: Told, family: SystemFamily, along: Range, harmonics: int
-) -> dict[str, object]:
+def gathered(branches: list[Branch], told: Told, family: SystemFamily, harmonics: int) -> dict[str, object]:
     """The fields of a result that belong to points and special points.
 
     The error of a statistic is its difference from that of the finer solution at the same value of the parameter.
     """
+    along = family.ranges[0]
     points: list[dict[str, object]] = []
     special = []
-    listed = []
     for number, branch in enumerate(branches):
-        listed.append(OrbitBranch(branch.name, branch.periods, branch.ended))
         orbits = branch.orbits
         finer = orbits.finer()
         for one in branch.nodes:
@@ -357,17 +350,18 @@ def gathered(
             if better is not None:
                 exact = statistics_of(finer.cycle(better, node.p), plant, told)
                 error = compared(found.values, exact.values, found.scales, 1.0, _LUCK)
-            approach, moved = _extremes(cycle, told)
+            approach, moved = told.extremes(cycle)
             # Harmonics of the base period: of a motion of k periods every k-th.
             force = cycle.force[:: branch.periods][: harmonics + 1]
             displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
+            mu = one.multipliers[:_MULTIPLIERS]
             points.append(
                 {
                     "branch": number,
                     "value": along.at(node.p),
                     "period": cycle.period,
                     "stable": one.stable,
-                    "multipliers": padded(one.multipliers),
+                    "multipliers": np.concatenate([mu, np.full(_MULTIPLIERS - len(mu), np.nan + 0j)]),
                     "approach_extremes": approach,
                     "peak_to_peak_transmission_error": np.ptp(found.transmission_error, axis=1),
                     "mean_force": found.force.mean,
@@ -383,49 +377,16 @@ def gathered(
                 }
             )
         for point in branch.special:
-            cycle = branch.orbits.cycle(point.at.node.y, point.at.node.p)
+            node = point.at.node
+            cycle = orbits.cycle(node.y, node.p)
             mu = point.at.multipliers[:_MULTIPLIERS]
-            approach, moved = _extremes(cycle, told)
-            special.append(
-                SpecialPoint(
-                    point.kind,
-                    along.at(point.at.node.p),
-                    number,
-                    cycle.period,
-                    mu.real.copy(),
-                    mu.imag.copy(),
-                    approach,
-                    moved,
-                )
-            )
-    fields: dict[str, object] = {name: np.array([point[name] for point in points]) for name in points[0]}
-    return fields | {"branches": tuple(listed), "special_points": tuple(special)}
-
-
-def gathered_curves(curves: list[Curve], told: Told, ranges: Sequence[Range]) -> tuple[SpecialCurve, ...]:
-    """The curves of special points as a result has them."""
-    found = []
-    for curve in curves:
-        extremes = [_extremes(cycle, told) for _, _, cycle in curve.points]
-        found.append(
-            SpecialCurve(
-                curve.kind,
-                curve.branch,
-                np.array([ranges[0].at(p) for p, _, _ in curve.points]),
-                np.array([ranges[1].at(q) for _, q, _ in curve.points]),
-                np.array([cycle.period for _, _, cycle in curve.points]),
-                np.array([approach for approach, _ in extremes]),
-                curve.ended,
-                np.array([moved for _, moved in extremes]),
-            )
-        )
-    return tuple(found)
-
-
-def _extremes(cycle: Cycle, told: Told) -> tuple[np.ndarray, np.ndarray]:
-    """Least and largest approach of the contacts, (c, 2), and displacements of the places, (k, 2)."""
-    both = cycle.extremes()
-    return both[told.contact_column] / told.transverse[:, None], both[told.place_column]
+            sizes = (mu.real.copy(), mu.imag.copy(), *told.extremes(cycle))
+            special.append(SpecialPoint(point.kind, along.at(node.p), number, cycle.period, *sizes))
+    return {
+        **{name: np.array([point[name] for point in points]) for name in points[0]},
+        "branches": tuple(OrbitBranch(branch.name, branch.periods, branch.ended) for branch in branches),
+        "special_points": tuple(special),
+    }
 
 
 def statistics_of(cycle: Cycle, plant: Plant, told: Told) -> MotionStatistics:
@@ -437,12 +398,4 @@ def statistics_of(cycle: Cycle, plant: Plant, told: Told) -> MotionStatistics:
 
     force, shares = over_period(PeriodicCurve(cycle.period, cycle.at.d, cycle.at.v), laws)
     watched = PeriodicCurve(cycle.period, cycle.watched, cycle.watched_rate).extremes()
-    return MotionStatistics(force, shares, watched[: len(told.contact)], _extremes(cycle, told)[0])
-
-
-def padded(multipliers: np.ndarray) -> np.ndarray:
-    """The largest multipliers, NaN where there are fewer."""
-    out = np.full(_MULTIPLIERS, np.nan + 0j)
-    kept = multipliers[:_MULTIPLIERS]
-    out[: kept.size] = kept
-    return out
+    return MotionStatistics(force, shares, watched[: len(told.contact)], told.extremes(cycle)[0])

@@ -8,9 +8,11 @@ Where a branch begins: Newton's method from the static state, or from the end of
 
 from __future__ import annotations
 
+from itertools import groupby
+
 import numpy as np
 
-from rotorgear.analysis.orbits.family import Range, SystemFamily
+from rotorgear.analysis.orbits.family import SystemFamily
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress
@@ -77,13 +79,12 @@ def first_node(orbits: AnyOrbits, family: SystemFamily, *, from_transient: bool,
 def settled(orbits: AnyOrbits, family: SystemFamily, p: float, progress: Progress) -> np.ndarray:
     """Unknowns of the motion at the end of a transient from rest."""
     progress(0.02, "settling by a transient")
-    shares = family.shares_at(p)
-    system = family.system(shares)
+    system = family.system(family.shares_at(p))
     state, d = run_periods(system, family.order, _SETTLE, equilibrium(system).q, np.zeros(system.n))
     if isinstance(orbits, HarmonicOrbits):
         # The records begin one step behind the begin of a period.
         return orbits.from_samples(np.roll(d[-_RUN_STEPS:], 1, axis=0))
-    return orbits.from_motion(state.q, state.v, family.plant(*shares))
+    return orbits.from_motion(state.q, state.v, family.plant(p))
 
 
 # Stretches of a branch that are looked at, the first ones.
@@ -97,33 +98,25 @@ _LAST = 18
 _OTHERS = 3e-3
 
 
-def verified(
-    branches: list[Branch], family: SystemFamily, column: np.ndarray, along: Range
-) -> tuple[OrbitVerification, ...]:
+def verified(branches: list[Branch], family: SystemFamily, column: np.ndarray) -> tuple[OrbitVerification, ...]:
     """Start transients on a motion of each stretch of the branches, in its middle; `column`: displacements that are compared."""
     checks = []
     for branch in branches:
-        stretches: list[list[Certified]] = []
-        for one in branch.nodes:
-            if not stretches or stretches[-1][-1].stable != one.stable:
-                stretches.append([])
-            stretches[-1].append(one)
-        middles = [stretch[len(stretch) // 2] for stretch in stretches][:_STRETCHES]
-        checks += [_verified(branch, one, family, column, along) for one in middles]
+        stretches = [list(stretch) for _, stretch in groupby(branch.nodes, key=lambda one: one.stable)]
+        middles = [stretch[len(stretch) // 2] for stretch in stretches[:_STRETCHES]]
+        checks += [_verified(branch, one, family, column) for one in middles]
     return tuple(checks)
 
 
-def _verified(
-    branch: Branch, one: Certified, family: SystemFamily, column: np.ndarray, along: Range
-) -> OrbitVerification:
+def _verified(branch: Branch, one: Certified, family: SystemFamily, column: np.ndarray) -> OrbitVerification:
     orbits = branch.orbits
     node = one.node
     system = family.system(family.shares_at(node.p))
-    plant = family.plant(*family.shares_at(node.p))
-    q, v = state_on(orbits, node.y, node.p)
+    plant = family.plant(node.p)
+    # The motion at the begin of its period.
+    q, v = (orbits.state if isinstance(orbits, HarmonicOrbits) else orbits.motion)(node.y, node.p)
     cycle = orbits.cycle(node.y, node.p)
-    ends = cycle.extremes()
-    size = float(np.ptp(ends[column], axis=1).max(initial=0.0)) or 1.0
+    size = float(np.ptp(cycle.extremes()[column], axis=1).max(initial=0.0)) or 1.0
     k = branch.periods
     exact = cycle.at.d[:, column]
     # Steps so that every instant of the orbit is the end of one.
@@ -155,9 +148,9 @@ def _verified(
         # Motions without strain neither grow nor move the contacts.
         dq = shares[-1] * _strained(plant, other_q - end_q)
         dv = shares[-1] * _strained(plant, other_v - end_v)
-    return OrbitVerification(
-        along.at(node.p), one.stable, deviation, _growth(waves, shares), float(np.abs(one.multipliers[0])), _PERIODS * k
-    )
+    expected = float(np.abs(one.multipliers[0]))
+    value = family.ranges[0].at(node.p)
+    return OrbitVerification(value, one.stable, deviation, _growth(waves, shares), expected, _PERIODS * k)
 
 
 def _growth(waves: list[np.ndarray], shares: list[float]) -> float:
@@ -181,10 +174,3 @@ def _growth(waves: list[np.ndarray], shares: list[float]) -> float:
 def _strained(plant: Plant, q: np.ndarray) -> np.ndarray:
     """Displacements or velocities (n,) without their part in motions that strain nothing."""
     return np.asarray(q - plant.free @ (plant.free.T @ (plant.M @ q)))
-
-
-def state_on(orbits: AnyOrbits, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements and velocities (n,) of a motion at the begin of its period."""
-    if isinstance(orbits, HarmonicOrbits):
-        return orbits.state(y, p)
-    return orbits.motion(y, p)

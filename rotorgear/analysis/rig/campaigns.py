@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.compare import rig_lines_of
 from rotorgear.analysis.rig.measured import Measured, MeasuredFrf, read_rig_frf, read_rig_shapes
+from rotorgear.analysis.rig.rig_file import refuse_repeated, rig_lines_of
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
 from rotorgear.results.comparison import RigLine
@@ -68,10 +68,8 @@ class Campaign:
             given = Measured(())
         else:
             given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
-        hz = [line.frequency_hz for line in given.lines]
-        if not given.points and len(set(hz)) < len(hz):
-            twice = next(f for f in hz if hz.count(f) > 1)
-            raise AnalysisError(f"the rig line {twice:g} Hz is given twice: keep one of them")
+        if not given.points:
+            refuse_repeated(given.lines)
         given.check_points(model)
         if self.frf is None or isinstance(self.frf, MeasuredFrf):
             return given, self.frf

@@ -23,12 +23,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_whole
+from rotorgear.analysis.common.request import check_whole, share_of, speed_or_operating
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.rig.posterior import learnt_stiffnesses
-from rotorgear.analysis.rig.rig_file import read_rig_lines
+from rotorgear.analysis.rig.rig_file import refuse_repeated, rig_lines_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.old_names import warn_old
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import (
@@ -161,24 +162,13 @@ def compare_lines(
     # The modes that may be matched, ascending in frequency.
     elastic = np.flatnonzero(~is_rigid & (frequency > 0.0))
     elastic = elastic[np.argsort(frequency[elastic], kind="stable")]
-    lines = sorted(rig_lines, key=lambda line: line.frequency_hz)
+    lines = sorted(rig_lines_of(rig_lines), key=lambda line: line.frequency_hz)
+    refuse_repeated(lines)
     rig_hz = np.array([line.frequency_hz for line in lines])
-    if rig_hz.size == 0:
-        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
-    repeated = rig_hz[1:][np.diff(rig_hz) == 0.0]
-    if repeated.size:
-        raise AnalysisError(f"the rig line {repeated[0]:g} Hz is given twice: keep one of them")
-    if not 0.0 < tolerance < 1.0:
-        raise AnalysisError(
-            f"the tolerance of the rig comparison must lie between 0 and 1 (0.05 is 5 %), got {tolerance:g}"
-        )
-    if not 0.0 <= excitation_tolerance < 1.0:
-        raise AnalysisError(
-            f"the excitation tolerance must lie between 0 and 1 (0.005 is 0.5 %), got {excitation_tolerance:g}"
-        )
-    check_whole("the number of random lists (samples)", samples, 0)
-    if samples == 0:
-        raise AnalysisError("the chance needs at least one random list, got samples = 0")
+    tolerance = share_of(tolerance, "tolerance", "0.05")
+    if excitation_tolerance:
+        share_of(excitation_tolerance, "excitation_tolerance", "0.005")
+    check_whole("the number of random lists (samples)", samples)
     low, high = map(float, band or (rig_hz[0] / (1.0 + tolerance), rig_hz[-1] * (1.0 + tolerance)))
     if not (0.0 < low < high < np.inf and low <= rig_hz[0] and rig_hz[-1] <= high):
         between = f"{rig_hz[0]:g} to {rig_hz[-1]:g} Hz"
@@ -196,9 +186,8 @@ def compare_lines(
         hz = float(frequency[mode])
         return Candidate(mode + 1, hz, 100.0 * (hz / line.frequency_hz - 1.0), mode in taken)
 
-    def driving(hz: float, uncertainty: float = 0.0) -> tuple[ExcitationLine, ...]:
-        reach = max(excitation_tolerance * hz, uncertainty) + ROUNDING * hz
-        return tuple(line for line in excitations if abs(line.frequency_hz - hz) <= reach)
+    def driving(hz: float, uncertainty: float | None = None) -> tuple[ExcitationLine, ...]:
+        return excitations_at(excitations, hz, max(excitation_tolerance * hz, uncertainty or 0.0) + ROUNDING * hz)
 
     def match(line: RigLine, mode: int) -> Match:
         hz = float(frequency[mode])
@@ -220,36 +209,34 @@ def compare_lines(
             within_uncertainty=None if line.uncertainty_hz is None else miss <= line.uncertainty_hz + ROUNDING * hz,
             runner_up=other,
             mode_damping_ratio=None if np.isnan(damping[mode]) else float(damping[mode]),
-            excitations=driving(line.frequency_hz, line.uncertainty_hz or 0.0),
+            excitations=driving(line.frequency_hz, line.uncertainty_hz),
             mode_excitations=driving(hz),
         )
 
     warnings = []
-    known_to = max(float(frequency[elastic[-1]]) if elastic.size else 0.0, known_to_hz or 0.0)
+    highest = float(frequency[elastic[-1]]) if elastic.size else 0.0
     if elastic.size == 0:
-        warnings.append("there are no elastic modes to compare with")
-    elif known_to < high:
-        warnings.append(
-            f"the elastic modes given end at {frequency[elastic[-1]]:.1f} Hz: if the model has more, compute them up to "
-            f"{high:.1f} Hz, so that every rig line meets all its candidates and the chance is not underestimated"
+        warnings.append(Note("", "there are no elastic modes to compare with"))
+    elif max(highest, known_to_hz or 0.0) < high:
+        why = (
+            f"if the model has more, compute them up to {high:.1f} Hz, so that every rig line meets all its candidates and the "
+            "chance is not underestimated"
         )
+        warnings.append(Note("", f"the elastic modes given end at {highest:.1f} Hz", why))
     if rig_hz.size == 1 and band is None:
-        warnings.append(
-            "a single rig line spans no band of its own: give the band that was measured to make the chance meaningful"
-        )
+        why = "give the band that was measured to make the chance meaningful"
+        warnings.append(Note("", "a single rig line spans no band of its own", why))
+    unmatched = [int(mode) for mode in elastic if mode not in taken and low <= frequency[mode] <= high]
     return Comparison(
         matches=tuple(match(lines[row], mode) for row, mode in pairs.items()),
         unmatched_rig=tuple(
-            UnmatchedRigLine(line, nearest(line), driving(line.frequency_hz, line.uncertainty_hz or 0.0))
+            UnmatchedRigLine(line, nearest(line), driving(line.frequency_hz, line.uncertainty_hz))
             for row, line in enumerate(lines)
             if row not in pairs
         ),
         unmatched_modes=tuple(
-            UnmatchedMode(
-                int(mode) + 1, float(frequency[mode]), descriptions[int(mode)], driving(float(frequency[mode]))
-            )
-            for mode in elastic
-            if mode not in taken and low <= frequency[mode] <= high
+            UnmatchedMode(mode + 1, hz, descriptions[mode], driving(hz))
+            for mode, hz in ((mode, float(frequency[mode])) for mode in unmatched)
         ),
         tolerance=tolerance,
         excitation_tolerance=excitation_tolerance,
@@ -259,18 +246,30 @@ def compare_lines(
     )
 
 
-def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, ...]:
-    """The lines of a rig from a file (CSV), from lines, or from plain frequencies in Hz.
+def modes_beside(
+    source: Model | ModalResult,
+    fmax: float,
+    speed: float | str | None,
+    accuracy: float | None,
+    elements: int | None,
+    progress: Progress,
+) -> tuple[ModalResult, tuple[ExcitationLine, ...]]:
+    """Modes of a model up to a frequency in Hz, or those given; and lines of excitation at their speed, else the operating one.
 
     Raises:
-        AnalysisError: no lines at all. ModelError: the file can't be read, or holds mistakes.
+        AnalysisError: settings of a model beside a result.
     """
-    if isinstance(rig, str | Path):
-        return read_rig_lines(rig)
-    lines = tuple(line if isinstance(line, RigLine) else RigLine(float(line)) for line in rig)
-    if not lines:
-        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
-    return lines
+    if isinstance(source, Model):
+        source = modal(source, speed=speed, fmax=fmax, accuracy=accuracy, elements=elements, progress=progress)
+    elif speed is not None or accuracy is not None or elements is not None:
+        raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
+    turning = speed_or_operating(source.speed, source.model)
+    return source, excitation_lines(source.model, turning) if turning else ()
+
+
+def excitations_at(excitations: Sequence[ExcitationLine], hz: float, reach: float) -> tuple[ExcitationLine, ...]:
+    """Those within a distance in Hz of a frequency."""
+    return tuple(line for line in excitations if abs(line.frequency_hz - hz) <= reach)
 
 
 def _understanding_lists(verb: Callable[..., Comparison]) -> Callable[..., Comparison]:
@@ -330,14 +329,8 @@ def compare(
         ModelError: a rig file that can't be read.
     """
     lines = rig_lines_of(rig)
-    if isinstance(source, Model):
-        known_to_hz = ABOVE_RIG * max(line.frequency_hz for line in lines)
-        result = modal(source, speed=speed, fmax=known_to_hz, accuracy=accuracy, elements=elements, progress=progress)
-    elif speed is not None or accuracy is not None or elements is not None:
-        raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
-    else:
-        result = source
-    turning = result.speed if result.speed is not None else result.model.operating_speed
+    highest = ABOVE_RIG * max(line.frequency_hz for line in lines)
+    result, excitations = modes_beside(source, highest, speed, accuracy, elements, progress)
     return compare_lines(
         result.frequency_hz,
         result.description,
@@ -346,11 +339,11 @@ def compare(
         # At standstill without damping a ratio of 0 is no statement about the damping.
         damping_ratio=result.damping_ratio if result.speed is not None else None,
         strain_energy=result.strain_energy,
-        excitations=excitation_lines(result.model, turning) if turning else (),
+        excitations=excitations,
         tolerance=tolerance,
         excitation_tolerance=excitation_tolerance,
         band=band,
-        known_to_hz=known_to_hz,
+        known_to_hz=highest if isinstance(source, Model) else known_to_hz,
         seed=seed,
         samples=samples,
     )

@@ -19,16 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.discretise import cut_of
-from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.points import point_node
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.rig.compare import ABOVE_RIG
+from rotorgear.analysis.common.request import check_whole, share_of
+from rotorgear.analysis.rig.compare import ABOVE_RIG, excitations_at, modes_beside
 from rotorgear.analysis.rig.likeness import UNPAIRED, costs, mac, pairs_by_both
 from rotorgear.analysis.rig.measured import Measured, read_rig_shapes
-from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Misfit, approach, first_fit
+from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, approach, first_fit
 from rotorgear.analysis.rig.posterior import DEFAULT_PRIOR, LINE_NOISE, learnt_stiffnesses, spring_shares
-from rotorgear.analysis.rig.rig_model import CampaignModel, CampaignModes, RigModel
+from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.analysis.rig.sensor_errors import sensor_doubts
 from rotorgear.analysis.sensitivity.derivatives import SPRINGS
 from rotorgear.errors import AnalysisError
@@ -68,36 +67,28 @@ def identified_pairs(
     if not addresses:
         return None
     part = RigModel(free_numbers(model, addresses, DEFAULT_PRIOR), plan, fmax, given.points)
-    campaign = CampaignModel((part,), given.points)
-    misfit = Misfit(campaign, given, np.zeros(len(given.lines), dtype=np.intp), SHAPE_NOISE, tolerance)
+    misfit = Misfit((part,), given, np.zeros(len(given.lines), dtype=np.intp), SHAPE_NOISE, tolerance)
     start = first_fit(misfit)
     if not start.pairs:
         return None
     end = approach(misfit, start, silent)
-    wanted = np.array([pair.mode for pair in end.pairs], dtype=np.intp)
-    back = followed(campaign, (end.x, end.modes), (start.x, start.modes), wanted)
-    return [(pair.line, int(mode)) for pair, mode in zip(end.pairs, back, strict=True) if mode >= 0]
+    back = followed(misfit, end, start, [pair.mode for pair in end.pairs])
+    return [(pair.line, mode) for pair, mode in zip(end.pairs, back, strict=True) if mode >= 0]
 
 
-def followed(
-    model: CampaignModel,
-    here: tuple[NDArray[np.float64], CampaignModes],
-    there: tuple[NDArray[np.float64], CampaignModes],
-    wanted: NDArray[np.intp],
-    halves: int = _HALVES,
-) -> NDArray[np.intp]:
-    """Numbers at `there` of the modes that have the numbers `wanted` (k,) at `here`; -1 of one that left the range."""
+def followed(misfit: Misfit, here: Fit, there: Fit, wanted: list[int], halves: int = _HALVES) -> list[int]:
+    """Numbers at `there` of the modes that have the numbers `wanted` at `here`; -1 of one that left the range."""
     from scipy.optimize import linear_sum_assignment
 
-    overlap = here[1].overlap(there[1])
+    overlap = here.modes.overlap(there.modes)
     rows, columns = linear_sum_assignment(-overlap)
     now = dict(zip(rows.tolist(), columns.tolist(), strict=True))
-    clear = all(k < 0 or overlap[k, now[k]] > _CLEAR for k in wanted if k < 0 or k in now)
+    clear = all(overlap[k, now[k]] > _CLEAR for k in wanted if k in now)
     if clear or halves == 0:
-        return np.array([now.get(int(k), -1) for k in wanted], dtype=np.intp)
-    x = 0.5 * (here[0] + there[0])
-    middle = (x, model.modes(x))
-    return followed(model, middle, there, followed(model, here, middle, wanted, halves - 1), halves - 1)
+        return [now.get(k, -1) for k in wanted]
+    x = 0.5 * (here.x + there.x)
+    middle = misfit.beside(x, misfit.modes(x), ())
+    return followed(misfit, middle, there, followed(misfit, here, middle, wanted, halves - 1), halves - 1)
 
 
 # A pair lies within four standard deviations, so that a model without uncertain springs reaches as far as the tolerance.
@@ -146,17 +137,12 @@ def compare_shapes(
     given = shapes if isinstance(shapes, Measured) else read_rig_shapes(shapes, points, model)
     if given.shapes is None or not given.lines or not given.points:
         raise AnalysisError("there are no measured shapes to compare with")
-    if not 0.0 < tolerance < 1.0 or samples < 1:
-        raise AnalysisError("the tolerance lies between 0 and 1 (0.05 is 5 %), and there is at least one random list")
+    tolerance = share_of(tolerance, "tolerance", "0.05")
+    check_whole("the number of random lists (samples)", samples)
     given.check_points(model)
     # A line may have a mode that softer springs than the model's have brought down.
     highest = ABOVE_RIG * (1.0 + 0.5 * DEFAULT_PRIOR) * max(line.frequency_hz for line in given.lines)
-    if isinstance(source, Model):
-        result = modal(source, speed=speed, fmax=highest, accuracy=accuracy, elements=elements, progress=progress)
-    elif speed is not None or accuracy is not None or elements is not None:
-        raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
-    else:
-        result = source
+    result, excitations = modes_beside(source, highest, speed, accuracy, elements, progress)
     modes = _Modes.of(result, given.points)
     alike = modes.likeness(given.shapes)
     rig_hz = np.array([line.frequency_hz for line in given.lines])
@@ -174,8 +160,6 @@ def compare_shapes(
         pairs += [(int(lines[line]), int(left[mode])) for line, mode in others]
     pairs.sort()
     chance = _chance(modes, rig_hz, alike, spread, tolerance, samples, seed)
-    turning = result.speed if result.speed is not None else model.operating_speed
-    excitations = excitation_lines(model, turning) if turning else ()
     matches = []
     for line, mode in pairs:
         rig = given.lines[line]
@@ -194,13 +178,13 @@ def compare_shapes(
                 scale=float(np.abs(np.vdot(own, shape[known])) / size) if size > 0.0 else float("nan"),
                 phase_collinearity=phase_collinearity(shape),
                 close_to=tuple(int(modes.number[k]) for k in modes.group[mode] if k != mode),
-                excitations=tuple(e for e in excitations if abs(e.frequency_hz - rig.frequency_hz) <= reach),
+                excitations=excitations_at(excitations, rig.frequency_hz, reach),
             )
         )
     paired = {line for line, _ in pairs}
     seen = [(line, mode) for line, mode in pairs if np.isfinite(given.shapes[line]).any()]
     matched = [given.shapes[line] for line, _ in seen]
-    planes = [modes.everywhere[list(modes.group[mode])] for _, mode in seen]
+    groups = [list(modes.group[mode]) for _, mode in seen]
     progress(0.95, "sensors")
     distances = [sensor.distance for sensor in given.sensors] or [None] * len(given.points)
     return ShapeComparison(
@@ -213,11 +197,13 @@ def compare_shapes(
         mac=alike,
         auto_mac=mac(given.shapes, given.shapes),
         model_auto_mac=mac(modes.at_points, modes.at_points),
-        comac=_comac(matched, [modes.at_points[list(modes.group[mode])] for _, mode in seen], len(given.points)),
+        comac=_comac(matched, [modes.at_points[group] for group in groups], len(given.points)),
         matches=tuple(matches),
         unmatched=tuple(line for k, line in enumerate(given.lines) if k not in paired),
         subspaces=_subspaces(modes, seen, given.lines, given.shapes),
-        doubts=sensor_doubts(given.points, modes.axes, np.array(matched), planes),
+        doubts=sensor_doubts(
+            given.points, modes.axes, np.array(matched), [modes.everywhere[group] for group in groups]
+        ),
         tolerance=tolerance,
         chance=chance,
         stiffnesses=learnt_stiffnesses(
@@ -259,12 +245,10 @@ class _Modes:
             raise AnalysisError("there are no elastic modes to compare with")
         elastic = elastic[np.argsort(result.natural_frequency_hz[elastic], kind="stable")]
         hz = result.natural_frequency_hz[elastic]
-        where = [point_node(result.model, result.nodes, name) for name in points]
-        nodes = np.array([node for node, _ in where])
-        axes = np.array([axis for _, axis in where])
+        nodes, axes = np.array([point_node(result.model, result.nodes, name) for name in points]).T
         everywhere = np.moveaxis(result.shapes[nodes][:, :, elastic], 2, 0)
         error = np.nan_to_num(result.error_estimate[elastic], nan=0.0)
-        springs = spring_shares(result.strain_energy, elastic)
+        _, springs = spring_shares(result.strain_energy, elastic)
         spread = np.hypot(LINE_NOISE, 0.5 * DEFAULT_PRIOR * np.sqrt(np.sum(springs**2, axis=0)))
         at_points = everywhere[:, np.arange(len(points)), axes]
         # Chains of modes, ascending, whose neighbours are closer than their errors, or than a line can be read.
@@ -276,22 +260,16 @@ class _Modes:
     def likeness(self, shapes: NDArray[np.complex128]) -> NDArray[np.float64]:
         """MAC of shapes (n, s) and modes, (n, m); of close modes the share of the shape in their plane."""
         found = mac(shapes, self.at_points)
-        whole = bool(np.isfinite(shapes).all())
-        for group in dict.fromkeys(self.group):
-            if len(group) < 2:
-                continue
+        known = np.isfinite(shapes)
+        size = np.nansum(np.abs(shapes) ** 2, axis=1)
+        for group in filter(lambda group: len(group) > 1, dict.fromkeys(self.group)):
             plane = self.at_points[list(group)]
-            if whole:
-                inside = np.sum(np.abs(shapes @ _basis(plane).conj()) ** 2, axis=1)
-                share = inside / np.maximum(np.sum(np.abs(shapes) ** 2, axis=1), 1e-300)
-            else:
-                share = np.full(len(shapes), np.nan)
-                for k, shape in enumerate(shapes):
-                    known = np.isfinite(shape)
-                    size = float(np.sum(np.abs(shape[known]) ** 2))
-                    if size > 0.0:
-                        Q = _basis(plane[:, known])
-                        share[k] = np.sum(np.abs(Q.conj().T @ shape[known]) ** 2) / size
+            share = np.full(len(shapes), np.nan)
+            # Shapes that are known at the same points have one plane.
+            for points in np.unique(known[size > 0.0], axis=0):
+                rows = (known == points).all(axis=1) & (size > 0.0)
+                inside = np.sum(np.abs(shapes[np.ix_(rows, points)] @ _basis(plane[:, points]).conj()) ** 2, axis=1)
+                share[rows] = inside / size[rows]
             found[:, list(group)] = share[:, None]
         return found
 

@@ -17,6 +17,7 @@ from rotorgear.analysis.common.points import coordinates
 from rotorgear.analysis.rig.sensor_table import Sensor, sensors_of
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.results.comparison import RigLine
 from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE
 from rotorgear.uff.read import read_universal
@@ -106,43 +107,31 @@ def read_rig_shapes(path: str | Path, points: str | Path | None = None, model: M
         raise AnalysisError(f"{path}: no mode shapes (dataset 55) in it; its datasets: {file.kinds}")
     sensors, notes = sensors_of(file, Path(path).name, points, model)
     lines = []
-    columns = []
+    rows = []
     for number, shape in enumerate(file.shapes, start=1):
-        if not (math.isfinite(shape.frequency_hz) and shape.frequency_hz > 0.0):
+        if not 0.0 < shape.frequency_hz < math.inf:
             raise AnalysisError(
                 f"{path}: shape {number} has the frequency {shape.frequency_hz:g} Hz; expected a positive one"
             )
         label = shape.names[3] if len(shape.names) > 3 else ""
         damping = shape.damping_ratio if 0.0 < shape.damping_ratio < 1.0 else None
         lines.append(RigLine(shape.frequency_hz, "" if label.lower() == "none" else label, None, damping))
-        row = {int(node): values for node, values in zip(shape.nodes, shape.values, strict=True)}
-        at = [row.get(sensor.node) for sensor in sensors]
-        columns.append(
-            [
-                complex(math.nan)
-                if values is None or sensor.direction >= len(values)
-                else sensor.sign * values[sensor.direction]
-                for values, sensor in zip(at, sensors, strict=True)
-            ]
-        )
-    table = np.array(columns, dtype=complex)
-    for k, sensor in enumerate(sensors):
-        if not np.isfinite(table[:, k]).any():
-            raise ModelError(
-                [Problem(f"point {sensor.place}", f"node {sensor.node}", "a node that some shape of the file has")],
-                str(path),
-            )
-    still = np.flatnonzero(~np.any(np.nan_to_num(table) != 0.0, axis=1))
-    for number in map(int, still):
-        # A shape that is 0 everywhere has no direction to compare; its frequency is a line like any other.
-        table[number] = complex(math.nan)
-        notes.append(
-            f"shape {number + 1} ({lines[number].frequency_hz:.4g} Hz) moves no sensor: taken as a line without shape"
-        )
+        # Displacements by node and direction, those of all six that the file has.
+        moved = {
+            (int(n), k): value for n, row in zip(shape.nodes, shape.values, strict=True) for k, value in enumerate(row)
+        }
+        rows.append([s.sign * moved.get((s.node, s.direction), complex(math.nan)) for s in sensors])
+    table = np.array(rows, dtype=complex)
+    for sensor, seen in zip(sensors, np.isfinite(table).any(axis=0), strict=True):
+        if not seen:
+            problem = Problem(f"point {sensor.place}", f"node {sensor.node}", "a node that some shape of the file has")
+            raise ModelError([problem], str(path))
+    for number in np.flatnonzero(~np.any(np.nan_to_num(table) != 0.0, axis=1)).tolist():
+        what = f"shape {number + 1} ({lines[number].frequency_hz:.4g} Hz) moves no sensor"
+        notes.append(Note("", what, "taken as a line without shape"))
     if file.nodes is not None and {18, 2420} & set(file.others) and file.nodes.systems.any():
-        notes.append(
-            "displacements are in local coordinate systems (datasets 18, 2420), which are not read: all are taken as global"
-        )
+        what = "displacements are in local coordinate systems (datasets 18, 2420), which are not read"
+        notes.append(Note("", what, "all are taken as global"))
     names = tuple(sensor.place for sensor in sensors)
     return Measured(tuple(lines), names, table, (*file.notes, *notes), tuple(sensors))
 

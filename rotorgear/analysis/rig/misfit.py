@@ -1,5 +1,8 @@
 """What a model with free numbers shows beside what was measured: residuals, their noise, and their derivatives.
 
+What was measured in several states of the gearbox, or at several speeds, are campaigns: each has a model of its own, and all
+share the logs of the free factors. Their modes follow one another in one list.
+
 Shapes have no scale: the residual of measured y and shape phi is y - a phi with the a that fits best, and its derivative loses
 what lies along phi. Shapes of close modes are compared as the plane they span: y less its projection on it. Frequency responses
 follow the pairs of lines and modes (`frf_misfit.py`): they need none.
@@ -16,15 +19,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.rig.frf_misfit import FrfMisfit
 from rotorgear.analysis.rig.likeness import pairs_of
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.posterior import Posterior, line_noise
-from rotorgear.analysis.rig.rig_model import CampaignModel, CampaignModes
+from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.analysis.sensitivity.forms import Shapes
 from rotorgear.errors import ConvergenceError
+from rotorgear.model.numbers import FreeNumbers
 from rotorgear.progress import Progress
 
 # Noise of a measured displacement, as a share of the root mean square of its shape.
@@ -43,6 +47,31 @@ _AT_REST = 1e-5
 # Steps crawl where the misfit is this many times the number of values and they lessen it by less than this share.
 _MISFIT = 2.0
 _CRAWL = 0.01
+
+
+@dataclass(frozen=True)
+class CampaignModes:
+    """Modes of all campaigns, one after the other: as `RigModes`, at the points of all (m, s)."""
+
+    parts: tuple[RigModes, ...]
+    at_points: Shapes
+
+    @cached_property
+    def frequency_hz(self) -> NDArray[np.float64]:
+        """Natural frequencies in Hz, (m,)."""
+        return np.concatenate([part.frequency_hz for part in self.parts])
+
+    @cached_property
+    def campaign(self) -> NDArray[np.intp]:
+        """Number of the campaign that each mode belongs to, (m,)."""
+        return np.repeat(np.arange(len(self.parts)), [len(part.eigenvalues) for part in self.parts])
+
+    def overlap(self, other: CampaignModes) -> NDArray[np.float64]:
+        """How far each mode here is one there (m, m'); nothing between campaigns."""
+        found = np.zeros((len(self.campaign), len(other.campaign)))
+        for number, (part, moved) in enumerate(zip(self.parts, other.parts, strict=True)):
+            found[np.ix_(self.campaign == number, other.campaign == number)] = part.overlap(moved)
+        return found
 
 
 @dataclass(frozen=True)
@@ -84,8 +113,8 @@ class Misfit:
     """A model beside a rig.
 
     Attributes:
-        model: with its free numbers.
-        given: lines and shapes of all campaigns.
+        models: those of all campaigns, with the same free factors.
+        given: lines and shapes of all campaigns, at the points of all of them.
         owner: campaign of each line (n,).
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
         tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
@@ -93,7 +122,7 @@ class Misfit:
         looseness: what is added to the noise while modes may still be taken for others.
     """
 
-    model: CampaignModel
+    models: tuple[RigModel, ...]
     given: Measured
     owner: NDArray[np.intp]
     shape_noise: float
@@ -104,7 +133,45 @@ class Misfit:
     @cached_property
     def turning(self) -> frozenset[int]:
         """Campaigns at a speed: their shapes are complex, and both parts of a misfit count, each with its share of the noise."""
-        return frozenset(number for number, part in enumerate(self.model.parts) if part.speed)
+        return frozenset(number for number, model in enumerate(self.models) if model.speed)
+
+    @property
+    def numbers(self) -> FreeNumbers:
+        """The free numbers, as the first campaign has them."""
+        return self.models[0].numbers
+
+    @property
+    def solutions(self) -> int:
+        """Eigenproblems solved: each campaign has one at every set of numbers, and the most of them counts."""
+        return max(model.solutions for model in self.models)
+
+    def modes(self, x: NDArray[np.float64]) -> CampaignModes:
+        """The elastic modes at x."""
+        parts = tuple(model.modes(x) for model in self.models)
+        kind = np.result_type(float, *(part.at_points for part in parts))
+        tables = []
+        for model, part in zip(self.models, parts, strict=True):
+            tables.append(np.zeros((len(part.eigenvalues), len(self.given.points)), dtype=kind))
+            tables[-1][:, self._at(model)] = part.at_points
+        return CampaignModes(parts, np.concatenate(tables))
+
+    def derivatives(
+        self, x: NDArray[np.float64], modes: CampaignModes, chosen: NDArray[np.intp], *, shapes: bool
+    ) -> tuple[NDArray[np.float64], Shapes]:
+        """d ln f / dx (k, p) and d phi / dx at the points (k, s, p) of k chosen modes."""
+        slopes = np.zeros((len(chosen), len(x)))
+        kind = complex if np.iscomplexobj(modes.at_points) else float
+        moved = np.zeros((len(chosen), len(self.given.points), len(x)), dtype=kind)
+        for number, (model, part) in enumerate(zip(self.models, modes.parts, strict=True)):
+            rows = np.flatnonzero(modes.campaign[chosen] == number)
+            if len(rows):
+                first = int(np.searchsorted(modes.campaign, number))
+                slopes[rows], at_points = model.derivatives(x, part, chosen[rows] - first, shapes=shapes)
+                moved[np.ix_(rows, self._at(model))] = at_points
+        return slopes, moved
+
+    def _at(self, model: RigModel) -> NDArray[np.intp]:
+        return np.array([self.given.points.index(point) for point in model.points], dtype=np.intp)
 
     @cached_property
     def shapes(self) -> Shapes:
@@ -115,7 +182,7 @@ class Misfit:
         turns = np.isin(self.owner, list(self.turning))
         return np.where(turns[:, None], self.given.shapes, real)
 
-    def parts(self, line: int, values: Shapes) -> Shapes:
+    def parts(self, line: int, values: Shapes) -> NDArray[np.float64]:
         """Real values of a line as they are; of a complex shape the real ones, then the imaginary ones."""
         if self.owner[line] not in self.turning:
             return np.real(values)
@@ -128,31 +195,27 @@ class Misfit:
 
     def beside(self, x: NDArray[np.float64], modes: CampaignModes, pairs: tuple[Pair, ...]) -> Fit:
         """Residuals of the model at x."""
-        residual: list[float] = []
-        noise: list[float] = []
-        owner: list[int] = []
+        # Residuals, their noise, and the line or response that they are of.
+        rows: list[tuple[NDArray[np.float64], ArrayLike, int]] = []
         for pair in pairs:
             rig = self.given.lines[pair.line]
-            residual.append(float(np.log(rig.frequency_hz / modes.frequency_hz[pair.mode])))
-            noise.append(float(np.hypot(line_noise(rig), _LOOSE_FREQUENCY * self.looseness)))
-            owner.append(pair.line)
+            noise = np.hypot(line_noise(rig), _LOOSE_FREQUENCY * self.looseness)
+            rows.append((np.array([np.log(rig.frequency_hz / modes.frequency_hz[pair.mode])]), noise, pair.line))
             points = self.shape_points(pair.line)
             if len(points):
                 y = self.shapes[pair.line, points]
                 off = self.parts(pair.line, _off_subspace(modes.at_points[np.ix_(np.array(pair.near), points)].T, y))
-                residual += list(off)
                 share = np.hypot(self.shape_noise, self.looseness) * np.sqrt(len(points) / len(off))
-                noise += [float(share * np.sqrt(np.mean(np.abs(y) ** 2)))] * len(off)
-                owner += [pair.line] * len(off)
-        parts = [(np.array(residual), np.array(noise), np.array(owner, dtype=np.intp))]
-        first = 0
+                rows.append((off, share * np.sqrt(np.mean(np.abs(y) ** 2)), pair.line))
+        owner = -1
         for number, response in self.responses.items():
-            rows, sigmas = response.residual(x, modes.parts[number], self.looseness)
-            owners = -1 - (first + np.arange(len(rows)))
-            parts.append((rows.ravel(), sigmas.ravel(), np.repeat(owners, rows.shape[1])))
-            first += len(rows)
-        r, sigma, whose = (np.concatenate(column) for column in zip(*parts, strict=True))
-        objective = float(np.sum((r / sigma) ** 2) + np.sum((x / self.model.numbers.prior) ** 2))
+            for off, sigma in zip(*response.residual(x, modes.parts[number], self.looseness), strict=True):
+                rows.append((off, sigma, owner))
+                owner -= 1
+        r = np.concatenate([np.zeros(0), *(off for off, _, _ in rows)])
+        sigma = np.concatenate([np.zeros(0), *(np.broadcast_to(sigma, off.shape) for off, sigma, _ in rows)])
+        whose = np.repeat(np.array([owner for _, _, owner in rows], np.intp), [len(off) for off, _, _ in rows])
+        objective = float(np.sum((r / sigma) ** 2) + np.sum((x / self.numbers.prior) ** 2))
         return Fit(x, modes, pairs, r, sigma, whose, objective, self.looseness)
 
     def linear(self, state: Fit) -> Posterior:
@@ -162,7 +225,7 @@ class Misfit:
         chosen = sorted({k for pair in state.pairs for k in (pair.near if with_shapes else (pair.mode,))})
         place = {mode: k for k, mode in enumerate(chosen)}
         at = np.array(chosen, dtype=np.intp)
-        slopes, shape_slopes = self.model.derivatives(state.x, modes, at, shapes=with_shapes)
+        slopes, shape_slopes = self.derivatives(state.x, modes, at, shapes=with_shapes)
         rows: list[NDArray[np.float64]] = []
         for pair in state.pairs:
             rows.append(slopes[place[pair.mode]])
@@ -176,7 +239,7 @@ class Misfit:
         for number, response in self.responses.items():
             slopes = response.slopes(state.x, modes.parts[number], state.looseness)
             jacobian.append(slopes.reshape(-1, len(state.x)))
-        return Posterior(np.concatenate(jacobian), state.noise, self.model.numbers.prior)
+        return Posterior(np.concatenate(jacobian), state.noise, self.numbers.prior)
 
     def pairs(self, x: NDArray[np.float64], modes: CampaignModes, known: Posterior | None) -> tuple[Pair, ...]:
         """Pair lines and modes, by what is known of the numbers so far."""
@@ -184,29 +247,23 @@ class Misfit:
             return ()
         hz = np.array([line.frequency_hz for line in self.given.lines])
         noise = max(line_noise(line) for line in self.given.lines)
-        spread = np.full(len(modes.eigenvalues), np.hypot(noise, _LOOSE_FREQUENCY * self.looseness))
+        every = np.arange(len(modes.campaign))
+        spread = np.full(len(every), np.hypot(noise, _LOOSE_FREQUENCY * self.looseness))
         if self.given.points:
-            every = np.arange(len(modes.eigenvalues), dtype=np.intp)
-            slopes, _ = self.model.derivatives(x, modes, every, shapes=False)
-            prior = self.model.numbers.prior
-            before = np.sqrt(np.sum((slopes * prior) ** 2, axis=1)) if known is None else known.spread_of(slopes)
-            spread = np.hypot(spread, before)
+            slopes, _ = self.derivatives(x, modes, every, shapes=False)
+            before = np.sqrt(np.sum((slopes * self.numbers.prior) ** 2, axis=1))
+            spread = np.hypot(spread, before if known is None else known.spread_of(slopes))
         found: list[tuple[int, int]] = []
         for number in np.unique(self.owner):
             lines = np.flatnonzero(self.owner == number)
             own = np.flatnonzero(modes.campaign == number)
-            pairs = pairs_of(
-                hz[lines],
-                modes.frequency_hz[own],
-                spread[own],
-                self.shapes[lines],
-                modes.at_points[own],
-                self.tolerance,
-            )
+            shapes = (self.shapes[lines], modes.at_points[own])
+            pairs = pairs_of(hz[lines], modes.frequency_hz[own], spread[own], *shapes, self.tolerance)
             found += [(int(lines[line]), int(own[mode])) for line, mode in pairs]
         # The modes that are close to one, itself among them.
         reach = 2.0 * (CLOSE + _LOOSE_CLOSE * self.looseness)
-        near = np.abs(np.log(modes.eigenvalues[:, None] / modes.eigenvalues)) < reach
+        eigenvalues = np.concatenate([part.eigenvalues for part in modes.parts])
+        near = np.abs(np.log(eigenvalues[:, None] / eigenvalues)) < reach
         near &= modes.campaign[:, None] == modes.campaign
         return tuple(Pair(line, mode, tuple(map(int, np.flatnonzero(near[:, mode])))) for line, mode in found)
 
@@ -219,8 +276,8 @@ def _off_subspace(basis: Shapes, y: Shapes) -> Shapes:
 
 def first_fit(misfit: Misfit) -> Fit:
     """The model with the numbers of the file beside the rig."""
-    x = np.zeros(len(misfit.model.numbers.addresses))
-    modes = misfit.model.modes(x)
+    x = np.zeros(len(misfit.numbers.addresses))
+    modes = misfit.modes(x)
     return misfit.beside(x, modes, misfit.pairs(x, modes, None))
 
 
@@ -237,7 +294,7 @@ def approach(misfit: Misfit, start: Fit, progress: Progress) -> Fit:
         state = loose.beside(state.x, state.modes, loose.pairs(state.x, state.modes, posterior))
         posterior = loose.linear(state)
         x = posterior.estimate(state.residual + posterior.jacobian @ state.x)
-        modes = misfit.model.modes(x)
+        modes = misfit.modes(x)
         state = loose.beside(x, modes, state.pairs)
     return misfit.beside(x, modes, misfit.pairs(x, modes, posterior))
 
@@ -251,17 +308,14 @@ def most_probable(misfit: Misfit, state: Fit, progress: Progress) -> tuple[Fit, 
     posterior = misfit.linear(state)
     damping = 0.0
     looked = 0
-    while misfit.model.solutions < _MOST_SOLUTIONS:
-        progress(
-            0.4 + 0.5 * misfit.model.solutions / _MOST_SOLUTIONS,
-            f"modal solution {misfit.model.solutions + 1}",
-        )
+    while (solved := misfit.solutions) < _MOST_SOLUTIONS:
+        progress(0.4 + 0.5 * solved / _MOST_SOLUTIONS, f"modal solution {solved + 1}")
         # |N^-1 (r - J d)|^2 + |S^-1 (x + d)|^2 + damping |S^-1 d|^2, squared out for d, is a prior about -x / (1 + damping).
         pull = state.x / (1.0 + damping)
         held = Posterior(posterior.jacobian, posterior.noise, posterior.prior / np.sqrt(1.0 + damping))
         step = held.estimate(state.residual + posterior.jacobian @ pull) - pull
         x = state.x + step
-        modes = misfit.model.modes(x)
+        modes = misfit.modes(x)
         trial = misfit.beside(x, modes, _followed(state, modes))
         gain = state.objective - trial.objective
         level = abs(gain) < _AT_REST * max(1.0, state.objective)

@@ -41,8 +41,7 @@ class Posterior:
     @cached_property
     def _directions(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """U (n, r), s (r,) and V (p, r), r = min(n, p)."""
-        weighted = self.jacobian * self.prior / self.noise[:, None]
-        left, singular, right = np.linalg.svd(weighted, full_matrices=False)
+        left, singular, right = np.linalg.svd(self.jacobian * self.prior / self.noise[:, None], full_matrices=False)
         return left, singular, right.T
 
     @property
@@ -107,29 +106,24 @@ def learnt_stiffnesses(
         modes: index of the mode of each matched line (n).
         lines: the matched lines (n).
     """
-    springs = _springs(strain_energy)
+    springs, shares = spring_shares(strain_energy, np.array(modes, dtype=np.intp))
     if not springs or not lines:
         return ()
-    shares = spring_shares(strain_energy, np.array(modes))
-    posterior = Posterior(
-        jacobian=0.5 * shares.T,
-        noise=np.array([line_noise(line) for line in lines]),
-        prior=np.full(len(springs), DEFAULT_PRIOR),
-    )
+    noise = np.array([line_noise(line) for line in lines])
+    posterior = Posterior(0.5 * shares.T, noise, np.full(len(springs), DEFAULT_PRIOR))
     rows = zip(springs, posterior.sigma, posterior.learnt, strict=True)
     return tuple(
         LearntParameter(f"{part}.stiffness", DEFAULT_PRIOR, float(sigma), float(learnt)) for part, sigma, learnt in rows
     )
 
 
-def spring_shares(strain_energy: Mapping[str, ArrayLike], modes: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Share of each spring in the strain energy of some modes, (springs, modes)."""
-    rows = [np.asarray(strain_energy[part], dtype=float)[modes] for part in _springs(strain_energy)]
-    return np.array(rows).reshape(-1, len(modes))
-
-
-def _springs(strain_energy: Mapping[str, ArrayLike]) -> list[str]:
-    return [part for part in strain_energy if part.partition(".")[0] in SPRINGS]
+def spring_shares(
+    strain_energy: Mapping[str, ArrayLike], modes: NDArray[np.intp]
+) -> tuple[list[str], NDArray[np.float64]]:
+    """The springs among some parts, and the share of each in the strain energy of some modes, (springs, modes)."""
+    springs = [part for part in strain_energy if part.partition(".")[0] in SPRINGS]
+    rows = [np.asarray(strain_energy[part], dtype=float)[modes] for part in springs]
+    return springs, np.array(rows).reshape(len(springs), len(modes))
 
 
 def line_noise(line: RigLine) -> float:

@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rotorgear.errors import ModelError, Problem
+from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 from rotorgear.results.comparison import RigLine
 
@@ -200,3 +201,25 @@ def _is_plain(cell: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, ...]:
+    """The lines of a rig from a file (CSV), from lines, or from plain frequencies in Hz.
+
+    Raises:
+        AnalysisError: no lines at all. ModelError: the file can't be read, or holds mistakes.
+    """
+    if isinstance(rig, str | Path):
+        return read_rig_lines(rig)
+    lines = tuple(line if isinstance(line, RigLine) else RigLine(float(line)) for line in rig)
+    if not lines:
+        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
+    return lines
+
+
+def refuse_repeated(lines: Iterable[RigLine]) -> None:
+    """AnalysisError where two lines have one frequency: each of them would need a mode of its own."""
+    hz = [line.frequency_hz for line in lines]
+    for f in hz:
+        if hz.count(f) > 1:
+            raise AnalysisError(f"the rig line {f:g} Hz is given twice: keep one of them")

@@ -2,21 +2,19 @@
 
 The log of each number is normal about the file's value with the spread of the prior, each measured ln f, each displacement of a
 measured shape and each ln H of a frequency response about the model's with its noise (`misfit.py`). Steps towards the most
-probable numbers (`estimate.py`) take derivatives from the modes themselves (`sensitivity.py`), so that each costs one modal
-solution.
+probable numbers take derivatives from the modes themselves (`analysis/sensitivity`), so that each costs one modal solution.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.common.request import check_modal_damping, share_of, speed_in_si
 from rotorgear.analysis.rig.campaigns import Campaign, joined, read_campaigns
 from rotorgear.analysis.rig.compare import ABOVE_RIG
 from rotorgear.analysis.rig.frf_misfit import FrfMisfit
@@ -25,10 +23,11 @@ from rotorgear.analysis.rig.measured import Measured, MeasuredFrf
 from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, approach, first_fit, most_probable
 from rotorgear.analysis.rig.posterior import LINE_NOISE, Posterior, line_noise
 from rotorgear.analysis.rig.receptance_model import CARRIED
-from rotorgear.analysis.rig.rig_model import CampaignModel, RigModel, plan_of
+from rotorgear.analysis.rig.rig_model import RigModel, plan_of
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import DEFAULT_PRIOR, free_numbers
+from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import RigLine
 from rotorgear.results.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
@@ -38,6 +37,7 @@ from rotorgear.system.plan import Plan
 FRF_NOISE = 0.05
 # The mesh is finer than the noise by a tenth, within these bounds.
 _MESH_ERROR = (1e-10, 1e-4)
+_BOTH = "its factor is that of both values"
 
 
 @recorded
@@ -93,14 +93,9 @@ def update(
         ModelError: addresses that lead nowhere, a rig file that can't be read.
         ConvergenceError: the steps do not converge.
     """
-    if not 0.0 < shape_noise < 1.0:
-        raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")
-    if not 0.0 < frf_noise < 1.0:
-        raise AnalysisError(
-            f"the noise of frequency responses is a share between 0 and 1, such as 0.05; got {frf_noise:g}"
-        )
-    if not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
+    shape_noise = share_of(shape_noise, "shape_noise", "0.02")
+    frf_noise = share_of(frf_noise, "frf_noise", "0.05")
+    check_modal_damping(modal_damping)
     several: Sequence[Campaign] = (Campaign(rig, shapes, points, speed, frf=frf),)
     if campaigns is not None:
         if several[0] != Campaign():
@@ -121,8 +116,9 @@ def update(
         own = model.with_(campaign.changes) if campaign.changes else model
         given, receptances = campaign.measured(own)
         measured.append(given)
-        top = float(receptances.frequency_hz[-1]) if receptances else 0.0
-        fmax = max(CARRIED * top, reach * max((line.frequency_hz for line in given.lines), default=0.0))
+        fmax = reach * max((line.frequency_hz for line in given.lines), default=0.0)
+        if receptances:
+            fmax = max(CARRIED * float(receptances.frequency_hz[-1]), fmax)
         least = min((line_noise(line) for line in given.lines), default=LINE_NOISE)
         wanted = accuracy or float(np.clip(0.1 * least, *_MESH_ERROR))
         plan = Plan(elements) if elements else plan_of(own, fmax, wanted)
@@ -131,7 +127,7 @@ def update(
         if receptances:
             responses[number] = FrfMisfit(models[-1], receptances, frf_noise, modal_damping)
     every, owner = joined(measured)
-    problem = Misfit(CampaignModel(tuple(models), every.points), every, owner, shape_noise, tolerance, responses)
+    problem = Misfit(tuple(models), every, owner, shape_noise, tolerance, responses)
     start = first_fit(problem)
     if not start.pairs and not responses:
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
@@ -141,30 +137,32 @@ def update(
         end, posterior = most_probable(problem, near, progress)
     except ConvergenceError as error:
         raise ConvergenceError("; ".join([str(error), *doubts])) from None
-    result = _result(model, [one.name for one in several], problem, start, end, posterior)
-    changed = [
-        f"campaign {one.name or number}: {address} is free and has another value there; its factor is that of both values"
+    doubts += [
+        Note("", f"campaign {one.name or number}: {address} is free and has another value there", _BOTH)
         for number, one in enumerate(several, start=1)
         for address in numbers.addresses
         if any(address == name or address.startswith(f"{name}.") for name in one.changes)
     ]
-    return replace(result, warnings=(*result.warnings, *doubts, *changed))
+    names = [one.name if len(several) > 1 else "" for one in several]
+    return _result(model, names, problem, start, end, posterior, doubts)
 
 
-def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, state: Fit, p: Posterior) -> UpdateResult:
+def _result(
+    model: Model, campaigns: list[str], problem: Misfit, start: Fit, state: Fit, p: Posterior, doubts: list[Note]
+) -> UpdateResult:
     from scipy.stats import chi2
 
-    numbers = problem.model.numbers
+    numbers = problem.numbers
     first = {pair.line: pair.mode for pair in start.pairs}
-    # Modes count from 1 in each campaign.
-    offset = np.searchsorted(state.modes.campaign, np.arange(len(campaigns)))
-    shapes = problem.shapes
-    before_mac = mac(shapes, start.modes.at_points)
-    after_mac = mac(shapes, state.modes.at_points)
+    before_hz = start.modes.frequency_hz
+    after_hz = state.modes.frequency_hz
+    before_mac = mac(problem.shapes, start.modes.at_points)
+    after_mac = mac(problem.shapes, state.modes.at_points)
     lines = []
     for pair in state.pairs:
         line = pair.line
         mode = pair.mode
+        campaign = problem.owner[line]
         # As the other lines predict it, with the noise of the line.
         row = int(np.flatnonzero(state.owner == line)[0])
         rest, x = _without(state, p, state.owner == line)
@@ -175,11 +173,12 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
         lines.append(
             UpdatedLine(
                 rig=problem.given.lines[line],
-                campaign=campaigns[problem.owner[line]] if len(campaigns) > 1 else "",
-                mode_number=int(mode - offset[problem.owner[line]]) + 1,
-                before_hz=float(start.modes.frequency_hz[min(old, len(start.modes.eigenvalues) - 1)]),
-                after_hz=float(state.modes.frequency_hz[mode]),
-                held_out_hz=float(state.modes.frequency_hz[mode] * np.exp(slope @ (x - state.x))),
+                campaign=campaigns[campaign],
+                # Modes count from 1 in each campaign.
+                mode_number=int(mode - np.searchsorted(state.modes.campaign, campaign)) + 1,
+                before_hz=float(before_hz[min(old, len(before_hz) - 1)]),
+                after_hz=float(after_hz[mode]),
+                held_out_hz=float(after_hz[mode] * np.exp(slope @ (x - state.x))),
                 held_out_sigma=float(np.hypot(p.noise[row], spread)),
                 mac_before=float(before_mac[line, old]) if has_shape else None,
                 mac_after=float(after_mac[line, mode]) if has_shape else None,
@@ -193,20 +192,19 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
         if len(problem.shape_points(pair.line))
     )
     count = len(state.residual) - sum(fitted)
-    left_out = []
+    left_out: list[str] = []
     if problem.given.lines:
-        left_out.append(
-            "damping: lines are undamped natural frequencies at the speeds of the campaigns"
-            if problem.turning
-            else "damping and rotation: lines are undamped natural frequencies at standstill"
-        )
+        what = "damping" if problem.turning else "damping and rotation"
+        where = "at the speeds of the campaigns" if problem.turning else "at standstill"
+        left_out.append(Note("", what, f"lines are undamped natural frequencies {where}"))
         left_out.append("the spread of lines predicted from the others is that of the linear model about the estimate")
     for number, response in problem.responses.items():
-        left_out += response.notes
         error = response.basis_error(state.x, state.modes.parts[number])
-        left_out.append(
-            f"shapes above those that carry the responses: within {error:.0e} of the whole system's at 3 peaks"
-        )
+        why = f"within {error:.0e} of the whole system's at 3 peaks"
+        left_out += [*response.notes, Note("", "shapes above those that carry the responses", why)]
+    one_sensor = Note(
+        "", "shapes at a single sensor have a size and no direction to compare", "the frequencies alone are used"
+    )
     rows = zip(numbers.addresses, p.prior, p.sigma, p.learnt, np.exp(state.x), strict=True)
     return UpdateResult(
         model=model,
@@ -222,18 +220,15 @@ def _result(model: Model, campaigns: list[str], problem: Misfit, start: Fit, sta
         chi_squared=state.objective,
         measured_values=count,
         misfit_probability=float(chi2.sf(state.objective, count)),
-        modal_solutions=problem.model.solutions,
-        dofs=state.modes.system.n,
+        modal_solutions=problem.solutions,
+        dofs=state.modes.parts[0].system.n,
         method="Gauss-Newton on ln f, shapes and ln H, derivatives from the modes",
         left_out=tuple(left_out),
         warnings=(
             *problem.given.notes,
-            *(
-                ("shapes at a single sensor have a size and no direction to compare: the frequencies alone are used",)
-                if len(problem.given.points) == 1
-                else ()
-            ),
+            *([one_sensor] if len(problem.given.points) == 1 else []),
             *(note for one in problem.responses.values() for note in one.given.notes),
+            *doubts,
         ),
     )
 
@@ -242,24 +237,24 @@ def _response_rows(
     campaigns: list[str], problem: Misfit, start: Fit, state: Fit, p: Posterior
 ) -> Iterator[UpdatedResponse]:
     """Each measured frequency response beside the model before, after, and after all others alone."""
-    owner = -1
+    owner = 0
     for number, one in problem.responses.items():
         before = one.computed(start.x, start.modes.parts[number])
         after = one.computed(state.x, state.modes.parts[number])
         pairs = zip(one.given.responses, one.given.references, one.measured, before, after, strict=True)
         for response, reference, rig, first, last in pairs:
+            owner -= 1
             own = state.owner == owner
             moved = p.jacobian[own] @ (_without(state, p, own)[1] - state.x)
             half = len(moved) // 2
             yield UpdatedResponse(
-                campaign=campaigns[number] if len(campaigns) > 1 else "",
+                campaign=campaigns[number],
                 response=response,
                 reference=reference,
                 frac_before=frac(rig, first),
                 frac_after=frac(rig, last),
                 frac_held_out=frac(rig, last * np.exp(moved[:half] + 1j * moved[half:])),
             )
-            owner -= 1
 
 
 def _without(state: Fit, p: Posterior, own: NDArray[np.bool_]) -> tuple[Posterior, NDArray[np.float64]]:

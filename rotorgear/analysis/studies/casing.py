@@ -9,7 +9,7 @@ unknowns of their own):
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -39,28 +39,16 @@ from rotorgear.system.system import flow_system
 _RIGID = 1e-3
 
 
-@dataclass(frozen=True)
-class CoupledModes:
-    """Elastic modes of a gearbox.
+def reduced_modes(model: Model, name: str, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """The lowest elastic modes with the casing read, reduced as its settings say, and put between the rotors.
 
-    Attributes:
-        frequency: (k,) in Hz, rising.
-        mesh_error: (k,) estimated relative error by the mesh of the casing.
-        reduction_error: (k,) by its reduction.
-        dofs: of the mesh.
+    Returns:
+        Frequencies in Hz, rising, (k,); their estimated relative errors by the mesh of the casing and by its reduction, (k,);
+        unknowns of the mesh.
     """
-
-    frequency: np.ndarray
-    mesh_error: np.ndarray
-    reduction_error: np.ndarray
-    dofs: int
-
-
-def reduced_modes(model: Model, name: str, count: int, progress: Progress = silent) -> CoupledModes:
-    """The lowest elastic modes with the casing read, reduced as its settings say, and put between the rotors."""
     settings = casing_settings(model, name)
-    fe = finite_element_body(settings, progress)
-    body, _, basis = reduce_in_basis(fe, settings.modes_to, progress)
+    fe = finite_element_body(settings)
+    body, _, basis = reduce_in_basis(fe, settings.modes_to)
     keep(settings, body)
     system = flow_system(model)
     eigenvalues, shapes = la.eigh(system.stiffness().toarray(), system.mass.toarray())
@@ -68,18 +56,14 @@ def reduced_modes(model: Model, name: str, count: int, progress: Progress = sile
     eigenvalues = eigenvalues[chosen]
     own = system.dofs.expand(shapes[:, chosen])[system.nodes.of_casing(name)]
     reduction = [body.eigenvalue_error(value, shape) or 0.0 for value, shape in zip(eigenvalues, own.T, strict=True)]
-    return CoupledModes(
-        frequency=np.sqrt(eigenvalues) / (2.0 * np.pi),
-        mesh_error=0.5 * eigenvalue_errors(fe, eigenvalues, basis @ own) / eigenvalues,
-        reduction_error=0.5 * np.array(reduction),
-        dofs=fe.dofs,
-    )
+    mesh_error = 0.5 * eigenvalue_errors(fe, eigenvalues, basis @ own) / eigenvalues
+    return np.sqrt(eigenvalues) / (2.0 * np.pi), mesh_error, 0.5 * np.array(reduction), fe.dofs
 
 
-def whole_frequencies(model: Model, name: str, count: int, progress: Progress = silent) -> np.ndarray:
+def whole_frequencies(model: Model, name: str, count: int) -> np.ndarray:
     """The lowest elastic frequencies (count,) in Hz with every node of the casing's mesh: nothing of it is reduced."""
     system = flow_system(model)
-    fe = finite_element_body(casing_settings(model, name), progress)
+    fe = finite_element_body(casing_settings(model, name))
     # Displacements (3p, f) of the mesh from its unknowns, and motions (6 s, f) of the seats from them.
     mean = fe.settings.connection == "mean"
     space = fe.free_space(held=True, rigid_seats=not mean)
@@ -111,7 +95,7 @@ def whole_frequencies(model: Model, name: str, count: int, progress: Progress = 
     M = sp.csr_array(sp.block_diag([shapes.T @ mass @ shapes, empty]) + P.T @ (rotor_mass @ P))
     # Rotors may turn freely: a shift below the elastic modes makes the matrix one that is positive.
     shift = float(K.diagonal().sum() / M.diagonal().sum()) * 1e-8
-    factor = factor_positive(sp.csr_array(K + shift * M), 1, f"casings.{name} with the rotors", progress)
+    factor = factor_positive(sp.csr_array(K + shift * M), 1, f"casings.{name} with the rotors", silent)
     squares, _ = lowest_modes(factor.solve, lambda x: np.asarray(M @ x), K.shape[0], count + 8)
     squares = squares - shift
     return np.asarray(np.sqrt(squares[_elastic(squares, count)]) / (2.0 * np.pi))
@@ -252,35 +236,35 @@ def _of_gearbox(model: Model, name: str, count: int, finer: int, progress: Progr
     # Reductions of the meshes to compare are so good that what differs is the mesh.
     limit = max(4.0 * float(whole[-1]), settings.modes_to or 0.0)
 
-    def run(options: dict[str, Any]) -> CoupledModes:
-        return reduced_modes(
-            model.with_({f"casings.{name}.{key}": value for key, value in options.items()}), name, count
-        )
+    def run(options: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+        changed = model.with_({f"casings.{name}.{key}": value for key, value in options.items()})
+        return reduced_modes(changed, name, count)
 
     def refined(k: int) -> dict[str, Any]:
         return {"splits": settings.splits + k, "modes_to": limit}
 
     progress(0.0, "reference")
-    finest = run(refined(finer))
-    truth, words, resolution = _reference(finest.frequency, finest.mesh_error + finest.reduction_error, finest.dofs)
+    frequency, mesh_error, reduction_error, dofs = run(refined(finer))
+    truth, words, resolution = _reference(frequency, mesh_error + reduction_error, dofs)
+
+    def judge(found: tuple[np.ndarray, np.ndarray, np.ndarray, int]) -> Judged:
+        frequency, mesh_error, reduction_error, dofs = found
+        return Judged(dofs, np.abs(frequency / truth - 1.0), mesh_error + reduction_error)
+
+    def judge_reduction(found: tuple[np.ndarray, np.ndarray, np.ndarray, int]) -> Judged:
+        frequency, _, reduction_error, dofs = found
+        return Judged(dofs, np.abs(frequency / whole - 1.0), reduction_error)
+
     meshes = Study(
         [Setting(words, "elements", 2.0**k, refined(k)) for k, words in _splits(finer)],
         run=run,
-        judge=lambda found: Judged(
-            found.dofs, np.abs(found.frequency / truth - 1.0), found.mesh_error + found.reduction_error
-        ),
+        judge=judge,
         compared="frequencies of the gearbox",
         count=count,
         reference=words,
         resolution=resolution,
     )
-    return meshes, Study(
-        [],
-        run=run,
-        judge=lambda found: Judged(found.dofs, np.abs(found.frequency / whole - 1.0), found.reduction_error),
-        resolution=_RESOLVED,
-        rising=(),
-    )
+    return meshes, Study([], run=run, judge=judge_reduction, resolution=_RESOLVED, rising=())
 
 
 def _reference(frequency: np.ndarray, error: np.ndarray, dofs: int) -> tuple[np.ndarray, str, float]:

@@ -122,7 +122,7 @@ def convergence_study(
 
     # A mesh so coarse that the supports hold everything has nothing to solve.
     able = [n for n in elements if flow_system(model, Plan(n)).n]
-    study = Study(
+    return Study(
         _settings(able, accuracies),
         run=lambda options: modal(model, speed=speed, modes=modes, **options),
         judge=judge,
@@ -130,8 +130,7 @@ def convergence_study(
         count=len(truth),
         reference=words,
         resolution=RESOLUTION if reference is None else 0.0,
-    )
-    return study.result("modal", model, repeat, progress)
+    ).result("modal", model, repeat, progress)
 
 
 # Speeds of the diagrams that are compared, the first and last of them its ends.
@@ -184,7 +183,7 @@ def campbell_convergence_study(
         # A branch has one estimate, the larger of both ends: it is for the worst of its speeds.
         return Judged(result.dofs, error.max(axis=0), estimate.max(axis=0))
 
-    study = Study(
+    return Study(
         _settings(elements, accuracies),
         run=run,
         judge=judge,
@@ -192,8 +191,7 @@ def campbell_convergence_study(
         count=count,
         reference=f"modes solved for themselves at each of {_DIAGRAM} speeds, meshes refined to {REFERENCE:g}",
         resolution=RESOLUTION,
-    )
-    return study.result("campbell", model, repeat, part_of(progress, 0.4, 1.0))
+    ).result("campbell", model, repeat, part_of(progress, 0.4, 1.0))
 
 
 @recorded
@@ -241,7 +239,7 @@ def critical_convergence_study(
             estimate.append(told[:both])
         return Judged(result.dofs, np.concatenate(error), np.concatenate(estimate))
 
-    study = Study(
+    return Study(
         _settings(elements, accuracies),
         run=lambda options: critical(model, stop=stop, **options),
         judge=judge,
@@ -250,8 +248,7 @@ def critical_convergence_study(
         reference=f"the mesh refined to {REFERENCE:g}, {finest.dofs} dofs; the modes at these speeds, solved for themselves, "
         f"meet the lines to {max(missed):.0e}",
         resolution=RESOLUTION,
-    )
-    return study.result("critical", model, repeat, part_of(progress, 0.1, 1.0))
+    ).result("critical", model, repeat, part_of(progress, 0.1, 1.0))
 
 
 def _by_line(result: CriticalResult) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -295,7 +292,7 @@ def static_convergence_study(
         forces = np.concatenate([result.mesh_force, *held])
         return Judged(result.dofs, np.abs(forces - truth) / size, np.array([result.error_estimate]))
 
-    study = Study(
+    return Study(
         _settings(elements, accuracies),
         run=lambda options: static(model, speed=speed, **options),
         judge=judge,
@@ -304,8 +301,7 @@ def static_convergence_study(
         reference=f"elements with internal polynomials up to order {_STATIC_ORDER}, {finest.system.n} dofs",
         resolution=RESOLUTION,
         below="rounding only",
-    )
-    return study.result("static", model, repeat, progress)
+    ).result("static", model, repeat, progress)
 
 
 @recorded
@@ -346,7 +342,7 @@ def response_convergence_study(
         error = difference / np.where(largest > 0.0, largest, 1.0)
         return Judged(result.dofs, error, np.array([result.error_estimate]))
 
-    study = Study(
+    return Study(
         _settings(elements, accuracies),
         run=run,
         judge=judge,
@@ -354,8 +350,7 @@ def response_convergence_study(
         count=len(strongest),
         reference=f"direct solutions on a mesh of {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}",
         resolution=AMPLITUDE_RESOLUTION,
-    )
-    return study.result("response", model, repeat, part_of(progress, 0.2, 1.0))
+    ).result("response", model, repeat, part_of(progress, 0.2, 1.0))
 
 
 def _forces(result: ResponseResult) -> np.ndarray:
@@ -425,7 +420,7 @@ def frf_convergence_study(
         error = relative_change(finest.receptance, result.receptance)
         return Judged(result.dofs, np.array([error]), np.array([result.error_estimate]))
 
-    study = Study(
+    return Study(
         _settings(elements, accuracies),
         run=run,
         judge=judge,
@@ -434,5 +429,4 @@ def frf_convergence_study(
         reference=f"elements of high order, {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}; "
         f"force and response at {at}, {_FREQUENCIES} frequencies to {fmax:.5g} Hz",
         resolution=AMPLITUDE_RESOLUTION,
-    )
-    return study.result("frf", model, repeat, part_of(progress, 0.1, 1.0))
+    ).result("frf", model, repeat, part_of(progress, 0.1, 1.0))

@@ -11,16 +11,16 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
+from rotorgear.analysis.common.request import needed_speed
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
-from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
+from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of, told_of
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of
-from rotorgear.analysis.orbits.places import told_of
 from rotorgear.analysis.orbits.verify import run_periods
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.convergence import ConvergenceStudy, SweepConvergenceStudy, SweepRung
@@ -113,9 +113,9 @@ def transient_convergence_study(
         Setting(f"{name}, {count} steps", name, float(count), {**options, "steps": count})
         for name, options in plans
         for count in steps
-    ]
-    study = Study(
-        settings + [Setting(f"accuracy {a:g}", "accuracy", a, {"accuracy": a}) for a in accuracies],
+    ] + [Setting(f"accuracy {a:g}", "accuracy", a, {"accuracy": a}) for a in accuracies]
+    return Study(
+        settings,
         run=lambda options: transient(system, **options, **fixed),
         judge=lambda found: Judged(found.dofs, errors(found), np.array([found.error_estimate])),
         compared="statistics",
@@ -124,8 +124,7 @@ def transient_convergence_study(
         resolution=resolution,
         # With modes missing the error does not fall with the step: there is no order to measure.
         rising=_METHODS,
-    )
-    return study.result("transient", model, repeat, part_of(progress, 0.2, 1.0))
+    ).result("transient", model, repeat, part_of(progress, 0.2, 1.0))
 
 
 # Of a sweep: least common periods that are discarded; the spread of the initial states, far enough apart for chaos to forget and
@@ -168,13 +167,11 @@ def sweep_convergence_study(
     """
     if starts < 2:
         raise AnalysisError(f"starts: got {starts}, expected 2 or more, whose scatter is compared")
-    given = speed if speed is not None else speed_or_operating(None, model)
-    if given is None:
-        raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
-    notes: list[str] = []
+    given = needed_speed(speed, model)
+    notes: list[Note] = []
     if speed is None:
         progress(0.0, "a point with one motion")
-        given, notes = _one_motion(model, float(given), starts)
+        given, notes = _one_motion(model, given, starts)
 
     def run(n: int, count: int) -> SweepResult:
         at = {"operation.speed": [given]}
@@ -218,13 +215,13 @@ def sweep_convergence_study(
         model.title or "model",
         starts,
         tuple(rungs),
-        speed=speed_in_si(given),
+        speed=given,
         reference=f"{_FINER_STEPS * max(steps)} steps and {max(counts)} periods, the mean over the states",
         warnings=tuple(notes),
     )
 
 
-def _one_motion(model: Model, operating: float, starts: int) -> tuple[float, list[str]]:
+def _one_motion(model: Model, operating: float, starts: int) -> tuple[float, list[Note]]:
     """The speed nearest to the operating one, of a few, at which all states end on one motion, and what to say of that.
 
     Several motions at one point, each with its own values, show no error of steps or length.
@@ -237,15 +234,11 @@ def _one_motion(model: Model, operating: float, starts: int) -> tuple[float, lis
         sizes = runs.peak_to_peak[k]
         kinds = {runs.motion_at(k, r) for r in range(starts)}
         if len(kinds) == 1 and np.ptp(sizes, axis=0).max() <= _ALIKE * sizes.max():
-            if k == 0:
-                return speed, []
-            rpm = [value * RPM_PER_RAD_S for value in (operating, speed)]
-            return speed, [
-                f"several motions coexist at {rpm[0]:.6g} rpm; this is {rpm[1]:.6g} rpm, where all states meet one"
-            ]
-    return operating, [
-        "several motions coexist at this point: their values differ more than steps make them; give a speed"
-    ]
+            rpm = [f"{value * RPM_PER_RAD_S:.6g} rpm" for value in (operating, speed)]
+            what = f"several motions coexist at {rpm[0]}; this is {rpm[1]}, where all states meet one"
+            return speed, [Note("", what)] if k else []
+    why = "their values differ more than steps make them; give a speed"
+    return operating, [Note("", "several motions coexist at this point", why)]
 
 
 # Of a periodic motion: the reference has this many times the most harmonics, as long as its equations are no more than the limit.
@@ -290,11 +283,11 @@ def orbits_convergence_study(
         AnalysisError: no speed, nothing that tells motions apart, fewer than 5 instants a harmonic, or no periodic motions.
         ConvergenceError: the static state does not lead to a motion at this speed.
     """
-    given = speed_or_operating(speed, model)
-    if not given:
-        raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
+    given = needed_speed(speed, model)
     if min(densities, default=INSTANTS) < 5:
         raise AnalysisError(f"densities: got {min(densities)}, expected 5 instants a harmonic or more")
+    if not given:
+        raise AnalysisError("the shafts stand still, where nothing repeats: ask for a speed (--speed)")
     family = SystemFamily(model, [range_of(model, SPEED, [given, _RANGE * given])], excite, None)
     order = family.order
     told = told_of(family)
@@ -307,9 +300,7 @@ def orbits_convergence_study(
         equations = HarmonicOrbits(family.plant, Grid(n, instants, order), scale)
         if begin is None:
             return equations, at_value(equations, equations.start(0.0), 0.0).y
-        c = np.zeros((n + 1, begin.shape[1]), complex)
-        kept = min(len(begin), n + 1)
-        c[:kept] = begin[:kept]
+        c = np.pad(begin[: n + 1], ((0, max(0, n + 1 - len(begin))), (0, 0)))
         return equations, at_value(equations, equations.unknowns(c), 0.0).y
 
     with single_thread(0):
@@ -356,7 +347,7 @@ def orbits_convergence_study(
     plans = [("harmonics", h, h, INSTANTS * h) for h in harmonics if 2 * h <= finest]
     plans += [("instants", n, HARMONICS, HARMONICS * n) for n in densities if finest >= 2 * HARMONICS]
     compared = "contacts" if told.contact else "bearings, elements and unbalances"
-    study = Study(
+    return Study(
         [
             Setting(f"{h} harmonics, {instants} instants", knob, value, {"harmonics": h, "instants": instants})
             for knob, value, h, instants in plans
@@ -368,5 +359,4 @@ def orbits_convergence_study(
         reference=words,
         resolution=resolution,
         rising=("harmonics", "instants"),
-    )
-    return study.result("orbits", model, repeat, part_of(progress, 0.3, 1.0))
+    ).result("orbits", model, repeat, part_of(progress, 0.3, 1.0))

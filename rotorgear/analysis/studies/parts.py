@@ -97,7 +97,7 @@ def bearing_convergence_study(
         truth = at(_FINEST_POINTS)
         settings = [Setting(f"{n} positions in a pitch", "positions", float(n), {"fineness": n}) for n in _POINTS]
         words = f"means over {_FINEST_POINTS} positions in a pitch"
-    study = Study(
+    return Study(
         settings,
         run=lambda options: (at(options["fineness"]), at(2.0 * options["fineness"])),
         judge=judge,
@@ -106,8 +106,7 @@ def bearing_convergence_study(
         reference=words,
         resolution=_ROUNDING,
         rising=("grid", "positions"),
-    )
-    return study.result("bearing", model, repeat, part_of(progress, 0.3, 1.0))
+    ).result("bearing", model, repeat, part_of(progress, 0.3, 1.0))
 
 
 POSITIONS = 64

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import prod
@@ -50,7 +50,7 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
             )
         ends, unit = _numbers(address, parts[:2])
         _refuse_many(int(parts[2]))
-        return Axis(address, tuple(float(x) for x in np.linspace(ends[0], ends[1], int(parts[2]))), unit)
+        return Axis(address, tuple(np.linspace(ends[0], ends[1], int(parts[2])).tolist()), unit)
     listed = values.split(",") if isinstance(values, str) else list(values)
     numbers, unit = _numbers(address, listed)
     if not numbers:
@@ -79,17 +79,17 @@ def number_in(axis: Axis, value: float | str, what: str) -> float:
 
 def _numbers(address: str, texts: Sequence[float | str]) -> tuple[list[float], str]:
     numbers = []
-    units = []
+    units = set()
     for text in texts:
         match = _NUMBER.match(text) if isinstance(text, str) else None
         if isinstance(text, str) and match is None:
             raise AnalysisError(f"over {address}: got '{text}', expected a number with its unit")
-        numbers.append(float(match[1]) if match else float(text))
-        if match and match[2]:
-            units.append(match[2])
-    if len(set(units)) > 1:
-        raise AnalysisError(f"over {address}: got the units {', '.join(sorted(set(units)))}, expected one")
-    return numbers, units[0] if units else ""
+        numbers.append(float(match[1] if match else text))
+        units |= {match[2]} if match else set()
+    units -= {""}
+    if len(units) > 1:
+        raise AnalysisError(f"over {address}: got the units {', '.join(sorted(units))}, expected one")
+    return numbers, units.pop() if units else ""
 
 
 def points_of(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
@@ -111,22 +111,16 @@ def _refuse_many(count: int) -> None:
         raise AnalysisError(f"over: {count} points are too many (at most {MOST_POINTS})")
 
 
-class Family:
-    """A model whose parameters at some addresses change."""
+def along(model: Model, axes: Sequence[Axis]) -> Callable[[Model, tuple[float, ...]], Model]:
+    """What gives the model at a point from the model and the values there; ModelError where it does not pass the checks."""
+    data = tables_of(model)
+    places = [number_places(data, axis.address) for axis in axes]
 
-    def __init__(self, model: Model, axes: Sequence[Axis]) -> None:
-        self._data = tables_of(model)
-        self._axes = axes
-        self._places = [number_places(self._data, axis.address) for axis in axes]
+    def change(_: Model, values: tuple[float, ...]) -> Model:
+        texts = [axis.text(value) for axis, value in zip(axes, values, strict=True)]
+        return Model(**changed(data, zip(places, texts, strict=True)))
 
-    def at(self, values: Sequence[float]) -> Model:
-        """Return the model at a point.
-
-        Raises:
-            ModelError: it does not pass the checks.
-        """
-        texts = [axis.text(value) for axis, value in zip(self._axes, values, strict=True)]
-        return Model(**changed(self._data, zip(self._places, texts, strict=True)))
+    return change
 
 
 def number_places(data: dict[str, Any], address: str) -> list[Place]:

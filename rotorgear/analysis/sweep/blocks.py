@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
-from rotorgear.analysis.sweep.certify import Judge, bounded, judged, motion_statistics, to_certify
+from rotorgear.analysis.sweep.certify import Judge, bounded, judged, motion_statistics, sizes_of, to_certify
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.solvers.batch.run_block import Orbit, Plan, Start, run_block
@@ -53,17 +53,13 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
     first = shape[0]
     rest = int(np.prod(shape[1:], dtype=int))
     jobs: list[list[Job]] = [[] for _ in range(first if set(directions) & {"up", "down"} else 1)]
-    run = 0
-    for direction in directions:
-        for _ in range(starts):
-            if direction == "each":
-                jobs[0] += [Job(point, run) for point in range(first * rest)]
-            else:
-                places = range(first) if direction == "up" else range(first - 1, -1, -1)
-                step = -rest if direction == "up" else rest
-                for wave, i in enumerate(places):
-                    jobs[wave] += [Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)]
-            run += 1
+    for run, direction in enumerate(direction for direction in directions for _ in range(starts)):
+        if direction == "each":
+            jobs[0] += [Job(point, run) for point in range(first * rest)]
+            continue
+        step = -rest if direction == "up" else rest
+        for wave, i in enumerate(range(first)[:: -1 if direction == "down" else 1]):
+            jobs[wave] += [Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)]
     return jobs
 
 
@@ -98,78 +94,80 @@ def run_jobs(
     One that leaves all bounds on that way stays what it was after the periods that were asked for.
     """
     orbits = _run(points, starts, plan, go_on)
-    if not plan.tangents:
-        return _with_errors(points, orbits, plan, go_on)
-    chosen = list(range(len(orbits)))
-    orbits = _with_doubts(points, orbits, chosen, plan, go_on)
-    orbits, onward = _with_multipliers(points, orbits, chosen, plan, judge, go_on)
-    asked = tuple(orbits)
-    settled = plan.settle
-    for number in range(judge.rounds):
-        chosen = [
-            i
-            for i in chosen
-            if bounded(orbits[i], points[i]) and not judged(orbits[i], points[i], plan.steps, judge)[1]
-        ]
-        if not chosen:
-            break
-        longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
-        settled += longer.settle + plan.count
-        again = _run([points[i] for i in chosen], [onward[i] for i in chosen], longer, go_on)
-        for i, orbit in zip(chosen, again, strict=True):
-            orbits[i] = replace(orbit, settled=settled) if bounded(orbit, points[i]) else asked[i]
-        chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
-        orbits = _with_doubts(points, orbits, chosen, plan, go_on)
-        orbits, onward = _with_multipliers(points, orbits, chosen, plan, judge, go_on)
-    return _with_errors(points, orbits, plan, go_on)
-
-
-def _with_errors(
-    points: Sequence[Point], orbits: Sequence[Orbit], plan: Plan, go_on: Callable[[], bool] | None
-) -> list[Orbit]:
-    """The orbits with the errors of their statistics: by the same periods in other steps, from where each run ended.
-
-    Runge and Kutta's fourth order is not that of statistics: impacts begin between steps, and extremes are those of steps.
-    """
-    found = list(orbits)
+    if plan.tangents:
+        chosen = list(range(len(orbits)))
+        onward = _certify(points, orbits, chosen, plan, judge, go_on)
+        asked = tuple(orbits)
+        settled = plan.settle
+        for number in range(judge.rounds):
+            chosen = [i for i in chosen if bounded(orbits[i], points[i]) and not judged(orbits[i], points[i], judge)[1]]
+            if not chosen:
+                break
+            longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
+            settled += longer.settle + plan.count
+            again = _run([points[i] for i in chosen], [onward[i] for i in chosen], longer, go_on)
+            for i, orbit in zip(chosen, again, strict=True):
+                orbits[i] = replace(orbit, settled=settled) if bounded(orbit, points[i]) else asked[i]
+            chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
+            onward = _certify(points, orbits, chosen, plan, judge, go_on)
+    # Errors of statistics by the same periods in other steps. Runge and Kutta's fourth order is not that of statistics: impacts
+    # begin between steps, and extremes are those of steps. One step more: of steps at the same instants, extremes are often the
+    # same.
     sound = [i for i, orbit in enumerate(orbits) if bounded(orbit, points[i])]
-    if not sound:
-        return found
-    # One more: of steps at the same instants, extremes are often the same.
-    steps = _other_steps([points[i] for i in sound], plan.steps) + 1
-    other = replace(plan, steps=steps, settle=min(plan.warm, plan.settle), tangents=0)
-    again = _run([points[i] for i in sound], [orbits[i].end for i in sound], other, go_on)
+    steps, again = _in_other_steps(points, orbits, sound, replace(plan, tangents=0), go_on, more=1)
+    # Twice the steps are better by that much, half as many worse.
+    factor = gain(2.0) if steps < plan.steps else 1.0 - 1.0 / (1.0 + gain(2.0))
     for i, orbit in zip(sound, again, strict=True):
         counted = points[i].system.columns.counted
         own, changed = (motion_statistics(one, counted) for one in (orbits[i], orbit))
-        # Twice the steps are better by that much, half as many worse.
-        factor = gain(2.0) if steps < plan.steps else 1.0 - 1.0 / (1.0 + gain(2.0))
         error = compared(own.values, changed.values, own.scales, factor, _LUCK)
-        found[i] = replace(orbits[i], error=np.hypot(error, own.counted))
-    return found
+        orbits[i] = replace(orbits[i], error=np.hypot(error, own.counted))
+    return orbits
 
 
-def _other_steps(points: Sequence[Point], steps: int) -> int:
-    """Half as many steps, or twice as many where those would be unstable."""
-    half = steps // 2
-    return half if half >= max(_LEAST_HALF, *(steps_stable(point.system) for point in points)) else 2 * steps
-
-
-def _with_multipliers(
+def _in_other_steps(
     points: Sequence[Point],
     orbits: Sequence[Orbit],
     chosen: Sequence[int],
     plan: Plan,
+    go_on: Callable[[], bool] | None,
+    more: int = 0,
+) -> tuple[int, list[Orbit]]:
+    """The periods that follow the end of some runs, in half as many steps, or twice as many where those would be unstable."""
+    if not chosen:
+        return plan.steps, []
+    systems = [points[i] for i in chosen]
+    half = plan.steps // 2
+    enough = half >= max(_LEAST_HALF, *(steps_stable(point.system) for point in systems))
+    steps = (half if enough else 2 * plan.steps) + more
+    other = replace(plan, steps=steps, settle=min(plan.warm, plan.settle))
+    return steps, _run(systems, [orbits[i].end for i in chosen], other, go_on)
+
+
+def _certify(
+    points: Sequence[Point],
+    orbits: list[Orbit],
+    chosen: Sequence[int],
+    plan: Plan,
     judge: Judge,
     go_on: Callable[[], bool] | None,
-) -> tuple[list[Orbit], dict[int, Start]]:
-    """The orbits with the multipliers that certify them, where exponents do not, and the state from which each runs on."""
+) -> dict[int, Start]:
+    """Give the chosen orbits their step errors and multipliers; return the state from which each runs on.
+
+    Where sides part, tangents see the instant of that to a step only: exponents have an error of the step there. Multipliers
+    certify an orbit where exponents do not.
+    """
+    from rotorgear.solvers.batch.kernel_parts import LOSSES
     from rotorgear.solvers.contact.vectors import BATCH
 
-    found = list(orbits)
+    parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
+    _, again = _in_other_steps(points, orbits, parting, plan, go_on)
+    for i, orbit in zip(parting, again, strict=True):
+        change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
+        orbits[i] = replace(orbits[i], doubt=change)
     onward = {i: orbits[i].end for i in chosen}
     for i in chosen:
-        periods, sizes = to_certify(orbits[i], points[i], plan.steps, judge)
+        periods = to_certify(orbits[i], points[i], judge)
         if not periods:
             continue
 
@@ -178,50 +176,23 @@ def _with_multipliers(
             cuts = (states[k : k + BATCH] for k in range(0, len(states), BATCH))
             return [one.end for own in cuts for one in _run([point] * len(own), own, once, go_on)]
 
-        certified = certificate(points[i].system, orbits[i].end, sizes, periods, advance, judge.tolerance)
-        if certified is not None:
-            found[i] = replace(orbits[i], multiplier=certified.growth, repeats=certified.repeats)
-            onward[i] = certified.onward
-    return found, onward
-
-
-def _with_doubts(
-    points: Sequence[Point],
-    orbits: Sequence[Orbit],
-    chosen: Sequence[int],
-    plan: Plan,
-    go_on: Callable[[], bool] | None,
-) -> list[Orbit]:
-    """The orbits with the step error of exponents where sides part: tangents see the instant of that to a step only.
-
-    The same periods follow from where a run ended, in half as many steps, or twice as many where those would be unstable.
-    """
-    from rotorgear.solvers.batch.kernel_parts import LOSSES
-
-    found = list(orbits)
-    parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
-    if not parting:
-        return found
-    other = replace(
-        plan, steps=_other_steps([points[i] for i in parting], plan.steps), settle=min(plan.warm, plan.settle)
-    )
-    again = _run([points[i] for i in parting], [orbits[i].end for i in parting], other, go_on)
-    for i, orbit in zip(parting, again, strict=True):
-        change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
-        found[i] = replace(orbits[i], doubt=change)
-    return found
+        system = points[i].system
+        sizes = sizes_of(orbits[i], system.columns.counted)
+        found = certificate(system, orbits[i].end, sizes, periods, advance, judge.tolerance)
+        if found is not None:
+            growth, repeats, onward[i] = found
+            orbits[i] = replace(orbits[i], multiplier=growth, repeats=repeats)
+    return onward
 
 
 def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None) -> list[Orbit]:
     """Run systems side by side, with tables of what depends on time."""
-    tables: dict[bytes, np.ndarray] = {}
-    for point in points:
-        if point.shape not in tables:
-            tables[point.shape] = table_of(point, plan.steps)
-    wide = [tables[point.shape] for point in points]
-    return run_block(
-        [p.system for p in points], starts, wide[:1] if len(tables) == 1 else wide, plan, go_on or (lambda: True)
-    )
+    tables = {
+        shape: table_of(point, plan.steps)
+        for shape, point in {point.shape: point for point in reversed(points)}.items()
+    }
+    wide = [tables[point.shape] for point in points[: 1 if len(tables) == 1 else None]]
+    return run_block([p.system for p in points], starts, wide, plan, go_on or (lambda: True))
 
 
 class Workers:
@@ -256,10 +227,8 @@ class Workers:
     ) -> Iterator[list[Orbit]]:
         """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
         work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
-        self._asked, total = (
-            0,
-            sum(plan.questions(own[0].system.turns) for own, _, plan, _ in tasks) if self._own else 0,
-        )
+        self._asked = 0
+        total = sum(plan.questions(own[0].system.turns) for own, _, plan, _ in tasks) if self._own else 0
         rest = iter(tasks)
         waiting = self._waiting
         while True:
@@ -282,20 +251,6 @@ def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
 def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
     """The orbits back."""
     return [
-        Orbit(
-            section,
-            growth,
-            sums,
-            extremes,
-            Start(z, dz),
-            bool(finite),
-            doubt,
-            int(settled),
-            float(multiplier),
-            int(repeats),
-            error,
-        )
-        for section, growth, sums, extremes, finite, doubt, settled, multiplier, repeats, error, z, dz in zip(
-            *(chunk[name] for name in (*_OF_ORBIT, "z", "dz")), strict=True
-        )
+        Orbit(**{name: chunk[name][i] for name in _OF_ORBIT}, end=Start(z, dz))
+        for i, (z, dz) in enumerate(zip(chunk["z"], chunk["dz"], strict=True))
     ]

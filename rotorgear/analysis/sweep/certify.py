@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, Motion, classify, exponents, period_of
+from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, classify, exponents, period_in, period_of
 from rotorgear.analysis.sweep.multipliers import SURE
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.solvers.batch.run_block import Orbit
@@ -50,52 +50,47 @@ class Judge:
     rounds: int = 4
 
 
-def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion, bool]:
+def judged(orbit: Orbit, point: Point, judge: Judge) -> tuple[str, bool]:
     """The response type of a run, and whether it is settled."""
     counted = point.system.columns.counted
     x = orbit.section[:, counted, 0]
-    measures = indicators(orbit, counted, steps)
-    extent = np.maximum(measures["displacement"], measures["peak_to_peak"])
+    extent = sizes_of(orbit, counted)
     if not orbit.growth.shape[1]:
         return classify(x, extent, None, 0.0, judge.tolerance, judge.chaos), True
     means, errors = exponents(orbit.growth, float(point.system.turns))
     largest = float(means[0])
     # The statistical error vanishes on a periodic orbit; that of the steps does not.
     error = float(np.hypot(np.nan_to_num(errors[0]), orbit.doubt[0]))
-    motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
+    kind = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
+    period = period_in(kind)
     bound = max(2.0 * error, _ZERO)
-    if motion.period and np.isfinite(orbit.multiplier):
-        return motion, orbit.multiplier < SURE and orbit.repeats == motion.period and (motion.period == 1 or _stays(x))
-    if motion.period:
+    if period and np.isfinite(orbit.multiplier):
+        return kind, orbit.multiplier < SURE and orbit.repeats == period and (period == 1 or _stays(x))
+    if period:
         # On an orbit that repeats, growth differs between batches only because tangents turn: that says little on its mean. What
         # repeats need not prove its sign then. But where flanks part, an unstable orbit may repeat for thousands of periods, and
         # the step hides the sign: an exponent above zero proves nothing there.
-        exact = period_of(x, extent, _REPEATS * judge.tolerance) == motion.period
+        exact = period_of(x, extent, _REPEATS * judge.tolerance) == period
         most = bound if orbit.doubt[0] <= _ZERO else 0.0
         stable = largest < -bound or (exact and largest <= most)
-        return motion, stable and (motion.period == 1 or _stays(x))
-    if motion.kind == QUASI_PERIODIC:
-        return motion, abs(largest) <= bound and abs(largest) + error <= judge.chaos
-    return motion, motion.kind == CHAOTIC and largest - error > judge.chaos
+        return kind, stable and (period == 1 or _stays(x))
+    if kind == QUASI_PERIODIC:
+        return kind, abs(largest) <= bound and abs(largest) + error <= judge.chaos
+    return kind, kind == CHAOTIC and largest - error > judge.chaos
 
 
-def to_certify(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[int, np.ndarray]:
-    """Common periods after which a run repeats, where multipliers are to tell whether it is stable, else 0; and its sizes.
-
-    The sizes are those of its counted displacements (c,) in m, peak to peak.
+def to_certify(orbit: Orbit, point: Point, judge: Judge) -> int:
+    """Common periods after which a run repeats, where multipliers are to tell whether it is stable, else 0.
 
     What comes back fast needs none: growth that an exponent does not see in that many periods is slower than the bound of chaos.
     Cages do not repeat with the common period, and so a system with rolling elements has no such map.
     """
     system = point.system
     if not orbit.growth.shape[1] or system.n > _MOST or point.rolling:
-        return 0, np.zeros(0)
-    motion, _ = judged(orbit, point, steps, judge)
+        return 0
+    period = period_in(judged(orbit, point, judge)[0])
     means, _ = exponents(orbit.growth, float(system.turns))
-    if not 0 < motion.period <= _LONGEST or not -judge.chaos < means[0] <= judge.chaos:
-        return 0, np.zeros(0)
-    measures = indicators(orbit, system.columns.counted, steps)
-    return motion.period, np.maximum(measures["displacement"], measures["peak_to_peak"])
+    return period if period <= _LONGEST and -judge.chaos < means[0] <= judge.chaos else 0
 
 
 def _stays(x: np.ndarray) -> bool:
@@ -117,6 +112,14 @@ def bounded(orbit: Orbit, point: Point) -> bool:
     return not np.any(np.abs(orbit.section[:, columns.counted, 0]) > _FAR * size)
 
 
+def sizes_of(orbit: Orbit, counted: np.ndarray) -> np.ndarray:
+    """Peak to peak in m of the displacements `counted` (m,), with or without transmission error, whichever is larger, (c,)."""
+    from rotorgear.solvers.batch import kernel_parts as k
+
+    sums = orbit.sums[counted].T
+    return np.maximum(sums[k.D_MAX] - sums[k.D_MIN], sums[k.X_MAX] - sums[k.X_MIN])
+
+
 def indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.ndarray]:
     """Indicators of the contacts, which are the local displacements `counted` (m,); watched are two displacements of each."""
     from rotorgear.solvers.batch import kernel_parts as k
@@ -129,7 +132,6 @@ def indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.nd
     approach = np.ptp(motion.approach, axis=1)
     return {
         "peak_to_peak": sums[k.X_MAX] - sums[k.X_MIN],
-        "displacement": displacement,
         "peak_to_peak_transmission_error": np.ptp(motion.transmission_error, axis=1),
         "peak_to_peak_approach": approach,
         "rms_approach": d.rms * (approach / np.where(displacement > 0.0, displacement, 1.0)),

@@ -14,8 +14,6 @@ criterion that holds decides:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 LONGEST = 32
@@ -34,14 +32,6 @@ QUASI_PERIODIC = "quasi-periodic"
 NOT_SETTLED = "not settled"
 NOT_PERIODIC = "not periodic"
 FAILED = "failed"
-
-
-@dataclass(frozen=True)
-class Motion:
-    """The response type, and its period in least common periods; 0 where it has none."""
-
-    kind: str
-    period: int
 
 
 def exponents(growth: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
@@ -63,8 +53,8 @@ def classify(
     error: float,
     tolerance: float = TOLERANCE,
     chaos: float = CHAOS,
-) -> Motion:
-    """Return the response type.
+) -> str:
+    """Return the response type; one that repeats is "kT", k its period in least common periods.
 
     Args:
         x: (p, c) displacements of the contacts at the section; extent: (c,) their peak-to-peak value over time.
@@ -72,21 +62,20 @@ def classify(
         tolerance, chaos: the bounds in the criteria above.
     """
     if exponent is not None and exponent > max(chaos, 2.0 * error):
-        return Motion(NOT_SETTLED if _grows(x) else CHAOTIC, 0)
-    period = period_of(x, extent, tolerance)
-    if period:
-        return Motion(f"{period}T", period)
+        return NOT_SETTLED if _grows(x) else CHAOTIC
+    if period := period_of(x, extent, tolerance):
+        return f"{period}T"
     if exponent is None:
-        return Motion(NOT_PERIODIC, 0)
+        return NOT_PERIODIC
     if exponent > max(chaos, error) and not _grows(x):
-        return Motion(CHAOTIC, 0)
+        return CHAOTIC
     if abs(exponent) <= chaos:
         # Both halves of the section cover the same range.
         half = len(x) // 2
         first, second, whole = (np.array([part.min(axis=0), part.max(axis=0)]) for part in (x[:half], x[half:], x))
         if np.all(np.abs(first - second) <= _SAME_RANGE * np.maximum(whole[1] - whole[0], 1e-300)):
-            return Motion(QUASI_PERIODIC, 0)
-    return Motion(NOT_SETTLED, 0)
+            return QUASI_PERIODIC
+    return NOT_SETTLED
 
 
 def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -> int:
@@ -101,13 +90,8 @@ def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -
 
 
 def period_in(kind: str) -> int:
-    """Least common periods after which a response type repeats; 1 where it does not."""
-    return int(kind[:-1]) if repeats(kind) else 1
-
-
-def repeats(kind: str) -> bool:
-    """Whether a response type is one that repeats, kT."""
-    return kind.endswith("T")
+    """Least common periods after which a response type repeats; 0 where it does not."""
+    return int(kind[:-1]) if kind.endswith("T") else 0
 
 
 def _grows(x: np.ndarray) -> bool:

@@ -1,22 +1,33 @@
-"""From the orbits of all points to the result of a sweep."""
+"""From the orbits of all points to the result of a sweep, with its warnings: points that failed or had not settled, parameters
+without effect, slow transients."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.sweep.axes import Axis
+from rotorgear.analysis.common.casings import time_warnings
+from rotorgear.analysis.sweep.axes import Axis, points_of
 from rotorgear.analysis.sweep.certify import bounded, indicators, judged
-from rotorgear.analysis.sweep.classify import FAILED, NOT_SETTLED, exponents
-from rotorgear.analysis.sweep.notes import notes
+from rotorgear.analysis.sweep.classify import CHAOTIC, FAILED, NOT_SETTLED, exponents, period_in
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.results.sweep import Reduction, SweepResult
 from rotorgear.solvers.batch.run_block import Orbit
 from rotorgear.solvers.time.statistics import STATISTICS
+
+# Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
+_FORGOTTEN = 3.0
+# What a motion may be in the direction of a law, beside that direction, and still count as none.
+_ROUNDING = 1e-9
+# Sentences that are shown of those that do not hold for all points.
+_SOME = 4
+
 
 _TABLES = (
     "peak_to_peak",
@@ -36,23 +47,22 @@ _TABLES = (
 def gathered(
     model: Model,
     axes: Sequence[Axis],
-    values: Sequence[tuple[float, ...]],
     points: Sequence[Point | None],
     failure: Sequence[str],
     steps: np.ndarray,
     request: Request,
     orbits: dict[tuple[int, int], Orbit],
-    laps: dict[str, float],
-    reduction: Reduction | None = None,
+    reduction: Reduction | None,
+    left_out: Sequence[tuple[str, ...]],
 ) -> SweepResult:
-    """Return the result."""
+    """Return the result; `left_out`: of each different model."""
     sound = [p for p in points if p is not None]
     contact = sound[0].contact
     p = len(points)
     r = len(request.runs)
     c = len(contact)
     t = max((o.growth.shape[1] for o in orbits.values()), default=0)
-    section = np.full((p, r, request.count, c, 2), np.nan)
+    section = np.full((p, r, request.sample, c, 2), np.nan)
     exponent = np.full((p, r, t), np.nan)
     error = np.full((p, r, t), np.nan)
     tables: dict[str, Any] = {name: np.full((p, r, c), np.nan) for name in _TABLES}
@@ -72,8 +82,7 @@ def gathered(
             )
             continue
         mesh = point.system.columns.counted
-        section_here = orbit.section[:, mesh]
-        section[i, run] = section_here
+        section[i, run] = orbit.section[:, mesh]
         measures = indicators(orbit, mesh, int(steps[i]))
         for name, table in tables.items():
             table[i, run] = measures[name]
@@ -81,22 +90,28 @@ def gathered(
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
-        kind, settled = judged(orbit, point, int(steps[i]), request.judge)
-        motion[i * r + run] = kind.kind if settled else NOT_SETTLED
+        kind, settled = judged(orbit, point, request.judge)
+        motion[i * r + run] = kind if settled else NOT_SETTLED
     none = np.full((2, c), np.nan)
     both = [np.stack([q.static_force, q.stiffness]) if q and q.contact == contact else none for q in points]
     static, stiffness = np.stack(both, axis=1)
-    warnings = notes(axes, points, failed, motion, request.settle, orbits)
+    warnings: list[str] = [*notes(axes, points, failed, motion, request.discard, orbits)]
     if reduction is not None and reduction.error > request.reduction_error:
-        warnings += (
-            f"the reduction is {100.0 * reduction.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for "
-            "more modes, or leave their number open",
+        sizes = f"{100.0 * reduction.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %"
+        warnings.append(Note("", f"the reduction is {sizes}", "ask for more modes, or leave their number open"))
+    if request.elements is None and any(shaft.sections for shaft in model.shafts.values()):
+        # The error of the default discretisation is not estimated.
+        warnings.append(
+            Note("", "each shaft segment has one element of second order", "compare with --elements 8, say")
         )
+    # Modes of a casing may end too low for the point with the fastest excitation.
+    fastest = max(sound, key=lambda point: point.system.w)
+    warnings += time_warnings(model, fastest.forces.laws, fastest.system.w / fastest.order)
     return SweepResult(
         model=model,
         address=tuple(axis.address for axis in axes),
         unit=tuple(axis.unit for axis in axes),
-        values=np.array(values, dtype=float),
+        values=np.array(points_of(axes), dtype=float),
         shape=np.array([len(axis.values) for axis in axes]),
         run=request.runs,
         contact=contact,
@@ -110,17 +125,123 @@ def gathered(
         static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan),
         failure=tuple(failed),
         steps=steps,
-        settle=request.settle,
-        count=request.count,
+        settle=request.discard,
+        count=request.sample,
         tolerance=request.tolerance,
         chaos=request.chaos,
         dofs=max(q.system.n for q in sound),
-        seconds=laps,
         method="Runge-Kutta of order 4 in SIMD batches of 32 points",
-        warnings=warnings,
+        warnings=tuple(warnings),
+        left_out=left_out_of(left_out),
         portraits=None,
         statistic=STATISTICS,
         statistics_error=statistics_error,
         reduction=reduction,
         **tables,
     )
+
+
+def notes(
+    axes: Sequence[Axis],
+    points: Sequence[Point | None],
+    failed: Sequence[str],
+    motion: Sequence[str],
+    settle: int,
+    orbits: dict[tuple[int, int], Orbit],
+) -> Iterator[Note]:
+    """Yield the warnings."""
+    sound = [q for q in points if q is not None]
+    if count := sum(map(bool, failed)):
+        yield Note("", f"{count} of {len(points)} points failed; the first", next(filter(None, failed)))
+    if any(q.drift for q in sound):
+        what = "the torques do not balance at some points"
+        yield Note("", what, "the shafts drift off the prescribed rotation there")
+    # Laws that push a motion whose speed the drive keeps.
+    takers: set[str] = set()
+    for q in sound:
+        B = q.system.B
+        pushed = np.any(np.abs(q.system.carried @ B) > _ROUNDING * np.linalg.norm(B, axis=0), axis=0)
+        own = q.system.own
+        places = zip(own.forces.laws, *own.place, strict=True)
+        takers |= {law.title for law, first, count in places if pushed[first : first + count].any()}
+    if takers:
+        what = f"the loads do not give the power that {' and '.join(sorted(takers))} takes"
+        why = "the drive makes up for it on all shafts, in proportion to their inertia, so that they keep their speed"
+        yield Note("", what, f"{why}; with a drive at one end mean forces may be another by about that loss")
+    if any(q.rolling for q in sound):
+        what = "bearing cages never repeat with the teeth"
+        yield Note("", what, "a response that rolling elements drive shows as quasi-periodic")
+    if unsettled := sum(kind == NOT_SETTLED for kind in motion):
+        why = "ask for more periods (--discard, --sample)"
+        yield Note("", f"{unsettled} of {len(motion)} runs had not settled", why)
+    if longer := [orbit.settled for orbit in orbits.values() if orbit.settled > settle]:
+        what = f"{len(longer)} of {len(motion)} runs settled for up to {max(longer)} periods"
+        yield Note("", f"{what}, until their response type and their exponents agreed")
+    # Runs of one point that end in different responses.
+    runs = len(motion) // max(1, len(points))
+    kinds = [set(motion[i * runs : (i + 1) * runs]) - {NOT_SETTLED, FAILED} for i in range(len(points))]
+    several = [found for found in kinds if len(found) > 1]
+    if several:
+        why = "--initial-conditions shows what share of the starts goes to each"
+        yield Note("", f"different responses coexist at {len(several)} of {len(kinds)} points", why)
+    # Chaos that a crisis has opened stays for thousands of periods, with the exponents of lasting chaos, and then leaves at once.
+    if transient := sum(CHAOTIC in found and any(map(period_in, found)) for found in several):
+        what = f"at {transient} of them a chaotic response stands beside one that repeats"
+        why = "it may be a long transient that ends in that one; run it with ten times the --discard"
+        yield Note("", what, why)
+    for axis in idle(axes, points):
+        yield Note("", f"{axis.address} has no effect on this model", "all its points are the same")
+    # Where the transient has not decayed when sampling begins, a response may repeat after several T because of it.
+    repeating = [
+        orbit for (i, run), orbit in orbits.items() if period_in(motion[i * runs + run]) > 1 and orbit.growth.shape[1]
+    ]
+    if slow := sum(float(o.growth[:, 0].mean()) * o.settled > -_FORGOTTEN for o in repeating):
+        what = f"{slow} of {len(repeating)} runs with 2T or longer have a transient that outlasts the periods that they settled"
+        yield Note("", what, "their period may change with more --discard")
+
+
+def left_out_of(models: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """What is left out of all models of a sweep; of some of them only, the first such sentences."""
+    found = list(dict.fromkeys(text for texts in models for text in texts))
+    common = [text for text in found if all(text in texts for texts in models)]
+    some = [text for text in found if text not in common]
+    shown = [f"of some points: {text}" for text in some[:_SOME]]
+    more = [f"of some points: {len(some) - _SOME} more such sentences"] if len(some) > _SOME else []
+    return (*common, *shown, *more)
+
+
+def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
+    """Axes along which all systems are the same to the last bit."""
+    seen: dict[bytes, int] = {}
+    own = []
+    for q in points:
+        if q is None:
+            own.append(-1)
+            continue
+        # All that a point's motion depends on.
+        system = q.system
+        columns = system.columns
+        parts = (
+            system.K,
+            system.D,
+            system.load,
+            system.B,
+            system.rest,
+            columns.kind,
+            columns.mode,
+            columns.stiffness,
+            columns.damping,
+            columns.clearance,
+            columns.per_depth,
+            columns.push,
+            system.own.forces.parameters,
+            np.array([system.w, system.turns]),
+        )
+        data = b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), q.shape])
+        own.append(seen.setdefault(hashlib.blake2b(data).digest(), len(seen)))
+    table = np.array(own).reshape([len(axis.values) for axis in axes])
+    return [
+        axis
+        for at, axis in enumerate(axes)
+        if len(set(axis.values)) > 1 and np.all(table == np.take(table, [0], axis=at))
+    ]

@@ -12,7 +12,6 @@ Seydel, Practical Bifurcation and Stability Analysis (Springer 2010), ch. 7.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
@@ -36,25 +35,9 @@ _MOVED = 1e-2
 Advance = Callable[[Sequence[Start], int], list[Start]]
 
 
-@dataclass(frozen=True)
-class Certificate:
-    """An orbit and its multipliers.
-
-    Attributes:
-        growth: ln|mu| of the largest multiplier in one common period.
-        repeats: common periods after which the orbit repeats; a divisor of those of the map.
-        onward: state from which the run goes on: its end; beside an unstable orbit moved along the direction that grows most,
-        unless it is further along it already.
-    """
-
-    growth: float
-    repeats: int
-    onward: Start
-
-
 def certificate(
     system: SmallSystem, end: Start, sizes: np.ndarray, periods: int, advance: Advance, tolerance: float
-) -> Certificate | None:
+) -> tuple[float, int, Start] | None:
     """The orbit of a number of common periods near a state, with its multipliers.
 
     Args:
@@ -64,7 +47,10 @@ def certificate(
         tolerance: share of its own size by which a displacement may differ that counts as the same.
 
     Returns:
-        The certificate; None where Newton's method finds no orbit near by, as where a contact only just closes.
+        ln|mu| of the largest multiplier in one common period; common periods after which the orbit repeats, a divisor of those
+        of the map; and the state from which the run goes on: its end, beside an unstable orbit moved along the direction that
+        grows most, unless it is further along it already. None where Newton's method finds no orbit near by, as where a contact
+        only just closes.
     """
     n = system.n
     # Orthonormal states [z, z'] (2 n, s) without those of rigid motions.
@@ -103,7 +89,7 @@ def certificate(
     section = np.array([counted @ state[:n] for state in states])
     repeats = period_of(np.tile(section, (3, 1)), sizes, tolerance) or periods
     if growth < SURE:
-        return Certificate(growth, repeats, end)
+        return growth, repeats, end
     # Slow motions may still be far from the orbit; only what lies along the direction of growth counts.
     along = right[:, most]
     beside = abs(np.vdot(left[:, most], U.T @ (begun - x)) / np.vdot(left[:, most], along)) * np.linalg.norm(
@@ -112,7 +98,7 @@ def certificate(
     if beside < _MOVED * scale:
         direction = U @ np.real(along)
         begun = begun + _MOVED * scale * direction / np.linalg.norm(direction)
-    return Certificate(growth, repeats, Start(begun[:n], begun[n:]))
+    return growth, repeats, Start(begun[:n], begun[n:])
 
 
 def _on_orbit(

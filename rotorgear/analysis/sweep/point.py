@@ -16,7 +16,7 @@ from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import mean_torsion_notes, springs_about_mean
-from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Wanted
+from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -100,6 +100,17 @@ def orders_of(law: LocalLaw, label: str) -> list[Fraction]:
     return orders
 
 
+def depends_on_speed(model: Model) -> bool:
+    """Whether more than the rotation goes with the speed in any motion; laws of one's own may depend on it as they like."""
+    return bool(
+        (model.operation and model.operation.power is not None)
+        or any(load.power is not None or load.speed_power for load in model.loads.values())
+        or any(bearing.table for bearing in model.bearings.values())
+        or any(shaft.internal_damping for shaft in model.shafts.values())
+        or model.nonlinear_elements
+    )
+
+
 _KEPT = 1000  # states at rest
 # Systems with casings are reduced from this many dofs on; below, there is nothing to gain.
 LEAST_DOFS = 24
@@ -172,19 +183,19 @@ class PointMaker:
     `left_out` has the sentences of each model that was made ready anew on what is left out of it.
 
     Args:
-        wanted: of reductions, which all models get where it asks for modes, and else those that are large or have dofs without
-            inertia. elements: in each shaft segment.
+        modes: of reductions, which all models get where it is given, and else those that are large or have dofs without inertia.
+        elements: in each shaft segment.
     """
 
-    def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:
-        self._wanted = wanted or Wanted()
+    def __init__(self, modes: int | None = None, elements: int | None = None) -> None:
+        self._modes = modes
         self._elements = elements
         self._known: dict[str, AtRest | Large] = {}
         self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
         self.left_out: list[tuple[str, ...]] = []
 
     def __call__(self, model: Model) -> Point | Large:
-        """Make a model ready at its own speed; one that is to be reduced comes back as it is, for `sweep_reduce`.
+        """Make a model ready at its own speed; one that is to be reduced comes back whole, for a `Reducer`.
 
         Raises:
             AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
@@ -195,14 +206,11 @@ class PointMaker:
         slow = 1.0 if speed > 0.0 else -1.0
         standing = model.operation.model_copy(update={"speed": slow})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
-        # Whether more than the rotation depends on the speed; laws of one's own may depend on it as they like.
         if (
-            model.operation.power is not None
-            or any(load.power is not None or load.varies for load in model.loads.values())
-            or any(bearing.table or bearing.has_film for bearing in model.bearings.values())
+            depends_on_speed(model)
+            or any(load.varies for load in model.loads.values())
+            or any(bearing.has_film for bearing in model.bearings.values())
             or any(gear.body.mesh for gear in model.gears.values())
-            or any(shaft.internal_damping for shaft in model.shafts.values())
-            or model.nonlinear_elements
         ):
             return self._at(self._made(model, speed), speed, model.damping.modal_ratio)
         if key not in self._known:
@@ -239,7 +247,7 @@ class PointMaker:
         # Casings and gear bodies bring static shapes at high frequencies, which few of the contacts' motions need.
         bodies = bool(system.model.casings) or bool(system.nodes.bodies)
         large = system.n > MOST_DOFS or (bodies and system.n > LEAST_DOFS)
-        if self._wanted.modes is not None or large or np.any(built.local.M.diagonal() <= 0.0):
+        if self._modes is not None or large or np.any(built.local.M.diagonal() <= 0.0):
             most = MOST_WITH_BODIES if bodies else MOST_COORDINATES
             return Large(built.local, orders, contact, speed, model.damping.modal_ratio, most)
         return at_rest(built.local, orders, contact, self._free_of(built.local))

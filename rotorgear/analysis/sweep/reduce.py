@@ -15,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 
 import numpy as np
@@ -26,8 +26,6 @@ from rotorgear.results.sweep import Reduction
 from rotorgear.solvers.batch.columns import PRESCRIBED
 from rotorgear.solvers.batch.small_system import Shapes
 from rotorgear.solvers.frequency.contact_basis import (
-    Candidates,
-    Choice,
     Probes,
     Scale,
     candidates,
@@ -71,14 +69,6 @@ _CANDIDATES = 300
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What a reduction must reach: a largest relative difference of receptances, or a number of modes whatever it gives."""
-
-    error: float = 0.01
-    modes: int | None = None
-
-
-@dataclass(frozen=True)
 class Large:
     """A point before its reduction: the whole system, orders of what varies, names of contacts, speed in rad/s, added damping.
 
@@ -105,10 +95,15 @@ class Large:
 
 
 class Reducer:
-    """Reduces points of a sweep; modes that have served one model are tried first for the next one."""
+    """Reduces points of a sweep; modes that have served one model are tried first for the next one.
 
-    def __init__(self, wanted: Wanted) -> None:
-        self._wanted = wanted
+    Args:
+        error: largest relative difference of receptances. modes: a number of modes in place of it, whatever the error.
+    """
+
+    def __init__(self, error: float = 0.01, modes: int | None = None) -> None:
+        self._error = error
+        self._asked = modes
         self._modes: np.ndarray | None = None
         self.found: list[Reduction] = []
 
@@ -140,14 +135,13 @@ class Reducer:
         top = float(rates(local.forces.laws, first.speed).max())
         probes = probes_for(local.forces.laws, [point.speed for point in points], among.w, first.modal_ratio)
         full = full_receptances(local, probes)
-        choice = self._chosen(
-            among,
-            lambda begin: choose(
-                among, full, probes, scale, self._wanted.error, first.most, begin, self._wanted.modes, heard
-            ),
-        )
+        # The modes of the last model where they do; else chosen anew.
+        old = self._modes
+        if old is not None and not np.all((old >= among.rigid) & (old < among.rigid + among.modes)):
+            old = None
+        choice = choose(among, full, probes, scale, self._error, first.most, old, self._asked, heard)
         complete = choice.basis.shape[1] == local.n  # what is left then is rounding
-        if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
+        if self._asked is None and not (complete or choice.error <= self._error):
             way = (
                 "run single speeds by the transient analysis"
                 if first.most == MOST_WITH_BODIES
@@ -156,8 +150,7 @@ class Reducer:
             raise AnalysisError(
                 f"{local.n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {first.most}) the "
                 f"receptances at the contacts are {100.0 * choice.error:.2g} % off up to {top / 2.0 / np.pi:.6g} Hz, expected "
-                f"{100.0 * self._wanted.error:.2g} %; lower the speed, {way}, or allow more "
-                "(reduction_error, --reduction-error)"
+                f"{100.0 * self._error:.2g} %; lower the speed, {way}, or allow more (reduction_error, --reduction-error)"
             )
         own, V = reduced(local, among, choice.basis)
         shapes = Shapes.of(V, local.M, top)
@@ -180,34 +173,13 @@ class Reducer:
         )
         return [(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points]
 
-    def _chosen(self, among: Candidates, grown: Callable[[np.ndarray | None], Choice]) -> Choice:
-        """The modes of the last model where they do; else chosen anew."""
-        old = self._modes
-        if old is not None and np.all(old < among.rigid + among.modes) and np.all(old >= among.rigid):
-            return grown(old)
-        return grown(None)
-
     @property
     def summary(self) -> Reduction | None:
         """All bases as one: the largest values."""
         if not self.found:
             return None
-        worst = {
-            name: max(getattr(one, name) for one in self.found)
-            for name in (
-                "dofs",
-                "coordinates",
-                "modes",
-                "highest",
-                "rigid",
-                "static",
-                "closed",
-                "apart",
-                "up_to",
-                "frequencies",
-            )
-        }
-        return Reduction(bases=len(self.found), seconds=sum(one.seconds for one in self.found), **worst)
+        worst = {item.name: max(getattr(one, item.name) for one in self.found) for item in fields(Reduction)}
+        return Reduction(**worst | {"bases": len(self.found), "seconds": sum(one.seconds for one in self.found)})
 
 
 def scale_of(local: LocalSystem) -> Scale:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from rotorgear.analysis.sweep.certify import Judge
 from rotorgear.analysis.sweep.point import Point
-from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, Wanted
+from rotorgear.analysis.sweep.reduce import MOST_COORDINATES
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.batch.run_block import Start
 from rotorgear.solvers.batch.small_system import SmallSystem, steps_needed, steps_stable
@@ -17,11 +18,17 @@ from rotorgear.solvers.batch.small_system import SmallSystem, steps_needed, step
 DIRECTIONS = ("each", "up", "down", "both")
 MOST_STEPS = 5000
 LEAST_STEPS = 200
-# Field: the argument's name, least and most.
-_NUMBERS = {
-    "starts": ("initial_conditions", 1, 1000),
-    "settle": ("discard", 0, 10_000_000),
-    "count": ("sample", 1, 10_000_000),
+# Least and most of each argument.
+_LIMITS = {
+    "initial_conditions": (1, 1000),
+    "discard": (0, 10_000_000),
+    "sample": (1, 10_000_000),
+    "exponents": (0, math.inf),
+    "seed": (0, math.inf),
+    "throw": (0, math.inf),
+    "steps": (8, 100_000),
+    "modes": (1, MOST_COORDINATES),
+    "elements": (1, 1000),
 }
 
 
@@ -30,9 +37,9 @@ class Request:
     """What every point of a sweep gets; see `sweep`."""
 
     direction: str
-    starts: int
-    settle: int
-    count: int
+    initial_conditions: int
+    discard: int
+    sample: int
     exponents: int
     steps: int | None
     tolerance: float
@@ -46,20 +53,11 @@ class Request:
     def __post_init__(self) -> None:
         if self.direction not in DIRECTIONS:
             raise AnalysisError(f"direction: got '{self.direction}', expected one of {', '.join(DIRECTIONS)}")
-        for field, (name, least, most) in _NUMBERS.items():
-            if not least <= getattr(self, field) <= most:
-                raise AnalysisError(f"{name}: got {getattr(self, field)}, expected {least} to {most}")
-        for name in ("exponents", "seed"):
-            if getattr(self, name) < 0:
-                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected 0 or more")
-        if not 0.0 <= self.throw < np.inf:
-            raise AnalysisError(f"throw: got {self.throw:g}, expected a number that is not negative")
-        if self.steps is not None and not 8 <= self.steps <= 100_000:
-            raise AnalysisError(f"steps: got {self.steps}, expected 8 to 100000 in a period of the fastest mesh")
-        for name, most in (("modes", MOST_COORDINATES), ("elements", 1000)):
+        for name, (least, most) in _LIMITS.items():
             value = getattr(self, name)
-            if value is not None and not 1 <= value <= most:
-                raise AnalysisError(f"{name}: got {value}, expected 1 to {most}")
+            if value is not None and (not least <= value <= most or value == math.inf):
+                limits = f"{least} or more" if most == math.inf else f"{least} to {most}"
+                raise AnalysisError(f"{name}: got {value}, expected {limits}")
         for name in ("tolerance", "chaos", "reduction_error"):
             if not 0.0 < getattr(self, name) < 1.0:
                 raise AnalysisError(f"{name}: got {getattr(self, name):g}, expected a number between 0 and 1")
@@ -68,11 +66,6 @@ class Request:
     def judge(self) -> Judge:
         """How responses are told apart."""
         return Judge(self.tolerance, self.chaos)
-
-    @property
-    def reduction(self) -> Wanted:
-        """What a reduction must reach."""
-        return Wanted(self.reduction_error, self.modes)
 
     @property
     def directions(self) -> tuple[str, ...]:
@@ -84,11 +77,13 @@ class Request:
         """Names of the runs of each point."""
 
         def name(direction: str, number: int) -> str:
-            words = [] if direction == "each" else [direction]
-            words += ["static" if direction == "each" else ""] if number == 0 else [f"start {number + 1}"]
-            return " ".join(filter(None, words))
+            way = "" if direction == "each" else direction
+            start = f"start {number + 1}" if number else "" if way else "static"
+            return f"{way} {start}".strip()
 
-        return tuple(name(direction, number) for direction in self.directions for number in range(self.starts))
+        return tuple(
+            name(direction, number) for direction in self.directions for number in range(self.initial_conditions)
+        )
 
 
 def start_of(system: SmallSystem, number: int, seed: int, throw: float = 1.0) -> Start:
@@ -101,8 +96,9 @@ def start_of(system: SmallSystem, number: int, seed: int, throw: float = 1.0) ->
         return Start(system.rest.copy(), np.zeros(system.n))
     mesh = system.columns.counted
     B = system.B[:, mesh]
-    reach = np.abs(system.B[:, mesh].T @ system.rest)
-    backlash = np.where(np.isfinite(system.columns.clearance[mesh]), system.columns.clearance[mesh], 0.0)
+    reach = np.abs(B.T @ system.rest)
+    clearance = system.columns.clearance[mesh]
+    backlash = np.where(np.isfinite(clearance), clearance, 0.0)
     draw = np.random.default_rng([seed, number])
     wanted = 2.0 * throw * draw.uniform(-1.0, 1.0, B.shape[1]) * (reach + backlash)
     thrown = np.linalg.lstsq(B.T, wanted, rcond=1e-10)[0]
@@ -122,18 +118,15 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
             continue
         needed = steps_needed(point.system)
         least = steps_stable(point.system)
-        if wanted is not None:
-            steps[i] = wanted
-            if wanted < least:
-                refused[i] = (
-                    f"{wanted} steps are unstable: the stiffest part needs at least {least} in a period of the fastest mesh"
-                )
-            continue
         classes = max(0, int(np.ceil(2.0 * np.log2(max(needed, LEAST_STEPS) / LEAST_STEPS) - 1e-9)))
-        steps[i] = int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))
-        if steps[i] > MOST_STEPS:
+        steps[i] = wanted or int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))
+        if wanted is None and steps[i] > MOST_STEPS:
             refused[i] = (
                 f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): "
                 "make it rigid, or ask for the steps"
+            )
+        elif wanted is not None and wanted < least:
+            refused[i] = (
+                f"{wanted} steps are unstable: the stiffest part needs at least {least} in a period of the fastest mesh"
             )
     return steps, refused

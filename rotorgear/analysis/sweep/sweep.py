@@ -5,7 +5,6 @@ Which points of a sweep get a portrait, how long it is, and the runs that go on 
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import lcm
@@ -13,14 +12,13 @@ from math import lcm
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
-from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, number_in, points_of
+from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.sweep.axes import Axis, along, axis_of, number_in, points_of
 from rotorgear.analysis.sweep.blocks import Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
 from rotorgear.analysis.sweep.gather import gathered
-from rotorgear.analysis.sweep.notes import coarse_shafts, left_out_of, short_of_modes
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
-from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
+from rotorgear.analysis.sweep.reduce import Large, Reducer
 from rotorgear.analysis.sweep.request import Request, start_of, steps_of
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import AnalysisError, RotorgearError
@@ -35,6 +33,8 @@ from rotorgear.solvers.sparse.factor import single_thread
 
 # How many portraits, or the values of the parameters next to which points keep theirs.
 WantedPortraits = int | Sequence[float | str | Sequence[float]]
+# The model at a point, from the model and the values there.
+Change = Callable[[Model, tuple[float, ...]], Model]
 # Share of the progress that making the points ready gets.
 _READY = 0.1
 
@@ -45,7 +45,7 @@ def sweep(
     model: Model,
     over: Mapping[str, str | Sequence[float | str]],
     *,
-    change: Callable[[Model, tuple[float, ...]], Model] | None = None,
+    change: Change | None = None,
     direction: str = "each",
     initial_conditions: int = 1,
     discard: int = 300,
@@ -99,7 +99,7 @@ def sweep(
     Raises:
         AnalysisError: a request that makes no sense, or a model that sweeps don't take. Points that fail alone are kept as such.
     """
-    begun = clock.perf_counter()
+    clock = Clock()
     request = Request(
         direction,
         initial_conditions,
@@ -116,99 +116,70 @@ def sweep(
         elements,
     )
     axes = [axis_of(address, values) for address, values in over.items()]
-    values = points_of(axes)
     wanted = wanted_points(portraits, axes)
     with single_thread(0):
-        models, large, failure, left_out = _ready(model, axes, values, change, request, progress)
-        points, failure, reduction = reduce_large(large, failure, request.reduction, progress, _READY)
+        models, points, failure, left_out, reduction = ready_points(model, axes, change, request, progress)
         chosen, refused = steps_of(points, steps)
         for i, reason in refused.items():
             points[i] = None
             failure[i] = reason
         if all(point is None for point in points):
             raise RotorgearError(next(filter(None, failure)))
-        laps = {"points": clock.perf_counter() - begun}
+        clock.lap("points")
         settings = {"models": "".join(models), "run": f"{request} {[axis.address for axis in axes]} {chosen.tolist()}"}
         kept = stream.begin(settings) if stream else []
         shape = [len(axis.values) for axis in axes]
         orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
-    laps["integration"] = clock.perf_counter() - begun - laps["points"]
-    result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
-    result = replace(
-        result,
-        left_out=left_out_of(left_out),
-        warnings=(*result.warnings, *coarse_shafts(model, elements), *short_of_modes(model, points)),
-    )
+    clock.lap("integration")
+    result = gathered(model, axes, points, failure, chosen, request, orbits, reduction, left_out)
     if wanted:
         result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
-        laps["portraits"] = clock.perf_counter() - begun - laps["points"] - laps["integration"]
-    laps["total"] = clock.perf_counter() - begun
+        clock.lap("portraits")
     progress(1.0, "done")
-    return replace(result, seconds=laps)
+    return replace(result, seconds=clock.total())
 
 
-def _ready(
-    model: Model,
-    axes: Sequence[Axis],
-    values: Sequence[tuple[float, ...]],
-    change: Callable[[Model, tuple[float, ...]], Model] | None,
-    request: Request,
-    progress: Progress,
-) -> tuple[list[str], list[Point | Large | None], list[str], list[tuple[str, ...]]]:
-    """Hashes of the models, the points made ready, why a point failed, and what is left out of each different model."""
-    maker = PointMaker(request.reduction, request.elements)
-    family = None if change else Family(model, axes)
-    texts: list[str] = []
-    points: list[Point | Large | None] = []
-    failure: list[str] = []
+def ready_points(
+    model: Model, axes: Sequence[Axis], change: Change | None, request: Request, progress: Progress
+) -> tuple[list[str], list[Point | None], list[str], list[tuple[str, ...]], Reduction | None]:
+    """Hashes of the models, points made ready, why a point failed, what is left out of each model, and what was reduced."""
+    maker = PointMaker(request.modes, request.elements)
+    change = change or along(model, axes)
+    values = points_of(axes)
+    texts = [repr(value) for value in values]
+    failure = [""] * len(values)
+    points: list[Point | None] = [None] * len(values)
+    groups: dict[bytes, list[tuple[int, Large]]] = {}
     for i, value in enumerate(values):
         progress(_READY * i / len(values), f"point {i + 1} of {len(values)}")
-        point = None
-        reason = ""
-        text = repr(value)
         try:
-            own = change(model, value) if change else family.at(value)  # type: ignore[union-attr]
-            text = model_hash(own)
-            point = maker(own)
+            own = change(model, value)
+            texts[i] = model_hash(own)
+            made = maker(own)
         except RotorgearError as error:
-            reason = str(error)
-        texts.append(text)
-        points.append(point)
-        failure.append(reason)
-    return texts, points, failure, maker.left_out
-
-
-def reduce_large(
-    points: Sequence[Point | Large | None], failure: Sequence[str], wanted: Wanted, progress: Progress, share: float
-) -> tuple[list[Point | None], list[str], Reduction | None]:
-    """Return the points with the large ones reduced, why points failed, and what was reduced.
-
-    Args:
-        points: in their order; those that failed are None. failure: why.
-        wanted: what a reduction must reach. progress: is told `share` all the time, and how far a basis is.
-    """
-    groups: dict[bytes, list[int]] = {}
-    for i, point in enumerate(points):
-        if isinstance(point, Large):
-            groups.setdefault(point.key, []).append(i)
-    done: list[Point | None] = [None if isinstance(point, Large) else point for point in points]
-    reasons = list(failure)
-    reducer = Reducer(wanted)
+            failure[i] = str(error)
+            continue
+        if isinstance(made, Large):
+            groups.setdefault(made.key, []).append((i, made))
+        else:
+            points[i] = made
+    reducer = Reducer(request.reduction_error, request.modes)
     for number, members in enumerate(groups.values()):
-        own = [point for point in (points[i] for i in members) if isinstance(point, Large)]
         text = f"basis {number + 1} of {len(groups)}: " if len(groups) > 1 else "basis: "
 
         def heard(size: int, error: float, text: str = text) -> None:
-            progress(share, f"{text}{size} coordinates, {100.0 * error:.2g} % off")
+            progress(_READY, f"{text}{size} coordinates, {100.0 * error:.2g} % off")
 
         try:
-            for i, large, (local, shapes) in zip(members, own, reducer(own, heard), strict=True):
-                done[i] = ready_reduced(large, local, shapes)
+            for (i, large), (local, shapes) in zip(
+                members, reducer([large for _, large in members], heard), strict=True
+            ):
+                points[i] = ready_reduced(large, local, shapes)
         except RotorgearError as error:
-            for i in members:
-                done[i] = None
-                reasons[i] = str(error)
-    return done, reasons, reducer.summary
+            for i, _ in members:
+                points[i] = None
+                failure[i] = str(error)
+    return texts, points, failure, maker.left_out, reducer.summary
 
 
 def _run(
@@ -223,7 +194,7 @@ def _run(
 ) -> dict[tuple[int, int], Orbit]:
     """Run all jobs; blocks that were kept by an interrupted sweep are taken over."""
     orbit_of: dict[tuple[int, int], Orbit] = {}
-    plans = waves(shape, request.directions, request.starts)
+    plans = waves(shape, request.directions, request.initial_conditions)
     total = sum(len(jobs) for jobs in plans)
     done = 0
     with pool:
@@ -246,10 +217,11 @@ def _run(
                     if before is not None and last is not None and before.finite and last.system.size == p.system.size:
                         states.append(before.end.moved(last.system, p.system))
                     else:
-                        states.append(start_of(p.system, job.run % request.starts, request.seed, request.throw))
+                        number = job.run % request.initial_conditions
+                        states.append(start_of(p.system, number, request.seed, request.throw))
                 # A system has no more exponents than states beside its rigid-body motions.
                 most = 2 * (own[0].system.n - len(own[0].system.rigid))
-                plan = Plan(int(steps[block[0].point]), request.settle, request.count, min(request.exponents, most))
+                plan = Plan(int(steps[block[0].point]), request.discard, request.sample, min(request.exponents, most))
                 tasks.append(([p.bare for p in own], states, plan, request.judge))
             begun = done
             runs = sum(map(len, rest))
@@ -352,11 +324,11 @@ def portraits_of(
     )
     if not chosen:
         return None
-    begun = request.settle + request.count
-    runs = list(range(0, len(request.runs), request.starts))
+    begun = request.discard + request.sample
+    runs = list(range(0, len(request.runs), request.initial_conditions))
     kinds = [[result.motion_at(p, run) for run in runs] for p in chosen]
     sizes = [
-        length_of(int(result.turns[p]), int(result.steps[p]), lcm(*map(period_in, own)))
+        length_of(int(result.turns[p]), int(result.steps[p]), lcm(*filter(None, map(period_in, own))))
         for p, own in zip(chosen, kinds, strict=True)
     ]
     periods, every = (np.array(x) for x in zip(*sizes, strict=True))

@@ -10,6 +10,7 @@ What a transient records beside its contacts: bearing forces, motions of points,
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -55,7 +56,7 @@ class Channels:
 def channels(local: LocalModel) -> Channels:
     """Forces of bearings, motions of points, orbits of the shafts in their bearings, and fluctuations of the gears' speeds."""
     system = local.system
-    every = _bearing_forces(local)
+    every = list(_bearing_forces(local))
     for name, point in system.model.points.items():
         dof = DOF_NAMES.index(point.direction)
         row = point_rows(system, (name,)).toarray()[0]
@@ -63,20 +64,19 @@ def channels(local: LocalModel) -> Channels:
         for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
             every.append((f"points.{name} {what}", unit + per, {kind: row}))
 
-    def motion(label: str, unit: str, kind: str, dof: int) -> None:
-        """A channel of one dof of a node, if it is free."""
-        row = np.asarray(system.dofs.transform[[dof], :].toarray()[0])
-        if row.any():
-            every.append((label, unit, {kind: row}))
-
-    for name in system.model.bearings:
-        node = system.nodes.at(*system.layout.place(f"bearings.{name}"))
-        for k, axis in enumerate("xy"):
-            motion(f"bearings.{name} displacement {axis}", "m", "q", 6 * node + k)
+    motions = [
+        (f"bearings.{name} displacement {axis}", "m", "q", 6 * system.nodes.at(*place) + k)
+        for name, place in ((name, system.layout.place(f"bearings.{name}")) for name in system.model.bearings)
+        for k, axis in enumerate("xy")
+    ]
     for name in system.model.gears:
         # Of a gear whose teeth turn against its shaft, those of the teeth.
         dofs = system.nodes.of_gear(name, *system.layout.place(f"gears.{name}"))
-        motion(f"gears.{name} speed fluctuation", "rad/s", "v", int(dofs[5]))
+        motions.append((f"gears.{name} speed fluctuation", "rad/s", "v", int(dofs[5])))
+    for label, unit, kind, dof in motions:
+        row = np.asarray(system.dofs.transform[[dof], :].toarray()[0])
+        if row.any():  # the dof is free
+            every.append((label, unit, {kind: row}))
     rows = {}
     for kind in "qvaF":
         which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)
@@ -85,23 +85,18 @@ def channels(local: LocalModel) -> Channels:
     return Channels(tuple(item[0] for item in every), tuple(item[1] for item in every), rows)
 
 
-def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
-    """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
-    forces: list[tuple[str, str, dict[str, np.ndarray]]] = []
+def _bearing_forces(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray]]]:
+    """Force of the shaft on each element and bearing, by its law or by its springs and dampers."""
     T = local.system.dofs.transform
     beta = local.system.model.damping.rayleigh_beta
-    firsts = local.local.forces.first
-    rolling = {
-        part.part: (int(first), part.law.components)
-        for part, first in zip(local.parts, firsts, strict=False)
-        if part.part.startswith("bearings.")
-    }
-    for part, first in zip(local.parts, firsts, strict=False):
+    # Rows that pick the local forces of each law.
+    picks = np.split(np.eye(local.local.m), local.local.forces.first[1:-1])
+    of_bearing = {part.part: rows for part, rows in zip(local.parts, picks, strict=False)}
+    for part, rows in zip(local.parts, picks, strict=False):
         if part.part.startswith("nonlinear_elements."):
             directions = local.system.model.nonlinear_elements[part.label].directions
-            for k, direction in enumerate(directions):
-                unit = "N" if direction in _AXES else "N m"
-                forces.append((f"{part.part} force {direction}", unit, {"F": np.eye(local.local.m)[int(first) + k]}))
+            for direction, row in zip(directions, rows, strict=True):
+                yield f"{part.part} force {direction}", "N" if direction in _AXES else "N m", {"F": row}
     for group in local.groups:
         if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
             continue
@@ -113,15 +108,15 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
         # C = beta K damps in every part that has a stiffness, so a bearing has its share; alpha M is of the masses.
         if beta and matrices.stiffness is not None:
             damping = damping + beta * matrices.stiffness[0]
+        law = of_bearing.get(group.part)
         for k, axis in enumerate(_AXES):
-            rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ motions}
-            if group.part in rolling and k < rolling[group.part][1]:
-                rows["F"] = np.eye(local.local.m)[rolling[group.part][0] + k]
+            by_kind = {} if law is not None else {"q": stiffness[-6 + k] @ motions}
+            if law is not None and k < len(law):
+                by_kind["F"] = law[k]
             if damping.any():
-                rows["v"] = damping[-6 + k] @ motions
-            if any(row.any() for row in rows.values()):
-                forces.append((f"{group.part} force {axis}", "N", rows))
-    return forces
+                by_kind["v"] = damping[-6 + k] @ motions
+            if any(row.any() for row in by_kind.values()):
+                yield f"{group.part} force {axis}", "N", by_kind
 
 
 # Records of a chunk at which stored energies are evaluated.
@@ -138,8 +133,8 @@ class LedgerBook:
     start: State
     damping_rows: np.ndarray
     table: list[np.ndarray] = field(default_factory=list)
-    _spent: float = 0.0
-    _last: tuple[float, float] | None = None
+    # What must be known to go on: energy spent in dampers, and time and power of the last record.
+    sums: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         s = self.system
@@ -153,7 +148,6 @@ class LedgerBook:
             touched = np.unique(np.concatenate([A.tocoo().row, A.tocoo().col]))
             if touched.size:
                 self._powers.append((A[touched][:, touched].toarray(), np.eye(s.n)[touched], kind))
-        self._load = s.load[None, :]
         self._all = np.eye(s.n)
         _, energy = local_values(s, self.start.q, self.start.v, 0.0)
         contact = float(energy.reshape(-1, 4)[:, 0].sum())
@@ -177,30 +171,19 @@ class LedgerBook:
             power = power + np.einsum("ri,ri->r", v, w @ A.T)
         if len(self.damping_rows):
             power = power + np.sum(records.fields.rows("v", self.damping_rows) ** 2, axis=1)
-        t0, p0 = self._last or (0.0, power[0])
+        before, t0, p0 = self.sums or (0.0, 0.0, power[0])
         steps = np.diff(records.t, prepend=t0)
-        spent = self._spent + np.cumsum(steps * 0.5 * (power + np.concatenate([[p0], power[:-1]])))
-        self._spent, self._last = float(spent[-1]), (float(records.t[-1]), float(power[-1]))
+        spent = before + np.cumsum(steps * 0.5 * (power + np.concatenate([[p0], power[:-1]])))
+        self.sums = (float(spent[-1]), float(records.t[-1]), float(power[-1]))
         which = np.unique(np.linspace(0, records.t.size - 1, _SAMPLES + 1).astype(int)[1:])
         fields = records.fields.chosen(which)
         q = fields.rows("q", self._all)
         v = fields.rows("v", self._all)
         kinetic, strain = self._stored(q, v)
         laws = records.energy[which].sum(axis=1)
-        work = q @ self._load[0] - self._work_at_start
-        self.table.append(
-            np.column_stack(
-                [records.t[which], kinetic, strain, laws[:, 0], work, laws[:, 1], spent[which] + laws[:, 2]]
-            )
-        )
-
-    def sums(self) -> tuple[float, float, float]:
-        """What must be known to go on: energy spent in dampers, and time and power of the last record."""
-        return (self._spent, *(self._last or (0.0, 0.0)))
-
-    def set_sums(self, sums: np.ndarray) -> None:
-        """Go on after a chunk that was read."""
-        self._spent, self._last = float(sums[0]), (float(sums[1]), float(sums[2]))
+        work = q @ self.system.load - self._work_at_start
+        columns = (records.t[which], kinetic, strain, laws[:, 0], work, laws[:, 1], spent[which] + laws[:, 2])
+        self.table.append(np.column_stack(columns))
 
     def close(self) -> EnergyLedger:
         """Return the ledger."""
@@ -235,7 +218,6 @@ class Histories:
     state: State
     h: float
     status: str = "success"
-    steps: int = 0
     parts: list[dict[str, np.ndarray]] = field(default_factory=list)
     ledger: EnergyLedger | None = None
     motion: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
@@ -256,7 +238,6 @@ def integrate(
     stream: Stream | None = None,
     settings: dict[str, str] | None = None,
     frames: int = 0,
-    tolerance: float = 1e-10,
     progress: Progress = silent,
 ) -> Histories:
     """Integrate from the start state; a run that stops early keeps what it has and says why in `status`.
@@ -272,7 +253,7 @@ def integrate(
         found.parts.append({name: chunk[name] for name in _TABLES})
         if chunk["ledger"].size:
             book.table.append(chunk["ledger"])
-        book.set_sums(chunk["spent"])
+        book.sums = tuple(chunk["spent"].tolist())
         state.step = int(chunk["state step"])
         for name in _STATE:
             setattr(state, name, chunk[f"state {name}"].copy())
@@ -299,23 +280,16 @@ def integrate(
             state.count_anew()
         if stream is not None:
             rows = np.vstack([np.zeros((0, 7)), *book.table[before:]])
-            stream.write({**part, "ledger": rows, "spent": np.array(book.sums()), **state_arrays(state)})
+            sums = np.array(book.sums or (0.0, 0.0, 0.0))
+            stream.write({**part, "ledger": rows, "spent": sums, **state_arrays(state)})
 
     # The run stops at the end of settling too, so that events are counted from there.
     for goal in sorted({boundary, schedule.steps}):
         if not 0 < goal <= schedule.steps or state.step >= goal:
             continue
         try:
-            cost = run(
-                local,
-                integrator,
-                Schedule(schedule.h, goal, schedule.every),
-                state,
-                receive,
-                tolerance=tolerance,
-                progress=progress,
-            )
-            found.steps += cost.steps
+            plan = Schedule(schedule.h, goal, schedule.every)
+            run(local, integrator, plan, state, receive, progress=progress)
         except ConvergenceError as error:
             found.status = str(error)
             break

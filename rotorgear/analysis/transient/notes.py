@@ -8,6 +8,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
+from rotorgear.analysis.transient.request import Task
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import in_words
@@ -15,7 +16,7 @@ from rotorgear.model.parts.mesh import Mesh
 from rotorgear.note import Note, as_notes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium, unbalanced
+from rotorgear.solvers.time.contact_equilibrium import unbalanced
 from rotorgear.system.local import LocalModel
 
 # Numerical share of the energy above which a run is warned about.
@@ -89,129 +90,102 @@ def _excites_nothing(local: LocalModel, name: str) -> bool:
     return all(law.steady for law in laws)
 
 
-def adrift(rest: Equilibrium, local: LocalModel) -> list[str]:
+def adrift(task: Task) -> Iterator[Note]:
     """Whether the loads do not balance on a free motion, on average over what pulses, and what friction has to do with it."""
-    rubbing = [name for name, mesh in local.system.model.meshes.items() if mesh.rubs]
-    text = "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
-    if rubbing and unbalanced(local.local, rest.free, rest.force):
-        return [
-            f"{text}; friction in {', '.join(rubbing)} takes power that the torques do not give: with speed_power in a load the "
-            "shafts settle where they balance, and sweep keeps their speed"
-        ]
-    return [text] if unbalanced(local.local, rest.free) else []
+    rest = task.rest
+    what = "the loads do not balance on a free motion"
+    why = "it is carried along and drifts with constant acceleration"
+    rubbing = [name for name, mesh in task.local.system.model.meshes.items() if mesh.rubs]
+    if rubbing and unbalanced(task.local.local, rest.free, rest.force):
+        takes = f"friction in {', '.join(rubbing)} takes power that the torques do not give"
+        remedy = "with speed_power in a load the shafts settle where they balance, and sweep keeps their speed"
+        yield Note("", what, f"{why}; {takes}: {remedy}")
+    elif unbalanced(task.local.local, rest.free):
+        yield Note("", what, why)
 
 
-def transient_warnings(
-    result: TransientResult,
-    rest: Equilibrium,
-    local: LocalModel,
-    *,
-    estimated: bool,
-    keeps_energy: bool,
-) -> tuple[str, ...]:
-    """What the reader should know before using the numbers."""
-    notes = list(local.system.nodes.merged)
+def transient_warnings(result: TransientResult, task: Task, *, estimated: bool, keeps_energy: bool) -> Iterator[str]:
+    """Yield what the reader should know before using the numbers."""
+    local = task.local
+    yield from local.system.nodes.merged
     if result.status != "success":
-        notes.append(f"the run ended early at t = {result.time[-1]:.6g} s: {result.status}")
+        yield Note("", f"the run ended early at t = {result.time[-1]:.6g} s", result.status)
         if result.time[-1] <= result.settle:
-            notes.append(
-                f"it ended before the {result.settle:.6g} s that are discarded: there are no statistics, only histories"
-            )
-    if not rest.converged:
-        notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
-    drift = adrift(rest, local)
-    notes += drift
+            what = f"it ended before the {result.settle:.6g} s that are discarded"
+            yield Note("", what, "there are no statistics, only histories")
+    if not task.rest.converged:
+        why = "the run starts from that with linear contacts and has to settle"
+        yield Note("", f"no static equilibrium was found; {why}")
+    drift = list(adrift(task))
+    yield from drift
     damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
     if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
-        notes.append(
-            "nothing damps: what the start sets swinging never dies out; give damping, or a modal damping ratio"
-        )
+        why = "what the start sets swinging never dies out; give damping, or a modal damping ratio"
+        yield Note("", "nothing damps", why)
     if estimated and result.status == "success" and not np.isfinite(result.error_estimate):
-        notes.append("there is no error estimate: the run with twice the step, or with more modes, did not end well")
+        why = "the run with twice the step, or with more modes, did not end well"
+        yield Note("", "there is no error estimate", why)
     if not keeps_energy and result.contact_losses.any():
-        notes.append(
-            f"teeth part, and '{result.method}' may gain energy where they meet again: take newmark or exponential, which keep it"
-        )
+        what = f"teeth part, and '{result.method}' may gain energy where they meet again"
+        yield Note("", what, "take newmark or exponential, which keep it")
     if result.energy.share > ENERGY_BOUND:
-        notes.append(
-            f"energy error: the integration added or removed {100.0 * result.energy.share:.2g} % of the energy; "
-            "take a smaller step or record more often"
-        )
-    if not local.local.rotation.is_constant and _held(result.model):
-        rpm = float(np.abs(result.speed).max()) * RPM_PER_RAD_S
-        notes.append(
-            f"{_held(result.model)} are held at their values for the largest speed, {rpm:.6g} rpm, over the whole run-up"
-        )
+        lost = f"the integration added or removed {100.0 * result.energy.share:.2g} % of the energy"
+        yield Note("", "energy error", f"{lost}; take a smaller step or record more often")
+    held = _held(result.model)
     fastest = float(np.abs(result.speed).max(initial=0.0))
-    notes += time_warnings(local.system.model, local.local.forces.laws, fastest)
-    notes += [*_beyond_maps(result, local), *([] if drift else _off_speed(result, local)), *_unsettled(result)]
-    return tuple(notes)
+    if not local.local.rotation.is_constant and held:
+        rpm = f"{fastest * RPM_PER_RAD_S:.6g} rpm"
+        yield Note("", f"{held} are held at their values for the largest speed, {rpm}, over the whole run-up")
+    yield from time_warnings(local.system.model, local.local.forces.laws, fastest)
+    yield from _beyond_maps(result, local)
+    if not drift:
+        yield from _off_speed(result, local)
+    # Both halves of what counts.
+    force = result.mesh_force[result.counted]
+    if len(force) >= 16 and force.any() and np.ptp(result.speed) == 0.0:
+        change, what = halves_differ(result)
+        if change > _UNSETTLED:
+            differ = f"the two halves of the time that counts differ by {100.0 * change:.2g} %"
+            yield Note("", what, f"{differ}: not settled, or not periodic; settle longer or run longer")
 
 
 def _held(model: Model) -> str:
     """What depends on speed beside the gyroscopic terms, in words; "" where nothing does."""
-    tables = [name for name, bearing in model.bearings.items() if bearing.table]
-    damped = [name for name, shaft in model.shafts.items() if shaft.internal_damping]
-    parts = [f"the tables of the bearings {', '.join(tables)}"] if tables else []
-    parts += [f"the internal damping of {', '.join(damped)}"] if damped else []
-    bodies = [name for name, gear in model.gears.items() if gear.body.mesh is not None]
-    parts += [f"the centrifugal terms of {', '.join(bodies)}"] if bodies else []
-    return " and ".join(parts)
+    parts = {
+        "the tables of the bearings": [name for name, bearing in model.bearings.items() if bearing.table],
+        "the internal damping of": [name for name, shaft in model.shafts.items() if shaft.internal_damping],
+        "the centrifugal terms of": [name for name, gear in model.gears.items() if gear.body.mesh is not None],
+    }
+    return " and ".join(f"{what} {', '.join(names)}" for what, names in parts.items() if names)
 
 
-def _beyond_maps(result: TransientResult, local: LocalModel) -> list[str]:
+def _beyond_maps(result: TransientResult, local: LocalModel) -> Iterator[Note]:
     """Where teeth part that nothing stops, and forces above those that the laws were made for."""
     meshes = [part for part in local.parts if part.is_mesh]
-    notes = []
-    for i, part in enumerate(meshes):
+    for part, losses, force in zip(meshes, result.contact_losses, result.mesh_force.T, strict=True):
         mesh = local.system.layout.mesh(part.part.removeprefix("meshes.")).part
-        largest = float(result.mesh_force[:, i].max())
-        if result.contact_losses[i] and mesh.backlash is None and part.law.can_part:
-            notes.append(
-                f"{part.label}: the teeth part, but no backlash is given, so nothing stops them behind; give `backlash`"
-            )
-        if largest > part.law.known_up_to:
-            notes.append(
-                f"{part.label}: the force reaches {largest:.4g} N; its loaded teeth were solved up to "
-                f"{part.law.known_up_to:.4g} N, above which their map goes on along its tangent"
-            )
-    return notes
+        if losses and mesh.backlash is None and part.law.can_part:
+            why = "no backlash is given, so nothing stops them behind; give `backlash`"
+            yield Note(part.label, f"the teeth part, but {why}")
+        if force.max() > part.law.known_up_to:
+            known = f"its loaded teeth were solved up to {part.law.known_up_to:.4g} N"
+            why = f"{known}, above which their map goes on along its tangent"
+            yield Note(part.label, f"the force reaches {force.max():.4g} N", why)
 
 
-def _off_speed(result: TransientResult, local: LocalModel) -> list[str]:
+def _off_speed(result: TransientResult, local: LocalModel) -> Iterator[Note]:
     """Compare the speed of each gear at the end with the prescribed one, where the loads balance at the start."""
     train = result.model.layout.train
-    worst = 0.0
-    name = ""
+    shares = {"": 0.0}
     for gear, part in result.model.gears.items():
         history = f"gears.{gear} speed fluctuation"
         prescribed = abs(float(train.ratio(part.shaft)) * result.speed[-1])
-        if history not in result.channel or prescribed == 0.0:
-            continue
-        values = result.history(history)
-        share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / prescribed
-        if share > worst:
-            worst = share
-            name = gear
-    if worst <= _DRIFT:
-        return []
-    changing = [part.part for part in local.parts if part.law.unsettled()]
-    why = f"; with {', '.join(changing)}, which change in time, the loads need not balance" if changing else ""
-    return [
-        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed, to which mesh phases and gyroscopic terms "
-        f"keep{why}"
-    ]
-
-
-def _unsettled(result: TransientResult) -> list[str]:
-    """Compare the two halves of what counts."""
-    force = result.mesh_force[result.counted]
-    if len(force) < 16 or not force.any() or np.ptp(result.speed) > 0.0:
-        return []
-    change, what = halves_differ(result)
-    if change <= _UNSETTLED:
-        return []
-    return [
-        f"{what}: the two halves of the time that counts differ by {100.0 * change:.2g} %: not settled, or not periodic; "
-        "settle longer or run longer"
-    ]
+        if history in result.channel and prescribed:
+            values = result.history(history)
+            shares[gear] = abs(float(values[-max(len(values) // 10, 1) :].mean())) / prescribed
+    worst = max(shares, key=lambda gear: shares[gear])
+    if shares[worst] > _DRIFT:
+        changing = [part.part for part in local.parts if part.law.unsettled()]
+        why = f"; with {', '.join(changing)}, which change in time, the loads need not balance" if changing else ""
+        off = f"{100.0 * shares[worst]:.2g} % off its prescribed speed, to which mesh phases and gyroscopic terms keep"
+        yield Note("", f"at the end {worst} turns {off}{why}")

@@ -11,7 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.common.request import check_whole, quantity, speed_or_operating
+from rotorgear.analysis.common.request import (
+    check_modal_damping,
+    check_whole,
+    needed_speed,
+    quantity,
+)
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.analysis.transient.histories import Channels, Histories, Stream, channels, integrate
@@ -53,10 +58,7 @@ class Grid:
 def rotation_of(system: System, speed: float | str | Sequence[tuple[float, float | str]] | None) -> Rotation:
     """Speed of the reference over time from a number, a text, or pairs of time and speed."""
     if speed is None or isinstance(speed, int | float | str):
-        given = speed_or_operating(speed, system.model)
-        if given is None:
-            raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
-        return Rotation.constant(given)
+        return Rotation.constant(needed_speed(speed, system.model))
     pairs = [(quantity(t, "time", "speed"), quantity(w, "speed", "speed")) for t, w in speed]
     return Rotation(np.array([t for t, _ in pairs]), np.array([w for _, w in pairs]))
 
@@ -84,40 +86,19 @@ def run_up(
     return [(start, first), (start + time, speed_to)]
 
 
-def mesh_frequencies(system: System, speed: float) -> dict[str, float]:
-    """Mesh frequency in Hz of every mesh whose teeth are known."""
-    found = {name: system.layout.mesh_frequency(name, speed) for name in system.model.meshes}
-    return {name: value for name, value in found.items() if value}
-
-
-def base_frequencies(system: System, speed: float) -> dict[str, float]:
+def base_frequencies(task: Task) -> list[float]:
     """Frequencies in Hz that lay the times out: those of the meshes, else of bearings' elements, else of the shafts."""
-    found = mesh_frequencies(system, speed)
-    if found:
-        return found
-    turns = {name: abs(float(system.train.ratio(name)) * speed) / (2.0 * np.pi) for name in system.model.shafts}
-    rolling = {
-        name: bearing.rolling.elements * turns[bearing.shaft]
-        for name, bearing in system.model.bearings.items()
-        if bearing.rolling
-    }
-    return {name: value for name, value in (rolling or turns).items() if value}
-
-
-def contact_frequency(local: LocalSystem) -> float:
-    """Highest frequency in Hz at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b)."""
-    return float(contact_rates(local).max(initial=0.0)) / (2.0 * np.pi)
+    system = task.local.system
+    turns = {name: abs(float(system.train.ratio(name)) * task.largest) / (2.0 * np.pi) for name in system.model.shafts}
+    bearings = system.model.bearings.values()
+    rolling = [bearing.rolling.elements * turns[bearing.shaft] for bearing in bearings if bearing.rolling]
+    return [f for f in task.frequencies.values() or rolling or turns.values() if f]
 
 
 def grid_of(
-    local: LocalSystem,
-    frequencies: dict[str, float],
-    time: float | None,
-    settle: float | None,
-    steps: int | None,
-    records: int | None,
-) -> Grid:
-    """Lay the times out.
+    task: Task, time: float | None, settle: float | None, steps: int | None, records: int | None
+) -> tuple[Grid, float]:
+    """Lay the times out; with the frequency in Hz of the fastest mesh, in whose periods steps are counted, or 0.
 
     Raises:
         AnalysisError: nothing says how long to run, or the run would have too many steps.
@@ -127,9 +108,11 @@ def grid_of(
             check_whole(f"the number of {name}", count_wanted)
     if time is not None and not 0.0 < time < np.inf:
         raise AnalysisError(f"time: got {time}, expected more than 0")
-    contact = contact_frequency(local)
-    fastest = max(frequencies.values(), default=0.0)
-    slowest = min(frequencies.values(), default=0.0)
+    # Highest frequency at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b).
+    contact = float(contact_rates(task.local.local).max(initial=0.0)) / (2.0 * np.pi)
+    frequencies = base_frequencies(task)
+    fastest = max(frequencies, default=0.0)
+    slowest = min(frequencies, default=0.0)
     if fastest == 0.0 and (time is None or contact == 0.0):
         raise AnalysisError(
             "nothing turns that says how long to run and in what steps: give a time, and a speed or meshes"
@@ -152,7 +135,7 @@ def grid_of(
         raise AnalysisError(
             f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
         )
-    return Grid(spacing, count, round(settle / spacing), every)
+    return Grid(spacing, count, round(settle / spacing), every), fastest
 
 
 def integrator_of(
@@ -175,7 +158,7 @@ def integrator_of(
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
     if modes is not None:
         check_whole("the number of modes", modes)
-    modes = None if modes is not None and modes >= local.n else modes
+        modes = None if modes >= local.n else modes
     reason = "as asked for"
     if method == "auto":
         method, reason = _chosen(local, steps, modal_ratio, modes)
@@ -266,15 +249,15 @@ def prepare(
     seen = channels(local)
     observed = seen.observed(local.local.n, local.local.m)
     local = replace(local, local=replace(local.local, observed=observed))
-    return Task(local, seen, rest, force, mesh_frequencies(given, largest), largest)
+    meshes = {name: given.layout.mesh_frequency(name, largest) for name in given.model.meshes}
+    return Task(local, seen, rest, force, {name: f for name, f in meshes.items() if f}, largest)
 
 
 def damped(model: Model | System, modal_damping: float | None) -> Model | System:
     """The model with another damping ratio of its modes."""
     if modal_damping is None:
         return model
-    if not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
+    check_modal_damping(modal_damping)
     given = model.model if isinstance(model, System) else model
     damping = given.damping.model_copy(update={"modal_ratio": modal_damping})
     changed = given.model_copy(update={"damping": damping})
@@ -295,11 +278,11 @@ def run_task(
     """Integrate over a grid; `text` names a run that only serves another one, which does not go on after an interruption."""
     h = grid.spacing / grid.every
     system = task.local.local
+    sizes = f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {system.watched_vectors.shape[1]}"
+    rotation = f"{system.rotation.times.tolist()} {system.rotation.speeds.tolist()}"
     settings = {
         "model": model_hash(task.local.system.model),
-        "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {system.watched_vectors.shape[1]} "
-        f"{integrator.name} {key} {system.rotation.times.tolist()} "
-        f"{system.rotation.speeds.tolist()}",
+        "run": f"{sizes} {integrator.name} {key} {rotation}",
     }
 
     def told(fraction: float, step: str) -> None:

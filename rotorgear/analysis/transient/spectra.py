@@ -29,20 +29,14 @@ def history_of(result: TransientResult, name: str) -> tuple[np.ndarray, str]:
     """
     from rotorgear.quantity import nearest
 
-    known = [
-        *result.channel,
-        *(f"{what} {c}" for c in result.contact for what in ("force", "transmission_error", "approach")),
-    ]
-    if name not in known and name.removeprefix("deflection ") not in result.contact:
-        close = nearest(name, known)
-        hint = f"; did you mean '{close}'?" if close else "; known: " + ", ".join(known[:6]) + " ..."
+    units = {f"{what} {c}": "m" for c in result.contact for what in ("force", "transmission_error", "approach")}
+    units |= {name: "N" for name in units if name.startswith("force")}
+    units = dict(zip(result.channel, result.unit, strict=True)) | units
+    if name not in units and name.removeprefix("deflection ") not in result.contact:
+        close = nearest(name, list(units))
+        hint = f"; did you mean '{close}'?" if close else "; known: " + ", ".join(list(units)[:6]) + " ..."
         raise AnalysisError(f"there is no history '{name}'{hint}")
-    unit = (
-        result.unit[result.channel.index(name)]
-        if name in result.channel
-        else ("N" if name.startswith("force") else "m")
-    )
-    return result.history(name), unit
+    return result.history(name), units.get(name, "m")
 
 
 def spectrum(result: TransientResult, name: str, *, window: str = "hann", orders: bool = False) -> Spectrum:
@@ -106,15 +100,10 @@ def spectral_lines(
     strongest = np.sort(inner[np.argsort(a[inner])[::-1][:count]])
     frequencies = np.array([_between_bins(hann, i) for i in strongest])
     # Two peaks of one line, on a shoulder of the wide window, are one.
-    other = np.array(
-        [
-            not np.any((np.abs(frequencies - f) < 0.5 * found.resolution) & (a[strongest] > a[i]))
-            for f, i in zip(frequencies, strongest, strict=True)
-        ],
-        dtype=bool,
-    )
-    strongest = strongest[other]
-    frequencies = frequencies[other]
+    close = np.abs(frequencies - frequencies[:, None]) < 0.5 * found.resolution
+    highest = ~np.any(close & (a[strongest] > a[strongest][:, None]), axis=1)
+    strongest = strongest[highest]
+    frequencies = frequencies[highest]
     sources = tuple(_source(result, f, found.resolution) for f in frequencies)
     return SpectralLines(name, found.unit, frequencies, a[strongest], sources, window, found.resolution)
 

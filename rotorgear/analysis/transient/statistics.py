@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from rotorgear.analysis.transient.histories import Histories
+from rotorgear.analysis.transient.request import Task
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.statistics import (
     STATISTICS,
@@ -38,7 +38,7 @@ class Judged:
         return errors, largest_relative(errors, self.scale)
 
 
-def of_meshes(found: Histories, task: Any) -> MotionStatistics:
+def of_meshes(found: Histories, task: Task) -> MotionStatistics:
     """Statistics of the mesh contacts over all steps that count.
 
     Forces of steps are means, half a step away from the end of the time: where one rises until there, its last record counts.
@@ -60,13 +60,13 @@ def of_meshes(found: Histories, task: Any) -> MotionStatistics:
     )
 
 
-def of_channels(found: Histories, task: Any) -> Statistics:
+def of_channels(found: Histories, task: Task) -> Statistics:
     """Statistics of the channels over all steps that count."""
     all_of = Statistics.of_steps(found.state.gathered)
     return all_of.chosen(slice(all_of.mean.size - len(task.channels.names), None))
 
 
-def judged(found: Histories, task: Any) -> Judged:
+def judged(found: Histories, task: Task) -> Judged:
     """The statistics of each contact, and the root mean square of each channel."""
     meshes = of_meshes(found, task)
     labels = [task.local.parts[i].label for i in task.local.meshes]

@@ -14,16 +14,15 @@ The step of a transient that reaches an accuracy, and what is said where none wi
 
 from __future__ import annotations
 
-import time as clock
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import missed
+from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.histories import Histories, Stream
@@ -31,19 +30,18 @@ from rotorgear.analysis.transient.notes import adrift, intact, transient_left_ou
 from rotorgear.analysis.transient.request import (
     Grid,
     Task,
-    base_frequencies,
     coarser,
     damped,
     grid_of,
     integrator_of,
     prepare,
-    quantity,
     run_task,
     run_up,
 )
 from rotorgear.analysis.transient.statistics import Judged, judged, of_channels, of_meshes
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
@@ -111,7 +109,7 @@ def transient(
         ConvergenceError: not even the first records came to be. A run that stops later returns what it has, and says
         so in `status`.
     """
-    begun = clock.perf_counter()
+    clock = Clock()
     if steps is not None and accuracy is not None:
         raise AnalysisError("steps and accuracy: give one of the two; steps fixes the step, accuracy chooses it")
     if accuracy is not None and not 1e-8 <= accuracy < 1.0:
@@ -122,8 +120,7 @@ def transient(
     if speed_to is not None:
         speed = run_up(model, speed, speed_to, *duration)
     task = prepare(damped(model, modal_damping), speed, elements)
-    frequencies = base_frequencies(task.local.system, task.largest)
-    grid = grid_of(task.local.local, frequencies, duration[0], duration[1], steps, records)
+    grid, fastest = grid_of(task, duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(
         method,
         task.local.local,
@@ -134,35 +131,33 @@ def transient(
         beta=beta,
         gamma=gamma,
     )
-    laps = {"model": clock.perf_counter() - begun}
-    choice = Choice(grid)
+    clock.lap("model")
+    wanted = accuracy or DEFAULT_ACCURACY
+    left = _SECOND_ORDER
     if isinstance(integrator, Explicit):
         check_length(task.local.local, grid.records * grid.spacing)
     elif steps is None:
-        choice = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
-        grid = choice.grid
-    laps["choice of step"] = clock.perf_counter() - begun - sum(laps.values())
+        grid, left = fine_enough(task, integrator, grid, wanted, progress)
+    clock.lap("choice of step")
     others = _comparisons(task, integrator, grid, progress) if error_estimate else []
-    laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
-    found = run_task(
-        task,
-        integrator,
-        grid,
-        progress,
-        stream=stream,
-        frames=frames,
-        key=f"{method} {modes} {rho_inf} {beta} {gamma}",
-    )
-    laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
-    laps["total"] = clock.perf_counter() - begun
+    clock.lap("error estimate")
+    key = f"{method} {modes} {rho_inf} {beta} {gamma}"
+    found = run_task(task, integrator, grid, progress, stream=stream, frames=frames, key=key)
+    clock.lap("integration")
     progress(1.0, "done")
-    result = _result(task, grid, integrator, reason, found, others, laps, estimated=error_estimate)
+    result = _result(task, grid, integrator, reason, found, others, estimated=error_estimate)
+    result = replace(result, seconds=clock.total())
     # A run without an estimate, or one that ended early, has said so already.
     if steps is not None or result.status != "success" or not np.isfinite(result.error_estimate):
         return result
-    wanted = accuracy or DEFAULT_ACCURACY
-    fastest = max(frequencies.values(), default=np.nan)
-    remedy = choice.remedy(result.error_estimate, wanted, fastest, integrator.name)
+    # What would reach the accuracy, by what a halving of the step left of the error.
+    remedy = "smaller steps do not lower it: the motion is chaotic, or the time too short for its statistics"
+    if left <= _FALLS:
+        remedy = "take more steps in a period of the fastest motion (--steps)"
+        if fastest:
+            count = (result.error_estimate / wanted) ** (-1.0 / np.log2(left)) / (result.step * fastest)
+            many = f"{float(f'{count:.2g}'):.0f} steps in a mesh period (--steps)"
+            remedy = f"about {many} of the same method ({integrator.name}) would reach it, by how it falls"
     short = missed(wanted, result.error_estimate, remedy)
     return replace(result, status=short, warnings=(*result.warnings, short)) if short else result
 
@@ -174,7 +169,6 @@ def _result(
     reason: str,
     found: Histories,
     others: list[tuple[Histories, float]],
-    laps: dict[str, float],
     *,
     estimated: bool,
 ) -> TransientResult:
@@ -198,7 +192,6 @@ def _result(
     negative = found.state.gathered.sums[columns, 2] / (steps or np.nan)
     if found.ledger is None:
         raise ConvergenceError(found.status)
-    motion_time = np.concatenate([np.zeros(0), *(t for t, _ in found.motion)])
     motion = np.vstack([np.zeros((0, local.n)), *(q for _, q in found.motion)])
     nodes, shapes = shapes_at_stations(system, system.dofs.transform @ motion.T)
     result = TransientResult(
@@ -236,24 +229,23 @@ def _result(
         every=grid.every,
         error_estimate=largest,
         dofs=local.n,
-        seconds=laps,
         method=integrator.name,
         reason=reason,
         mesh_frequency=task.frequencies,
         nodes=nodes,
-        motion_time=motion_time,
+        motion_time=np.concatenate([np.zeros(0), *(t for t, _ in found.motion)]),
         motion=shapes,
         status=found.status,
         left_out=(
             *left_out(system, "time", task.largest),
             *transient_left_out(task.local),
-            *mean_torsion_notes(task.local.system, task.largest),
+            *mean_torsion_notes(system, task.largest),
         ),
     )
-    notes = transient_warnings(result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy)
+    notes = [*transient_warnings(result, task, estimated=estimated, keeps_energy=integrator.keeps_energy)]
     if result.status == "success":
         notes += off_statics(found, task, errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
-    return replace(result, left_out=(*result.left_out, *intact(result, task.local)), warnings=notes)
+    return replace(result, left_out=(*result.left_out, *intact(result, task.local)), warnings=tuple(notes))
 
 
 def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
@@ -283,15 +275,15 @@ _SEEN = 1e-9
 _ROUNDING = 1e-6
 
 
-def off_statics(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
-    """Sentences on contacts whose mean force differs from statics by more than its error (c,)."""
+def off_statics(found: Histories, task: Task, error: np.ndarray) -> Iterator[Note]:
+    """Yield facts on contacts whose mean force differs from statics by more than its error (c,)."""
     local = task.local.local
     force = Statistics.of_steps(found.state.gathered).chosen(slice(0, local.m))
     meshes = task.local.meshes
     known = np.all(np.isfinite(task.rest_force)) and task.rest.converged
-    steady = local.rotation.is_constant and not adrift(task.rest, task.local)
+    steady = local.rotation.is_constant and not adrift(task)
     if not (np.all(np.isfinite(force.mean)) and meshes and known and steady):
-        return ()
+        return
     # Motions without strain don't depend on inertia: what has none gets what makes it no slower than the others.
     mass = local.M.diagonal()
     stiffness = local.stiffness_about.diagonal()
@@ -300,23 +292,21 @@ def off_statics(found: Histories, task: Task, error: np.ndarray) -> tuple[str, .
     try:
         A = free_motions(sp.csc_array(local.M + sp.diags_array(light)), local.K).T @ local.B.toarray()
     except RotorgearError as refusal:
-        return (f"mean contact forces are not compared with statics: {refusal}",)
+        yield Note("", "mean contact forces are not compared with statics", str(refusal))
+        return
     _, size, V = np.linalg.svd(A, full_matrices=False)
     seen = V[size > _SEEN * size.max(initial=0.0)]
     off = seen.T @ (seen @ (force.mean - task.rest_force))
     # Of flanks that carry nothing, statics leave the rounding of what the others carry.
     rounding = _ROUNDING * float(np.abs(task.rest_force).max(initial=0.0))
-    notes = []
     for k, i in enumerate(meshes):
         j = int(local.forces.first[i])
         scale = float(np.hypot(force.mean[j], force.rms[j]))
         allowed = max(_SHARE * max(abs(task.rest_force[j]), scale), float(np.nan_to_num(error[k])), rounding)
         if abs(off[j]) > allowed:
-            notes.append(
-                f"{task.local.parts[i].label}: the mean contact force is {force.mean[j]:.4g} N, the loads need "
-                f"{force.mean[j] - off[j]:.4g} N by statics: not settled, no whole number of periods, or too large a step"
-            )
-    return tuple(notes)
+            what = f"the mean contact force is {force.mean[j]:.4g} N, the loads need {force.mean[j] - off[j]:.4g} N by statics"
+            why = "not settled, no whole number of periods, or too large a step"
+            yield Note(task.local.parts[i].label, f"{what}: {why}")
 
 
 _HALVINGS = 6
@@ -329,31 +319,15 @@ _SECOND_ORDER = 0.25
 _PROBE = 60_000
 
 
-@dataclass(frozen=True)
-class Choice:
-    """The grid with the step that was chosen, and the share of the error that a halving left; untried, that of second order."""
-
-    grid: Grid
-    left: float = _SECOND_ORDER
-
-    def remedy(self, error: float, wanted: float, frequency: float, method: str) -> str:
-        """What would reach the accuracy that this grid's run missed by its error.
-
-        `frequency` in Hz is that in whose periods steps are counted.
-        """
-        if self.left > _FALLS:
-            return "smaller steps do not lower it: the motion is chaotic, or the time too short for its statistics"
-        steps = self.grid.every / (self.grid.spacing * frequency) * (error / wanted) ** (-1.0 / np.log2(self.left))
-        if not np.isfinite(steps):
-            return "take more steps in a period of the fastest motion (--steps)"
-        many = f"{float(f'{steps:.2g}'):.0f} steps in a mesh period (--steps)"
-        return f"about {many} of the same method ({method}) would reach it, by how it falls"
-
-
-def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress) -> Choice:
+def fine_enough(
+    task: Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress
+) -> tuple[Grid, float]:
     """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step.
 
     The search ends early where what halvings leave of the error says that those to come won't reach the accuracy.
+
+    Returns:
+        The grid with the step that was chosen, and the share of the error that a halving left.
     """
     records = min(grid.records, max(_PROBE // grid.every, 8))
     probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
@@ -371,10 +345,10 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
                 double, ratio = coarser(probe)
                 other = _probed(task, integrator, double, progress)
                 enough = bool(last and other and last.errors(other, gain(ratio))[1] <= accuracy)
-            return Choice(replace(grid, every=probe.every if enough else finer.every), _left(errors))
+            return replace(grid, every=probe.every if enough else finer.every), _left(errors)
         if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
             # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
-            return Choice(grid, 1.0)
+            return grid, 1.0
         probe = finer
         last = now
         # Each further halving may leave as much as the better one of the last two, or what second order leaves.
@@ -386,7 +360,7 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
             hoped = float(min((recent[1:] / recent[:-1]).min(), _FALLS))
         if number >= _FRUITLESS and errors[-1] * hoped ** (_HALVINGS - number) > accuracy:
             break
-    return Choice(replace(grid, every=probe.every), _left(errors))
+    return replace(grid, every=probe.every), _left(errors)
 
 
 def _left(errors: list[float]) -> float:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rotorgear.analysis.orbits.follow import Branch, certified, followed, main_branches
+from rotorgear.analysis.orbits.follow import Branch, followed, main_branches
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import silent
 from rotorgear.solvers.periodic.arclength import Linear, Node, Walk, at_value
@@ -63,7 +63,8 @@ def test_doublings_and_neimark_sacker_points_lie_where_multipliers_cross_the_cir
 
 def test_a_test_function_that_does_not_cross_zero_has_no_special_point() -> None:
     equations = Cubic(-1.0, lambda y, p: [0.5])
-    a, b = (certified(equations, at_value(equations, np.zeros(1), p)) for p in (0.4, 0.6))  # type: ignore[arg-type]
+    nodes = [at_value(equations, np.zeros(1), p) for p in (0.4, 0.6)]
+    a, b = (Certified(node, equations.multipliers(node.y, node.p)) for node in nodes)
     turned = Certified(Node(b.node.z, -b.node.tangent, 1), b.multipliers)
     for kind in (FOLD, DOUBLING, NEIMARK_SACKER):
         assert located(equations, a, turned, kind) is None

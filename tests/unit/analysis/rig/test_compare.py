@@ -253,10 +253,10 @@ def test_rigid_modes_alone_leave_every_line_unmatched():
     [
         ({"rig": []}, "no rig lines"),
         ({"rig": lines(100, 100)}, "given twice"),
-        ({"tolerance": 5.0}, "0.05 is 5 %"),
+        ({"tolerance": 5.0}, "share between 0 and 1, such as 0.05"),
         ({"tolerance": float("nan")}, "tolerance"),
-        ({"excitation_tolerance": -0.1}, "excitation tolerance"),
-        ({"samples": 0}, "at least one random list"),
+        ({"excitation_tolerance": -0.1}, "excitation_tolerance"),
+        ({"samples": 0}, "must be at least 1"),
         ({"band": (200.0, 1000.0)}, "contain the rig lines"),
         ({"band": (0.0, 1000.0)}, "must be positive"),
         ({"modes": [100.0, float("nan")]}, "finite"),

@@ -24,8 +24,8 @@ def run(x: np.ndarray, exponent: float, doubt: float = 0.0, scatter: float = 1e-
     sums = np.zeros((1, 14))
     sums[0, 7] = sums[0, 5] = 10e-6
     orbit = Orbit(section, growth, sums, np.zeros((2, 2)), None, True, np.array([doubt]), 300, **known)  # type: ignore[arg-type]
-    motion, stands = judged(orbit, POINT, 200, JUDGE)
-    return motion.kind, stands
+    kind, stands = judged(orbit, POINT, JUDGE)
+    return kind, stands
 
 
 def test_a_period_stands_with_a_negative_exponent_and_falls_with_a_positive_one() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.notes import left_out_of
+from rotorgear.analysis.sweep.gather import left_out_of
 from rotorgear.analysis.sweep.point import PointMaker
 from tests.models import spur_pair
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.axes import Family, axis_of, axis_of_option, number_places, points_of
+from rotorgear.analysis.sweep.axes import along, axis_of, axis_of_option, number_places, points_of
 from rotorgear.analysis.sweep.blocks import waves
 from rotorgear.analysis.sweep.classify import classify, exponents, period_of
-from rotorgear.analysis.sweep.notes import notes
+from rotorgear.analysis.sweep.gather import notes
 from rotorgear.analysis.sweep.point import at_rest, common_period, ready, table_of
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.mesh_contact import MeshContact
@@ -208,7 +208,7 @@ def test_many_starts_show_coexisting_motions() -> None:
     ],
 )
 def test_chaos_beside_a_response_that_repeats_may_be_a_transient(motion: list[str], *, told: bool) -> None:
-    warnings = notes((), [None], [""], motion, 100, {})
+    warnings = list(notes((), [None], [""], motion, 100, {}))
     assert any("long transient" in text for text in warnings) == told
     assert any("coexist" in text for text in warnings) == (len(set(motion) - {"not settled"}) > 1)
 
@@ -258,15 +258,15 @@ def test_kinds_of_motion_by_the_stated_criterion() -> None:
     one = np.full((240, 1), 3e-6)
     two = (3e-6 + 1e-6 * (k % 2))[:, None]
     torus = 1e-6 * np.cos(2.0 * np.pi * 0.381966 * k)[:, None]
-    assert classify(one, extent, -0.1, 0.01).kind == "1T"
-    assert classify(two, extent, -0.1, 0.01).kind == "2T"
-    assert classify(torus, extent, 0.001, 0.01).kind == "quasi-periodic"
-    assert classify(torus, extent, 0.5, 0.01).kind == "chaotic"
-    assert classify(torus, extent, 0.5, 0.4).kind == "chaotic"
-    assert classify(one, extent, 0.5, 0.4).kind == "1T"
-    assert classify(torus, extent, 0.5, 0.6).kind == "not settled"
-    assert classify(torus * np.exp(-k / 50.0)[:, None], extent, -0.01, 0.01).kind == "not settled"
-    assert classify(torus, extent, None, 0.0).kind == "not periodic"
+    assert classify(one, extent, -0.1, 0.01) == "1T"
+    assert classify(two, extent, -0.1, 0.01) == "2T"
+    assert classify(torus, extent, 0.001, 0.01) == "quasi-periodic"
+    assert classify(torus, extent, 0.5, 0.01) == "chaotic"
+    assert classify(torus, extent, 0.5, 0.4) == "chaotic"
+    assert classify(one, extent, 0.5, 0.4) == "1T"
+    assert classify(torus, extent, 0.5, 0.6) == "not settled"
+    assert classify(torus * np.exp(-k / 50.0)[:, None], extent, -0.01, 0.01) == "not settled"
+    assert classify(torus, extent, None, 0.0) == "not periodic"
     assert period_of(np.tile(torus[:7], (20, 1)), extent) == 7
 
 
@@ -342,7 +342,7 @@ def test_what_sweeps_do_not_take_is_refused_in_a_sentence() -> None:
 
 def test_the_family_of_a_model_keeps_everything_else() -> None:
     model = rg.load(PAIR)
-    other = Family(model, [axis_of("meshes.pair.backlash", ["20 um"])]).at([20.0])
+    other = along(model, [axis_of("meshes.pair.backlash", ["20 um"])])(model, (20.0,))
     assert other.meshes["pair"].backlash == pytest.approx(20e-6)
     assert other.gears == model.gears
 

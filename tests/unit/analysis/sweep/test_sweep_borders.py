@@ -12,7 +12,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.sweep.axes import axis_of, number_places
 from rotorgear.analysis.sweep.classify import period_of
-from rotorgear.analysis.sweep.notes import notes
+from rotorgear.analysis.sweep.gather import notes
 from rotorgear.errors import AnalysisError, RotorgearError
 from tests.paths import MODELS
 

@@ -13,7 +13,7 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import blocks as sweep_blocks
 from rotorgear.analysis.sweep.classify import exponents
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
-from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted, probes_for, rates
+from rotorgear.analysis.sweep.reduce import Large, Reducer, probes_for, rates
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
@@ -43,14 +43,14 @@ def pair(folder: Path, mesh: str = MESH, **options: Any) -> Model:
 
 
 def large(model: Model, elements: int, modes: int | None = None) -> Large:
-    point = PointMaker(Wanted(modes=modes), elements)(model)
+    point = PointMaker(modes, elements)(model)
     assert isinstance(point, Large)
     return point
 
 
-def reduced_point(model: Model, elements: int, wanted: Wanted) -> Point:
+def reduced_point(model: Model, elements: int, modes: int) -> Point:
     own = large(model, elements, 1)
-    return ready_reduced(own, *Reducer(wanted)([own], lambda size, error: None)[0])
+    return ready_reduced(own, *Reducer(modes=modes)([own], lambda size, error: None)[0])
 
 
 def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_contact(tmp_path: Path) -> None:
@@ -136,7 +136,7 @@ def test_without_clearance_the_amplitude_is_that_of_the_harmonic_response(rpm: f
 
 def test_all_exponents_of_a_reduced_system_sum_up_to_its_trace(tmp_path: Path) -> None:
     mesh = 'stiffness = "8e8 N/m"\ndamping_ratio = 0.04\n[damping]\nrayleigh_alpha = "400 1/s"\n'
-    point = reduced_point(pair(tmp_path, mesh), 3, Wanted(modes=6))
+    point = reduced_point(pair(tmp_path, mesh), 3, 6)
     system = point.system
     assert len(system.rigid) == 1
     assert np.abs(system.rigid @ system.B).max() < 1e-12 * np.abs(system.B).max()
@@ -152,7 +152,7 @@ def test_all_exponents_of_a_reduced_system_sum_up_to_its_trace(tmp_path: Path) -
 
 def test_rigid_motions_stay_free_and_the_drive_turns_without_strain(tmp_path: Path) -> None:
     own = large(pair(tmp_path), 6)
-    found = Reducer(Wanted(0.01))([own], lambda size, error: None)[0]
+    found = Reducer(0.01)([own], lambda size, error: None)[0]
     rest = ready_reduced(own, *found)
     whole = own.local
     free = found[1].vectors @ np.linalg.solve(rest.system.root.T, rest.system.rigid.T)
@@ -164,7 +164,7 @@ def test_rigid_motions_stay_free_and_the_drive_turns_without_strain(tmp_path: Pa
 def test_continuation_goes_on_in_another_basis(tmp_path: Path) -> None:
     soft = large(pair(tmp_path), 4)
     stiff = large(pair(tmp_path, MESH.replace("8e8", "9e8")), 4)
-    reducer = Reducer(Wanted(0.001))
+    reducer = Reducer(0.001)
     first, second = (ready_reduced(own, *reducer([own], lambda n, e: None)[0]).system for own in (soft, stiff))
     start = Start(first.rest, 1e-3 * first.rest)
     moved = start.moved(first, second)
@@ -225,7 +225,7 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
     light = replace(own, local=replace(own.local, M=M.tocsc()))
     with pytest.raises(AnalysisError, match="no inertia"):
         small_system(light.local, None, None, None, 1.0, 1)  # type: ignore[arg-type]
-    found = Reducer(Wanted(0.01))([light], lambda size, error: None)[0]
+    found = Reducer(0.01)([light], lambda size, error: None)[0]
     assert found[0].n < own.local.n
     assert ready_reduced(light, *found).static_force == pytest.approx(ready_reduced(own, *found).static_force, rel=1e-6)
 
