@@ -90,8 +90,8 @@ from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.compare_responses import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
 from rotorgear.analysis.rig.sensors import sensors as sensors
-from rotorgear.analysis.rig.campaigns import Campaign as Campaign
-from rotorgear.analysis.rig.campaigns import read_campaigns as read_campaigns
+from rotorgear.analysis.rig.measured import Campaign as Campaign
+from rotorgear.analysis.rig.measured import read_campaigns as read_campaigns
 from rotorgear.analysis.rig.measured import Measured as Measured
 from rotorgear.analysis.rig.measured import read_rig_shapes as read_rig_shapes
 from rotorgear.analysis.rig.likeness import mac as mac

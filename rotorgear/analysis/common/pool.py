@@ -5,9 +5,12 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from itertools import islice
 from typing import Any, Protocol
+
+# Seconds between two looks at work that takes long.
+_EVERY = 1.0
 
 
 class Pool(Protocol):
@@ -21,9 +24,20 @@ class Pool(Protocol):
 
 
 def in_order(
-    function: Callable[..., Any], tasks: Iterable[tuple[Any, ...]], workers: int | None, executor: Pool | None
+    function: Callable[..., Any],
+    tasks: Iterable[tuple[Any, ...]],
+    workers: int | None,
+    executor: Pool | None,
+    *,
+    watch: Callable[[], None] | None = None,
+    stop: Callable[[], None] = lambda: None,
 ) -> Iterator[Any]:
-    """Yield function(*task) of every task, in order; what waits is given up where nobody asks on."""
+    """Yield function(*task) of every task, in order; what waits is given up where nobody asks on.
+
+    Args:
+        function: what is called. tasks: its arguments. workers: threads here. executor: in place of them.
+        watch: called every second while threads here are at work. stop: tells them at the end that nobody asks on.
+    """
     own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
     pool: Any = executor or own
     waiting: deque[Any] = deque()
@@ -34,9 +48,12 @@ def in_order(
             waiting.extend(pool.submit(function, *task) for task in islice(rest, max(0, room)))
             if not waiting:
                 return
+            while own and watch and wait([waiting[0]], timeout=_EVERY).not_done:
+                watch()
             yield waiting[0].result()
             waiting.popleft()
     finally:
+        stop()
         for future in waiting:
             future.cancel()
         if own:

@@ -14,14 +14,12 @@ from functools import partial
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
-from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_whole, missed
 from rotorgear.analysis.orbits.family import SystemFamily, Told, range_of, told_of
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches, special_curves
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
-from rotorgear.analysis.static.mean_state import mean_torsion_notes
-from rotorgear.analysis.transient.notes import transient_left_out
+from rotorgear.analysis.transient.notes import left_out_in_time
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -189,7 +187,6 @@ def orbits(
     short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
     progress(1.0, "done")
     count = sum(len(branch.nodes) for branch in branches)
-    system = family.local.system
     return OrbitsResult(
         model=model,
         address=tuple(one.address for one in ranges),
@@ -213,9 +210,7 @@ def orbits(
         method=why,
         status=short or "success",
         left_out=(
-            *left_out(system, "time", plant.speed),
-            *transient_left_out(family.local),
-            *mean_torsion_notes(system, plant.speed),
+            *left_out_in_time(family.local, plant.speed),
             *family.notes,
             *_modes_left_out(problem),
         ),

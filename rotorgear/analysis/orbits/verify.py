@@ -23,7 +23,7 @@ from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.special import Certified
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, state_at_rest
+from rotorgear.solvers.time.local_system import LocalSystem, Records, State, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 
@@ -33,11 +33,6 @@ _PLACES = (0.0, 1.0, 0.5, 0.75, 0.25)
 _SETTLE = 400
 _RUN_STEPS = 400
 _MOST_DENSE = 400
-
-
-def integrator_for(system: LocalSystem) -> Integrator:
-    """The exponential method where all modes are cheap."""
-    return Exponential() if system.n <= _MOST_DENSE and np.all(system.M.diagonal() > 0.0) else Newmark()
 
 
 def run_periods(
@@ -52,7 +47,9 @@ def run_periods(
     def keep(records: Records, _: State) -> None:
         found.append(records.d)
 
-    run(system, integrator_for(system), Schedule(h, periods * steps, 1), state, keep)
+    # The exponential method where all modes are cheap.
+    cheap = system.n <= _MOST_DENSE and np.all(system.M.diagonal() > 0.0)
+    run(system, Exponential() if cheap else Newmark(), Schedule(h, periods * steps, 1), state, keep)
     return state, np.concatenate(found)
 
 

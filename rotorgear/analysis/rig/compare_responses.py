@@ -14,13 +14,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.response.frequency_response import frf
+from rotorgear.analysis.response.frequency_response import frf as model_frf  # the verb's own argument is called frf
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.rig.likeness import frac
 from rotorgear.analysis.rig.measured import MeasuredFrf, read_rig_frf
@@ -77,28 +78,19 @@ def compare_frf(
     given = frf if isinstance(frf, MeasuredFrf) else read_rig_frf(frf, points, model)
     inputs = list(dict.fromkeys(given.references))
     outputs = list(dict.fromkeys(given.responses))
-    found = _model_frf(
-        model,
-        given.frequency_hz,
-        inputs=inputs,
-        outputs=outputs,
-        speed=speed,
-        modal_damping=modal_damping,
-        accuracy=accuracy,
-        elements=elements,
-        progress=progress,
-    )
-    computed = np.array(
-        [
-            found.receptance[:, outputs.index(o), inputs.index(i)]
-            for o, i in zip(given.responses, given.references, strict=True)
-        ]
-    )
+    settings: dict[str, Any] = {
+        "speed": speed,
+        "modal_damping": modal_damping,
+        "accuracy": accuracy,
+        "elements": elements,
+    }
+    found = model_frf(model, given.frequency_hz, inputs=inputs, outputs=outputs, **settings, progress=progress)
+    pairs = list(zip(given.responses, given.references, strict=True))
+    computed = np.array([found.receptance[:, outputs.index(o), inputs.index(i)] for o, i in pairs])
     matches = []
-    pairs = zip(given.responses, given.references, given.receptance, computed, strict=True)
-    for output, reference, rig, own in pairs:
-        sizes = (float(np.linalg.norm(rig)), float(np.linalg.norm(own)))
-        ratio = sizes[1] / sizes[0] if sizes[0] > 0.0 else float("nan")
+    for (output, reference), rig, own in zip(pairs, given.receptance, computed, strict=True):
+        size = float(np.linalg.norm(rig))
+        ratio = float(np.linalg.norm(own)) / size if size > 0.0 else float("nan")
         matches.append(FrfMatch(output, reference, frac(rig, own), frac(np.abs(rig), np.abs(own)), ratio))
     return FrfComparison(
         model=model,
@@ -112,10 +104,6 @@ def compare_frf(
         warnings=(*given.notes, *found.warnings),
         method="FRAC at the frequencies of the rig",
     )
-
-
-# The verb's own argument is called as its option, --frf.
-_model_frf = frf
 
 
 @dataclass(frozen=True)
@@ -196,14 +184,8 @@ def compare_orders(
             f"order cuts were measured at {', '.join(strange)}: no points of the model ([points]: {known})"
         )
     speeds = np.unique(np.concatenate([cut.speed_rpm for cut in cuts]))
-    found = response(
-        model,
-        speeds=[float(rpm / RPM_PER_RAD_S) for rpm in speeds],
-        modal_damping=modal_damping,
-        accuracy=accuracy,
-        elements=elements,
-        progress=progress,
-    )
+    settings: dict[str, Any] = {"modal_damping": modal_damping, "accuracy": accuracy, "elements": elements}
+    found = response(model, speeds=(speeds / RPM_PER_RAD_S).tolist(), **settings, progress=progress)
     rows = []
     without = []
     for cut in cuts:
@@ -252,32 +234,28 @@ def _cuts_of_csv(file: Path) -> tuple[OrderCut, ...]:
     if header[:2] != ["speed_rpm", "order"] or len(header) < 3 or len(rows) < 2:
         expected = "a header speed_rpm,order and the names of points, and rows below it"
         raise ModelError([Problem(f"{file.name}:1", repr(",".join(header)), expected)], str(file))
-    table = []
+    read = []
     problems = []
     for number, cells in rows[1:]:
         try:
             values = [float(cell) if cell else np.nan for cell in cells]
         except ValueError:
             values = []
-        if (
-            len(values) != len(header)
-            or not all(value > 0.0 for value in values[:2])
-            or min(values[2:], default=0.0) < 0.0
-        ):
+        if len(values) != len(header) or not all(x > 0.0 for x in values[:2]) or min(values[2:]) < 0.0:
             expected = f"{len(header)} numbers: speed and order above 0, amplitudes from 0"
             problems.append(Problem(f"{file.name}:{number}", repr(delimiter.join(cells)[:60]), expected))
-        table.append(values)
+        read.append(values)
     if problems:
         raise ModelError(problems, str(file))
-    rows_by_number = np.array(table)
+    table = np.array(read)
     found = []
-    for ratio in np.unique(rows_by_number[:, 1]):
-        part = rows_by_number[rows_by_number[:, 1] == ratio]
+    for ratio in np.unique(table[:, 1]):
+        part = table[table[:, 1] == ratio]
         part = part[np.argsort(part[:, 0], kind="stable")]
-        for k, name in enumerate(header[2:], start=2):
-            known = np.isfinite(part[:, k])
+        for name, amplitude in zip(header[2:], part.T[2:], strict=True):
+            known = np.isfinite(amplitude)
             if known.any():
-                found.append(OrderCut(name, float(ratio), part[known, 0], part[known, k]))
+                found.append(OrderCut(name, float(ratio), part[known, 0], amplitude[known]))
     return tuple(found)
 
 
@@ -297,25 +275,27 @@ def compare_spectrum(
         One row a rig line.
     """
     excitations = excitation_lines(result.model, float(result.speed[-1]))
-    near = []
-    sources = []
-    reasons = []
-    for line in rig:
+    near = np.full((2, len(rig)), np.nan)
+    sources = [""] * len(rig)
+    reasons = [""] * len(rig)
+    for k, line in enumerate(rig):
         error = np.abs(lines.frequency_hz / line.frequency_hz - 1.0)
         best = int(np.argmin(error)) if error.size else -1
-        found = best >= 0 and error[best] <= tolerance
-        near.append((lines.frequency_hz[best], lines.amplitude[best]) if found else (np.nan, np.nan))
-        sources.append(lines.source[best] if found else "")
+        if best >= 0 and error[best] <= tolerance:
+            near[:, k] = (lines.frequency_hz[best], lines.amplitude[best])
+            sources[k] = lines.source[best]
+            continue
         # Whether anything in the model shakes at the frequency.
-        reason = "nothing turns"
+        reasons[k] = "nothing turns"
         if excitations:
             orders = [(abs(e.frequency_hz / line.frequency_hz - 1.0), e.name, e.frequency_hz) for e in excitations]
             off, name, f = min(orders)
-            reason = f"no shaft or mesh order: the nearest is {name} at {f:.2f} Hz; a forced response has no line here"
+            reasons[k] = (
+                f"no shaft or mesh order: the nearest is {name} at {f:.2f} Hz; a forced response has no line here"
+            )
             if off <= tolerance:
-                reason = f"{name} at {f:.2f} Hz is there, but too weak at this place, or not excited by the model"
-        reasons.append("" if found else reason)
-    hz, amplitude = np.array(near).T if near else np.zeros((2, 0))
+                reasons[k] = f"{name} at {f:.2f} Hz is there, but too weak at this place, or not excited by the model"
+    hz, amplitude = near
     return RigSpectrum(
         lines.name,
         lines.unit,

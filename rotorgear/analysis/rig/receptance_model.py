@@ -84,8 +84,9 @@ class ReceptanceModel:
             )
         w = 2.0 * np.pi * self.frequency_hz[:, None, None]
         Z = K + 1j * w * D - w**2 * M
-        inputs = np.broadcast_to((V.T @ P_i).astype(complex), (len(w), V.shape[1], len(self.inputs)))
-        outputs = np.broadcast_to((V.T @ P_o).astype(complex), (len(w), V.shape[1], len(self.outputs)))
+        inputs, outputs = (
+            np.broadcast_to((V.T @ P).astype(complex), (len(w), V.shape[1], P.shape[1])) for P in (P_i, P_o)
+        )
         q_in = np.linalg.solve(Z, inputs)
         q_out = np.linalg.solve(np.transpose(Z, (0, 2, 1)), outputs)
         H = np.asarray(np.transpose(outputs, (0, 2, 1)) @ q_in)
@@ -108,8 +109,7 @@ class ReceptanceModel:
                     assemble(springs[address], here.system.dofs, lambda group: group.matrices.stiffness) @ V
                 )
                 K, M = self._stiffness_and_mass(here.system, V)
-                zeta = self._zeta(x)
-                stiffer, softer = (self._modal_damping(here.system, K + h * spring, M, zeta) for h in (STEP, -STEP))
+                stiffer, softer = (self._modal_damping(here.system, K + h * spring, M, x) for h in (STEP, -STEP))
                 # Damping in proportion to the stiffness has its part in the spring.
                 change = np.array([spring, (stiffer - softer) / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
             else:
@@ -130,7 +130,7 @@ class ReceptanceModel:
         speed = self.model.speed
         P_i = self._ports(system, self.inputs)
         P_o = self._ports(system, self.outputs)
-        damped = self._modal_damping(system, *self._stiffness_and_mass(system, here.V), self._zeta(x))
+        damped = self._modal_damping(system, *self._stiffness_and_mass(system, here.V), x)
         # V has modal mass: what damps its modes damps them in the whole system.
         B = system.mass @ here.V
         peaks = np.unique(np.abs(here.H).argmax(axis=0))
@@ -174,7 +174,7 @@ class ReceptanceModel:
         carriers = modes.carriers
         V = with_shapes(M, nothing, np.hstack([carriers.real, carriers.imag]) if speed else np.real(carriers), _SAME)
         forces = ports.astype(complex)
-        for s in (share * top for share in _SHIFTS):
+        for s in top * np.array(_SHIFTS):
             solver = splu(sp.csc_array(K + s * D + s**2 * M))
             answers = [solver.solve(forces), solver.solve(forces, trans="T")] if speed else [solver.solve(forces)]
             more = np.hstack([part(answer) for answer in answers for part in (np.real, np.imag) if part(answer).any()])
@@ -184,7 +184,7 @@ class ReceptanceModel:
     def _reduced(self, system: System, V: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
         """K, C + W G and M over V, (3, r, r)."""
         K, M = self._stiffness_and_mass(system, V)
-        D = V.T @ (_damping(system, self.model.speed) @ V) + self._modal_damping(system, K, M, self._zeta(x))
+        D = V.T @ (_damping(system, self.model.speed) @ V) + self._modal_damping(system, K, M, x)
         circulatory = V.T @ (system.circulatory(self.model.speed) @ V)
         return np.array([K + circulatory, D, M])
 
@@ -197,14 +197,11 @@ class ReceptanceModel:
         K = V.T @ (system.stiffness(self.model.speed) @ V) if strains is None else strains.T @ strains
         return np.asarray(K), np.asarray(V.T @ (system.mass @ V))
 
-    def _zeta(self, x: NDArray[np.float64]) -> float:
-        """Damping ratio of all elastic modes: that of the model may be free."""
-        return self.modal_damping + self.model.numbers.at(x).damping.modal_ratio
-
     def _modal_damping(
-        self, system: System, K: NDArray[np.float64], M: NDArray[np.float64], zeta: float
+        self, system: System, K: NDArray[np.float64], M: NDArray[np.float64], x: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Sum of 2 zeta w M phi phi^T M over the undamped modes, (r, r), as in `frf`."""
+        """Sum of 2 zeta w M phi phi^T M over the undamped modes, (r, r), as in `frf`; the ratio of the model may be free."""
+        zeta = self.modal_damping + self.model.numbers.at(x).damping.modal_ratio
         if not zeta:
             return np.zeros_like(K)
         values, phi = la.eigh(0.5 * (K + K.T), 0.5 * (M + M.T))

@@ -22,6 +22,7 @@ from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.note import Note
 from rotorgear.uff.datasets import AXES, Nodes, UniversalFile
 
 _COLUMNS = ("point", "node", "direction")
@@ -93,28 +94,25 @@ def read_sensor_table(file: Path) -> list[Sensor]:
     if not rows:
         raise ModelError([Problem(str(file), "", "a header row point,node,direction and a row for each sensor")])
     header = [cell.lower() for cell in rows[0][1]]
-    missing = [name for name in _COLUMNS if name not in header]
-    if missing:
-        raise ModelError(
-            [Problem(f"{file.name}:{rows[0][0]}", ", ".join(header), f"the columns {', '.join(_COLUMNS)}")], str(file)
-        )
+    if not set(_COLUMNS) <= set(header):
+        problem = Problem(f"{file.name}:{rows[0][0]}", ", ".join(header), f"the columns {', '.join(_COLUMNS)}")
+        raise ModelError([problem], str(file))
     found: dict[str, Sensor] = {}
     problems = []
     for number, cells in rows[1:]:
-        given = dict(zip(header, cells, strict=False))
+        given = dict.fromkeys(_COLUMNS, "") | dict(zip(header, cells, strict=False))
         address = f"{file.name}:{number}"
-        point = given.get("point", "")
-        direction = given.get("direction", "").lower()
-        if not given.get("node", "").isdecimal():
-            problems.append(Problem(f"{address}:node", repr(given.get("node", "")), "the number of a node"))
+        point = given["point"]
+        direction = given["direction"].lower()
+        if not given["node"].isdecimal():
+            problems.append(Problem(f"{address}:node", repr(given["node"]), "the number of a node"))
             continue
         if direction.lstrip("+-") not in AXES:
             expected = f"one of {', '.join(AXES)}, with a minus sign where the sensor looks the other way"
-            problems.append(Problem(f"{address}:direction", repr(given.get("direction", "")), expected))
+            problems.append(Problem(f"{address}:direction", repr(given["direction"]), expected))
             continue
         axis = AXES.index(direction.lstrip("+-"))
-        sign = -1.0 if direction.startswith("-") else 1.0
-        sensor = Sensor(place_text(point, axis), int(given["node"]), axis, sign)
+        sensor = Sensor(place_text(point, axis), int(given["node"]), axis, -1.0 if direction.startswith("-") else 1.0)
         key = sensor.place or f"{sensor.node}:{axis}"
         if key in found:
             problems.append(Problem(f"{address}:point", repr(point), "every point once"))
@@ -152,49 +150,39 @@ def _placed(
         raise ModelError([Problem(f"node {_some(without)}", "", expected)], name)
     places, positions = places_of(model)
     size = float(np.max(np.ptp(positions, axis=0)))
-    nearest: dict[int, tuple[str, float]] = {}
-    for node in unknown:
-        distance = np.linalg.norm(positions - at[node], axis=1)
-        k = int(np.argmin(distance))
-        nearest[node] = (places[k], float(distance[k]))
-    farthest = max(nearest, key=lambda node: nearest[node][1])
-    if nearest[farthest][1] > _FAR * size:
+    # Distance to the nearest place, and that place, of each node.
+    distances = {node: np.linalg.norm(positions - at[node], axis=1) for node in unknown}
+    nearest = {node: (float(away.min()), places[int(away.argmin())]) for node, away in distances.items()}
+    farthest = max(nearest, key=lambda node: nearest[node][0])
+    most, place = nearest[farthest]
+    if most > _FAR * size:
         raise AnalysisError(
-            f"{name}: node {farthest} lies {nearest[farthest][1]:.4g} m from the nearest place of a model that is {size:.4g} m "
-            "long: correct its units (dataset 164), or name the places of the nodes in a table (--points)"
+            f"{name}: node {farthest} lies {most:.4g} m from the nearest place of a model that is {size:.4g} m long: correct its "
+            "units (dataset 164), or name the places of the nodes in a table (--points)"
         )
-    notes = []
-    away = [node for node in unknown if nearest[node][1] > _NEAR * size]
-    if away:
-        notes.append(
-            f"{len(away)} of {len(unknown)} nodes lie more than {1e3 * _NEAR * size:.3g} mm from a place of the model, node "
-            f"{farthest} the farthest: {1e3 * nearest[farthest][1]:.3g} mm from {nearest[farthest][0]}"
-        )
+    notes: list[str] = []
+    if away := sum(distance > _NEAR * size for distance, _ in nearest.values()):
+        what = f"{away} of {len(unknown)} nodes lie more than {1e3 * _NEAR * size:.3g} mm from a place of the model"
+        notes.append(Note("", f"{what}, node {farthest} the farthest", f"{1e3 * most:.3g} mm from {place}"))
     found: dict[str, Sensor] = {}
     for sensor in sensors:
         if not sensor.place:
-            place, distance = nearest[sensor.node]
+            distance, place = nearest[sensor.node]
             if place.startswith("casings.") and sensor.direction > 2:
                 continue  # surfaces of casings only displace
             sensor = replace(sensor, place=f"{place}:{DOF_NAMES[sensor.direction]}", distance=distance)
         other = found.get(sensor.place)
         if other is None or (other.distance or 0.0) > (sensor.distance or 0.0):
             found[sensor.place] = sensor
-    if len(found) < len(sensors):
-        notes.append(
-            f"{len(sensors) - len(found)} sensors share the place of another one that is nearer, and are left out"
-        )
+    if fewer := len(sensors) - len(found):
+        notes.append(Note("", f"{fewer} sensors share the place of another one that is nearer, and are left out"))
     return list(found.values()), notes
 
 
 def places_of(model: Model) -> tuple[list[str], NDArray[np.float64]]:
     """All places of parts on shafts and of the surfaces of casings, without direction, and their coordinates in m (n, 3)."""
-    names = []
-    positions = []
-    for table in ON_SHAFTS:
-        for part in getattr(model, table):
-            names.append(f"{table}.{part}")
-            positions.append(coordinates(model, f"{table}.{part}:x")[0])
+    names = [f"{table}.{part}" for table in ON_SHAFTS for part in getattr(model, table)]
+    positions = [coordinates(model, f"{name}:x")[0] for name in names]
     for casing in model.casings:
         surface = model.layout.casing(casing).surface
         if surface is not None:
@@ -211,6 +199,5 @@ def casing_text(casing: str, point: Iterable[float]) -> str:
 
 
 def _some(numbers: list[int]) -> str:
-    return ", ".join(str(number) for number in numbers[:5]) + (
-        f" and {len(numbers) - 5} more" if len(numbers) > 5 else ""
-    )
+    more = f" and {len(numbers) - 5} more" if len(numbers) > 5 else ""
+    return ", ".join(map(str, numbers[:5])) + more

@@ -26,11 +26,11 @@ from rotorgear.analysis.rig.sensor_table import places_of
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
 from rotorgear.results.sensors import PlannedSensor, SensorPlan
 from rotorgear.system.plan import Plan
 
-_AXES = ("x", "y", "z")
 # So many candidates, and rows go one by one.
 _ONE_BY_ONE = 200
 # A mode that moves by less than this share of the others along all candidates is not seen there.
@@ -67,11 +67,10 @@ def sensors(
         AnalysisError: no such places, fewer candidates than sensors, no elastic modes.
     """
     check_whole("the number of sensors (count)", count, 2)
-    wrong = set(directions) - set(_AXES)
-    if wrong or not directions:
+    if not directions or set(directions) - set("xyz"):
         raise AnalysisError(f"directions: got '{directions}', expected letters among x, y and z")
     names, positions = places_of(model)
-    patterns = [part.strip() for part in candidates.split(",") if part.strip()]
+    patterns = [part.strip() for part in candidates.split(",")]
     kept = [k for k, name in enumerate(names) if any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)]
     if not kept:
         raise AnalysisError(f"candidates: '{candidates}' names no place of the model, such as {', '.join(names[:3])}")
@@ -79,14 +78,15 @@ def sensors(
     looks = [f"{names[k]}:{axis}" for k in kept for axis in directions]
     if modes is not None:
         check_whole("the number of modes", modes, 2)
-    most = None if fmax is not None else modes or count
+    most = None
     if fmax is None:
         # A first look at the modes says up to which frequency they reach.
-        first = solve(linear_system(model, [None], Plan(elements or 2)), Wanted(None, (modes or count) + 12, None))
+        most = modes or count
+        first = solve(linear_system(model, [None], Plan(elements or 2)), Wanted(None, most + 12, None))
         elastic = np.sort(np.abs(first.eigenvalues[~first.rigid]))
         if not elastic.size:
             raise AnalysisError("the model has no elastic modes to tell apart")
-        fmax = ABOVE_RIG * float(elastic[min(modes or count, len(elastic)) - 1]) / (2.0 * np.pi)
+        fmax = ABOVE_RIG * float(elastic[min(most, len(elastic)) - 1]) / (2.0 * np.pi)
     system = linear_system(model, [None], Plan(elements) if elements else plan_of(model, fmax, accuracy))
     solved = solve(system, Wanted(None, None, 2.0 * np.pi * fmax))
     elastic = np.flatnonzero(~solved.rigid & (np.abs(solved.eigenvalues) > 0.0))[:most]
@@ -100,7 +100,7 @@ def sensors(
     if not seen.any():
         raise AnalysisError(f"no mode up to {hz[-1]:.5g} Hz moves a candidate along {', '.join(directions)}")
     # What rounding leaves of a mode that moves along none of the directions is no shape.
-    unseen = ", ".join(str(number) for number in numbers[~seen])
+    blind = f"modes {', '.join(map(str, numbers[~seen]))} move along none of these directions"
     hz = hz[seen]
     numbers = numbers[seen]
     shapes = shapes[:, seen]
@@ -128,8 +128,8 @@ def sensors(
         candidates=len(moving),
         all_auto_mac=float(np.max(np.triu(everywhere, 1), initial=0.0)),
         dofs=system.n,
-        warnings=(f"modes {unseen} move along none of these directions: no sensor there sees them",) if unseen else (),
-        left_out=("damping and rotation: shapes are those at standstill", "mass of the sensors"),
+        warnings=(Note("", blind, "no sensor there sees them"),) if not seen.all() else (),
+        left_out=(Note("", "damping and rotation", "shapes are those at standstill"), "mass of the sensors"),
         method="effective independence, then AutoMAC",
     )
 

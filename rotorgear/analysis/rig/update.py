@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, share_of, speed_in_si
-from rotorgear.analysis.rig.campaigns import Campaign, joined, read_campaigns
 from rotorgear.analysis.rig.compare import ABOVE_RIG
 from rotorgear.analysis.rig.frf_misfit import FrfMisfit
 from rotorgear.analysis.rig.likeness import frac, mac
-from rotorgear.analysis.rig.measured import Measured, MeasuredFrf
+from rotorgear.analysis.rig.measured import Campaign, Measured, MeasuredFrf, joined, read_campaigns
 from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, approach, first_fit, most_probable
 from rotorgear.analysis.rig.posterior import LINE_NOISE, Posterior, line_noise
 from rotorgear.analysis.rig.receptance_model import CARRIED

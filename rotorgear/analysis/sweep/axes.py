@@ -58,17 +58,6 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     return Axis(address, tuple(numbers), unit)
 
 
-def axis_of_option(text: str) -> Axis:
-    """Return an axis from an option's text, "ADDRESS=VALUES"."""
-    address, sign, values = text.partition("=")
-    if not sign or not address.strip() or not values.strip():
-        raise AnalysisError(
-            f"over: got '{text}', expected ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,... such as "
-            "'operation.speed=3000 rpm:6000 rpm:31'"
-        )
-    return axis_of(address.strip(), values.strip())
-
-
 def number_in(axis: Axis, value: float | str, what: str) -> float:
     """A number, or a text with one and at most the unit of an axis; AnalysisError about `what` for anything else."""
     match = _NUMBER.match(str(value))

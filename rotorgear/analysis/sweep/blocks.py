@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import os
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import islice
 from threading import Event
 from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.common.pool import Pool
+from rotorgear.analysis.common.pool import Pool, in_order
 from rotorgear.analysis.sweep.certify import Judge, bounded, judged, motion_statistics, sizes_of, to_certify
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
@@ -24,8 +20,6 @@ from rotorgear.solvers.time.statistics import compared, gain
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
-# Seconds between two words on the progress of blocks that take long.
-_EVERY = 1.0
 # What a stream keeps of an orbit beside its end.
 _OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier", "repeats", "error")
 # Least steps of the run that tells the error of exponents by half as many.
@@ -195,51 +189,30 @@ def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Ca
     return run_block([p.system for p in points], starts, wide, plan, go_on or (lambda: True))
 
 
-class Workers:
-    """Runs the blocks of a wave on all cores, or by an executor of the caller's; results come in the order of the blocks."""
+def run_blocks(
+    tasks: Sequence[tuple[list[Point], list[Start], Plan, Judge]],
+    workers: int | None,
+    executor: Pool | None,
+    heard: Callable[[float], None] = lambda share: None,
+) -> Generator[list[Orbit]]:
+    """Yield the orbits of the blocks of a wave, in their order, from all cores or from an executor of the caller's.
 
-    def __init__(self, workers: int | None, executor: Pool | None) -> None:
-        self._stop = Event()
-        self._asked = 0
-        self._own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
-        self._executor: Any = executor or self._own
-        self._waiting: deque[Any] = deque()
+    `heard` is told about which share of all is done, every second of work on cores here.
+    """
+    stop = Event()
+    asked = 0
+    total = 0 if executor else sum(plan.questions(own[0].system.turns) for own, _, plan, _ in tasks)
 
-    def __enter__(self) -> Workers:
-        return self
+    def go_on() -> bool:
+        nonlocal asked
+        asked += 1
+        return not stop.is_set()
 
-    def __exit__(self, *_: object) -> None:
-        self._stop.set()
-        for future in self._waiting:
-            future.cancel()
-        if self._own:
-            self._own.shutdown(wait=True, cancel_futures=True)
+    def watch() -> None:
+        heard(min(1.0, asked / total))
 
-    def go_on(self) -> bool:
-        """Whether the run goes on; counts how often it was asked."""
-        self._asked += 1
-        return not self._stop.is_set()
-
-    def run(
-        self,
-        tasks: Sequence[tuple[list[Point], list[Start], Plan, Judge]],
-        heard: Callable[[float], None] = lambda share: None,
-    ) -> Iterator[list[Orbit]]:
-        """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
-        work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
-        self._asked = 0
-        total = sum(plan.questions(own[0].system.turns) for own, _, plan, _ in tasks) if self._own else 0
-        rest = iter(tasks)
-        waiting = self._waiting
-        while True:
-            room = getattr(self._executor, "ahead", len(tasks)) - len(waiting)
-            waiting.extend(self._executor.submit(work, *task) for task in islice(rest, max(0, room)))
-            if not waiting:
-                return
-            while self._own and wait([waiting[0]], timeout=_EVERY).not_done:
-                heard(min(1.0, self._asked / total))
-            yield waiting[0].result()
-            waiting.popleft()
+    work = run_jobs if executor else partial(run_jobs, go_on=go_on)
+    yield from in_order(work, tasks, workers, executor, watch=watch, stop=stop.set)
 
 
 def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:

@@ -172,9 +172,12 @@ class Block:
             except CancelledError:
                 raise self._owner.lost() from None
             except KilledWorker:
+                from dask import config
+
+                deaths = int(config.get("distributed.scheduler.allowed-failures", 3)) + 1
                 raise AnalysisError(
-                    f"a block of points ended {self._deaths()} workers at {self._owner.address}, one after the other: their "
-                    "logs say why (too little memory?)"
+                    f"a block of points ended {deaths} workers at {self._owner.address}, one after the other: their logs say "
+                    "why (too little memory?)"
                 ) from None
             except Exception as error:
                 if not isinstance(error, TimeoutError) or self._future.done():
@@ -184,11 +187,6 @@ class Block:
                 missed = 0 if self._owner.threads else missed + 1
                 if missed >= _PATIENCE:
                     raise AnalysisError(f"no worker is left at {self._owner.address}: start some, and go on") from None
-
-    def _deaths(self) -> int:
-        from dask import config
-
-        return int(config.get("distributed.scheduler.allowed-failures", 3)) + 1
 
 
 def _on_worker(caller: dict[str, str], function: Callable[..., Any], *arguments: Any) -> Any:
@@ -204,11 +202,9 @@ def _on_worker(caller: dict[str, str], function: Callable[..., Any], *arguments:
 
 def difference(here: dict[str, str], there: dict[str, str]) -> str:
     """The first thing that a worker runs another version of, in words; "" where there is none."""
-    for name, version in here.items():
-        other = there.get(name, "none")
-        if other != version:
-            return f"runs {name} {other}, and this computer {version}"
-    return ""
+    others = ((name, there.get(name, "none"), version) for name, version in here.items())
+    told = (f"runs {name} {other}, and this computer {version}" for name, other, version in others if other != version)
+    return next(told, "")
 
 
 @cache

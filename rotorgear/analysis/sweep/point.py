@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.static.about_equilibrium import state_in_time
-from rotorgear.analysis.static.mean_state import mean_torsion_notes, springs_about_mean
+from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large
-from rotorgear.analysis.transient.notes import transient_left_out
+from rotorgear.analysis.transient.notes import left_out_in_time
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.batch.columns import OWN_LAW, TABLE_ROWS, Columns
@@ -232,8 +231,7 @@ class PointMaker:
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
         watched = np.hstack([built.local.watched_vectors, approach])
         built = replace(built, local=replace(built.local, watched=watched))
-        notes = (*left_out(system, "time", speed), *transient_left_out(built), *mean_torsion_notes(system, speed))
-        self.left_out.append(notes)
+        self.left_out.append(left_out_in_time(built, speed))
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")

@@ -5,8 +5,10 @@ Which points of a sweep get a portrait, how long it is, and the runs that go on 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from math import lcm
 
 import numpy as np
@@ -14,7 +16,7 @@ import numpy as np
 from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.sweep.axes import Axis, along, axis_of, number_in, points_of
-from rotorgear.analysis.sweep.blocks import Workers, blocks, packed, unpacked, waves
+from rotorgear.analysis.sweep.blocks import blocks, packed, run_blocks, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
 from rotorgear.analysis.sweep.gather import gathered
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
@@ -129,7 +131,16 @@ def sweep(
         settings = {"models": "".join(models), "run": f"{request} {[axis.address for axis in axes]} {chosen.tolist()}"}
         kept = stream.begin(settings) if stream else []
         shape = [len(axis.values) for axis in axes]
-        orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
+        orbits = _run(
+            points,
+            chosen,
+            shape,
+            request,
+            partial(run_blocks, workers=workers, executor=executor),
+            stream,
+            kept,
+            progress,
+        )
     clock.lap("integration")
     result = gathered(model, axes, points, failure, chosen, request, orbits, reduction, left_out)
     if wanted:
@@ -187,7 +198,7 @@ def _run(
     steps: np.ndarray,
     shape: Sequence[int],
     request: Request,
-    pool: Workers,
+    run: Callable[..., Generator[list[Orbit]]],
     stream: Stream | None,
     kept: list[dict[str, np.ndarray]],
     progress: Progress,
@@ -197,40 +208,40 @@ def _run(
     plans = waves(shape, request.directions, request.initial_conditions)
     total = sum(len(jobs) for jobs in plans)
     done = 0
-    with pool:
-        for jobs in plans:
-            grouped = list(blocks(jobs, points, steps))
-            old = kept[: len(grouped)]
-            kept = kept[len(grouped) :]
-            for block, chunk in zip(grouped, old, strict=False):
-                orbit_of.update(zip([job.key for job in block], unpacked(chunk), strict=True))
-                done += len(block)
-            rest = grouped[len(old) :]
-            tasks = []
-            for block in rest:
-                own = [p for p in (points[job.point] for job in block) if p is not None]
-                states = []
-                for job, p in zip(block, own, strict=True):
-                    # A run starts at the end of the one before it, unless that failed.
-                    before = orbit_of.get((job.after, job.run)) if job.after is not None else None
-                    last = points[job.after] if job.after is not None else None
-                    if before is not None and last is not None and before.finite and last.system.size == p.system.size:
-                        states.append(before.end.moved(last.system, p.system))
-                    else:
-                        number = job.run % request.initial_conditions
-                        states.append(start_of(p.system, number, request.seed, request.throw))
-                # A system has no more exponents than states beside its rigid-body motions.
-                most = 2 * (own[0].system.n - len(own[0].system.rigid))
-                plan = Plan(int(steps[block[0].point]), request.discard, request.sample, min(request.exponents, most))
-                tasks.append(([p.bare for p in own], states, plan, request.judge))
-            begun = done
-            runs = sum(map(len, rest))
+    for jobs in plans:
+        grouped = list(blocks(jobs, points, steps))
+        old = kept[: len(grouped)]
+        kept = kept[len(grouped) :]
+        for block, chunk in zip(grouped, old, strict=False):
+            orbit_of.update(zip([job.key for job in block], unpacked(chunk), strict=True))
+            done += len(block)
+        rest = grouped[len(old) :]
+        tasks = []
+        for block in rest:
+            own = [p for p in (points[job.point] for job in block) if p is not None]
+            states = []
+            for job, p in zip(block, own, strict=True):
+                # A run starts at the end of the one before it, unless that failed.
+                before = orbit_of.get((job.after, job.run)) if job.after is not None else None
+                last = points[job.after] if job.after is not None else None
+                if before is not None and last is not None and before.finite and last.system.size == p.system.size:
+                    states.append(before.end.moved(last.system, p.system))
+                else:
+                    number = job.run % request.initial_conditions
+                    states.append(start_of(p.system, number, request.seed, request.throw))
+            # A system has no more exponents than states beside its rigid-body motions.
+            most = 2 * (own[0].system.n - len(own[0].system.rigid))
+            plan = Plan(int(steps[block[0].point]), request.discard, request.sample, min(request.exponents, most))
+            tasks.append(([p.bare for p in own], states, plan, request.judge))
+        begun = done
+        runs = sum(map(len, rest))
 
-            def heard(share: float, begun: int = begun, runs: int = runs) -> None:
-                part = (begun + share * runs) / total
-                progress(_READY + (1.0 - _READY) * part, f"about {100.0 * part:.0f} %")
+        def heard(share: float, begun: int = begun, runs: int = runs) -> None:
+            part = (begun + share * runs) / total
+            progress(_READY + (1.0 - _READY) * part, f"about {100.0 * part:.0f} %")
 
-            for block, orbits in zip(rest, pool.run(tasks, heard), strict=True):
+        with closing(run(tasks, heard=heard)) as found:
+            for block, orbits in zip(rest, found, strict=True):
                 orbit_of.update(zip([job.key for job in block], orbits, strict=True))
                 if stream:
                     stream.write(packed(orbits))

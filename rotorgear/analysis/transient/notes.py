@@ -7,7 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
+from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
+from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.request import Task
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
@@ -26,6 +28,12 @@ _UNSETTLED = 0.1
 _DRIFT = 0.01
 
 
+def left_out_in_time(local: LocalModel, speed: float) -> tuple[Note, ...]:
+    """What a motion over time at a speed of the reference in rad/s leaves out of its model."""
+    system = local.system
+    return (*left_out(system, "time", speed), *transient_left_out(local), *mean_torsion_notes(system, speed))
+
+
 def transient_left_out(local: LocalModel) -> tuple[Note, ...]:
     """What motions over time do not take of the teeth: by the laws of the meshes, and by what the file does not give."""
     system = local.system
@@ -41,7 +49,9 @@ def transient_left_out(local: LocalModel) -> tuple[Note, ...]:
             notes.append(Note(address, what, f"no backlash is given, so {then}"))
         if mesh.rubs:
             notes.append(Note(address, "what friction takes of the torques", "they balance as without it"))
-        if _excites_nothing(local, name):
+        whole = system.layout.mesh(name).part
+        given = whole.transmission_error or whole.stiffness_variation or whole.corner_impact
+        if not given and all(part.law.steady for part in local.parts if part.is_mesh and part.part == address):
             notes.append(Note(address, "excitation", "neither transmission error nor stiffness variation is given"))
         curve = system.state.curves[name][0] if name in system.state.curves else None
         if curve and law.known_up_to == np.inf:
@@ -79,15 +89,6 @@ def _along_face(address: str, mesh: Mesh, *, follows: bool) -> Iterator[Note]:
         yield Note(address, "how the damping against a tilt changes with what carries", why)
     if mesh.backlash is not None:
         yield Note(address, "how the tilt of the coast flanks changes in time", askew)
-
-
-def _excites_nothing(local: LocalModel, name: str) -> bool:
-    """Whether nothing of a mesh varies: no error, no variation, and a stiffness that stays the same over its cycle."""
-    mesh = local.system.layout.mesh(name).part
-    if mesh.transmission_error or mesh.stiffness_variation or mesh.corner_impact:
-        return False
-    laws = [part.law for part in local.parts if part.is_mesh and part.part == f"meshes.{name}"]
-    return all(law.steady for law in laws)
 
 
 def adrift(task: Task) -> Iterator[Note]:

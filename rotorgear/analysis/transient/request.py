@@ -139,21 +139,21 @@ def grid_of(
 
 
 def integrator_of(
+    task: Task,
+    grid: Grid,
     method: str,
-    local: LocalSystem,
-    steps: int,
-    *,
-    modal_ratio: float = 0.0,
-    modes: int | None = None,
-    rho_inf: float | None = None,
-    beta: float | None = None,
-    gamma: float | None = None,
+    modes: int | None,
+    rho_inf: float | None,
+    beta: float | None,
+    gamma: float | None,
 ) -> tuple[Integrator, str]:
     """Return the integrator and why it was chosen.
 
     Raises:
         AnalysisError: unknown method, or one that this model can't take.
     """
+    local = task.local.local
+    modal_ratio = task.local.system.model.damping.modal_ratio
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
     if modes is not None:
@@ -161,7 +161,7 @@ def integrator_of(
         modes = None if modes >= local.n else modes
     reason = "as asked for"
     if method == "auto":
-        method, reason = _chosen(local, steps, modal_ratio, modes)
+        method, reason = _chosen(local, grid.records * grid.every, modal_ratio, modes)
         if method == "exponential" and not (modal_ratio or modes):
             candidate = Exponential()
             try:

@@ -20,13 +20,11 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
-from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.histories import Histories, Stream
-from rotorgear.analysis.transient.notes import adrift, intact, transient_left_out, transient_warnings
+from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, transient_warnings
 from rotorgear.analysis.transient.request import (
     Grid,
     Task,
@@ -121,16 +119,7 @@ def transient(
         speed = run_up(model, speed, speed_to, *duration)
     task = prepare(damped(model, modal_damping), speed, elements)
     grid, fastest = grid_of(task, duration[0], duration[1], steps, records)
-    integrator, reason = integrator_of(
-        method,
-        task.local.local,
-        grid.records * grid.every,
-        modal_ratio=task.local.system.model.damping.modal_ratio,
-        modes=modes,
-        rho_inf=rho_inf,
-        beta=beta,
-        gamma=gamma,
-    )
+    integrator, reason = integrator_of(task, grid, method, modes, rho_inf, beta, gamma)
     clock.lap("model")
     wanted = accuracy or DEFAULT_ACCURACY
     left = _SECOND_ORDER
@@ -236,11 +225,7 @@ def _result(
         motion_time=np.concatenate([np.zeros(0), *(t for t, _ in found.motion)]),
         motion=shapes,
         status=found.status,
-        left_out=(
-            *left_out(system, "time", task.largest),
-            *transient_left_out(task.local),
-            *mean_torsion_notes(system, task.largest),
-        ),
+        left_out=left_out_in_time(task.local, task.largest),
     )
     notes = [*transient_warnings(result, task, estimated=estimated, keeps_energy=integrator.keeps_energy)]
     if result.status == "success":
@@ -281,7 +266,7 @@ def off_statics(found: Histories, task: Task, error: np.ndarray) -> Iterator[Not
     force = Statistics.of_steps(found.state.gathered).chosen(slice(0, local.m))
     meshes = task.local.meshes
     known = np.all(np.isfinite(task.rest_force)) and task.rest.converged
-    steady = local.rotation.is_constant and not adrift(task)
+    steady = local.rotation.is_constant and not list(adrift(task))
     if not (np.all(np.isfinite(force.mean)) and meshes and known and steady):
         return
     # Motions without strain don't depend on inertia: what has none gets what makes it no slower than the others.

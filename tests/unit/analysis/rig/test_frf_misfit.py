@@ -114,8 +114,8 @@ def test_responses_beside_lines_at_a_speed_share_the_numbers_of_a_campaign(pair)
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"modal_damping": 1.5}, "modal_damping"),
-        ({"frf_noise": 0.0}, "noise of frequency responses"),
+        ({"modal_damping": 1.5}, "modal damping"),
+        ({"frf_noise": 0.0}, "frf_noise"),
         ({"frf": "dead"}, "is 0 or no number at 5 Hz and 79 more"),
         ({"frf": "nowhere"}, "is no place"),
         ({"campaigns": [rg.Campaign([10.0])]}, "campaigns have their own"),

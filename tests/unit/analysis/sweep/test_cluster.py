@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.analysis.sweep import cluster as clusters
-from rotorgear.analysis.sweep.blocks import Workers
+from rotorgear.analysis.sweep.blocks import run_blocks
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.version import VERSION
@@ -169,11 +170,10 @@ class Held:
 def test_no_more_blocks_lie_with_an_executor_than_it_says_and_the_rest_is_cancelled() -> None:
     hand = Hand()
     tasks: Any = [(k, k, k) for k in range(10)]
-    with Workers(None, hand) as pool:
-        assert list(pool.run(tasks)) == tasks
+    assert list(run_blocks(tasks, None, hand)) == tasks
     assert (hand.most, hand.lying, hand.cancelled) == (3, 0, 0)
-    with Workers(None, hand) as pool:
-        assert next(pool.run(tasks)) == tasks[0]
+    with closing(run_blocks(tasks, None, hand)) as found:
+        assert next(found) == tasks[0]
     assert hand.cancelled >= 2
 
 
