@@ -33,14 +33,14 @@ def key_of(name: str, preset: str) -> ComplianceKey:
 def measure(name: str, preset: str) -> None:
     """Print forecast and measurement of one gear."""
     key = key_of(name, preset)
-    expected = layers_of(key, pitch_of(key)[1]).forecast()
+    forecast_memory, forecast_seconds = layers_of(key, pitch_of(key)[1]).forecast()
     begun = time.perf_counter()
     gear_compliance(key, fresh=True)
     seconds = time.perf_counter() - begun
     memory = largest_memory() or float("nan")
     print(
-        f"{name:18} {preset:8} {key.size.face:6} {1e-9 * expected.memory:9.2f} {1e-9 * memory:9.2f} "
-        f"{expected.seconds:11.1f} {seconds:9.1f}",
+        f"{name:18} {preset:8} {key.size.face:6} {1e-9 * forecast_memory:9.2f} {1e-9 * memory:9.2f} "
+        f"{forecast_seconds:11.1f} {seconds:9.1f}",
         flush=True,
     )
 

@@ -23,7 +23,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.analysis.teeth.errors import ORDERS, error_parts
-from rotorgear.analysis.teeth.request import Cycle, MeshRequest, SolvedHelices, curves_at, mesh_request, solve_helices
+from rotorgear.analysis.teeth.request import MeshRequest, SolvedHelices, curves_at, mesh_request, solve_helices
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -198,13 +198,13 @@ def sampled_errors(pair: Pair, asked: tuple[int, ...] = ASKED) -> list[tuple[int
     teeth = request.teeth
     if in_space(teeth)[0]:
         teeth = replace(teeth, fe=sized(teeth.fe, COARSE, teeth.width / teeth.first.normal_module))
-    truth = solve_helices(request, teeth, request.base_force, Cycle(REFERENCE_POSITIONS))
+    truth = solve_helices(request, teeth, REFERENCE_POSITIONS)
     exact = _figures(truth)
     waves = truth.curve.harmonics(ORDERS)[:, 0]
     rows = []
     for count in asked:
         start = time.process_time()
-        found = solve_helices(request, teeth, request.base_force, Cycle(count), judged=True)
+        found = solve_helices(request, teeth, count, judged=True)
         seconds = time.process_time() - start
         parts = error_parts(request, teeth, found)
         assert parts is not None
@@ -230,9 +230,9 @@ def preset_errors(pair: Pair) -> list[tuple[str, np.ndarray, np.ndarray, float]]
 def reference(request: MeshRequest) -> np.ndarray:
     """The figures on thin layers, with what is left of the profile's error."""
     thin = _meshed(request, DEFAULT_PROFILE, THIN)
-    found = solve_helices(request, thin, request.base_force, Cycle(POSITIONS), judged=True)
+    found = solve_helices(request, thin, POSITIONS, judged=True)
     rough, fine = (
-        curves_at(request, _meshed(request, profile, THICK), request.base_force, found.position, 1)
+        curves_at(request, _meshed(request, profile, THICK), found.position, 1)
         for profile in (DEFAULT_PROFILE, FINE_PROFILE)
     )
     left = 1.0 / ((FINE_PROFILE.involute / DEFAULT_PROFILE.involute) ** PROFILE_ORDER - 1.0)
@@ -264,7 +264,7 @@ def _preset_errors(request: MeshRequest, exact: np.ndarray) -> list[tuple[str, n
 def _solved(request: MeshRequest, fe: ToothFe) -> tuple[ToothPair, SolvedHelices]:
     assert request.teeth is not None
     teeth = replace(request.teeth, fe=fe)
-    return teeth, solve_helices(request, teeth, request.base_force, Cycle(POSITIONS), judged=True)
+    return teeth, solve_helices(request, teeth, POSITIONS, judged=True)
 
 
 def wheel_errors(changes: dict[str, object]) -> list[tuple[str, np.ndarray, np.ndarray, float]]:
@@ -347,7 +347,7 @@ def separable(pair: Pair) -> list[tuple[float, np.ndarray, np.ndarray]]:
 def _even(pair: Pair, profile: MeshSize, layer: float) -> np.ndarray:
     """k, k pp and STE pp (3,) at 48 even positions."""
     request = pair.request()
-    values = curves_at(request, _meshed(request, profile, layer), request.base_force, np.arange(48) / 48, 1)
+    values = curves_at(request, _meshed(request, profile, layer), np.arange(48) / 48, 1)
     return np.array([values[:, 1].mean(), np.ptp(values[:, 1]), np.ptp(values[:, 0])])
 
 

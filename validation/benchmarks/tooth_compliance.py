@@ -46,7 +46,7 @@ def own_compliance(gear: GearGeometry, fe: ToothFe, largest_patch: float | None)
     found = gear_compliance(compliance_key(gear, fe, NU, 1.0, 0.0, space=False), fresh=True)
     seconds = time.process_time() - start
     least, most = (STRIP, STRIP) if largest_patch is None else (LEAST_PATCH, largest_patch)
-    loads = patch_loads(_slices(found), 0, found, 1.0, np.zeros((7, 1)), np.full(7, least), most)
+    loads = patch_loads(_slices(found), 0, found, 1.0, np.full(7, least), most)
     K = 2.0 * (1.0 - NU**2) / math.pi
     P = loads.loads
     own = np.einsum("pi,ij,pj->p", P, found.response(0), P) + K * (0.25 + loads.log_width - math.log(STRIP))

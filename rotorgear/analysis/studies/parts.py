@@ -21,7 +21,7 @@ from rotorgear.analysis.common.request import speed_or_operating
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.teeth.errors import error_parts
-from rotorgear.analysis.teeth.request import Cycle, mesh_request, solve_helices
+from rotorgear.analysis.teeth.request import mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, mesh_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
@@ -166,7 +166,7 @@ def mesh_convergence_study(
         if name.startswith("preset"):
             # What an analysis with this preset states of one helix; its compliances may come from the disk.
             one = replace(request, senses=(1,))
-            helices = solve_helices(one, pair, request.base_force, Cycle(POSITIONS), judged=True)
+            helices = solve_helices(one, pair, POSITIONS, judged=True)
             parts = error_parts(one, pair, helices)
             estimate = parts.total if parts else None
         rungs.append(

@@ -81,7 +81,7 @@ def error_parts(
     periods = round(found.curve.period)
 
     def curves(other: ToothPair, told: Progress) -> np.ndarray:
-        return curves_at(request, other, request.base_force, u, periods, told)
+        return curves_at(request, other, u, periods, told)
 
     fe = teeth.fe
     width = teeth.width / teeth.first.normal_module

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.recorded import Clock, recorded
-from rotorgear.analysis.teeth.request import Cycle, mesh_request, solve_helices
+from rotorgear.analysis.teeth.request import mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import root_section, tooth_outline
 from rotorgear.gears.loaded.contact_points import patch_loads
@@ -24,7 +24,7 @@ from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.sector import clockwise
-from rotorgear.gears.tooth_fe.tooth_solution import TeethSolution, solve_teeth, tooth_inside
+from rotorgear.gears.tooth_fe.tooth_solution import ToothInside
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
@@ -67,88 +67,90 @@ def root_stress(
     request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
     assert request.teeth is not None
     assert request.load is not None
+    flanks = (request.teeth.first_flank, request.teeth.second_flank)
     # All teeth are taken alike: an error of one tooth would show in the fillets of all of them.
-    single = request.teeth.first_flank.single_teeth or request.teeth.second_flank.single_teeth
-    alike = replace(
-        request.teeth,
-        first_flank=request.teeth.first_flank.of_most_teeth,
-        second_flank=request.teeth.second_flank.of_most_teeth,
-    )
-    teeth = alike if request.senses[0] > 0 else mirrored(alike)
-    if in_space(teeth)[1]:
-        raise AnalysisError(
-            "The preview of a pair that changes along the face has no roots to show: take --preset default."
-        )
+    alike = replace(request.teeth, first_flank=flanks[0].of_most_teeth, second_flank=flanks[1].of_most_teeth)
+    end = request.senses[0]
+    teeth = _with_inside(alike, end, "roots")
     # Positions as for the curves of this helix: where teeth come and go, and where stiffness and pressure need them.
     first = replace(request, senses=request.senses[:1])
-    found = solve_helices(first, alike, request.base_force, Cycle(positions), part_of(progress, 0.0, 0.2))
+    found = solve_helices(first, alike, positions, progress=part_of(progress, 0.0, 0.2))
     problem = found.problem
     cycle = found.cycles[0]
     clock.lap("teeth and contact")
-    names = tuple(gear.name for gear in request.mesh.gears)
-    # Seen from the other end of the face, z runs the other way.
-    end = request.senses[0]
-    gears = [
-        _root_stress_of(names[i], teeth, problem, cycle, i, end, part_of(progress, 0.2 + 0.4 * i, 0.6 + 0.4 * i))
-        for i in (0, 1)
-    ]
+    pinion, gear = (
+        _root_stress_of(gear.name, teeth, problem, cycle, i, end, part_of(progress, 0.2 + 0.4 * i, 0.6 + 0.4 * i))
+        for i, gear in enumerate(request.mesh.gears)
+    )
     clock.lap("inside of the teeth")
     progress(1.0, "done")
+    left_out = ["a strength rating: factors of load, size, surface and material"]
+    if any(flank.single_teeth for flank in flanks):
+        left_out.append("errors of single teeth: all teeth are taken alike")
+    if request.helices > 1:
+        left_out.append("the second helix")
     return RootStress(
         title=model.title,
         mesh=request.name,
         preset=teeth.fe.preset,
         pinion_torque_n_m=request.load.pinion_torque_n_m,
         positions=positions,
-        gears=(gears[0], gears[1]),
+        gears=(pinion, gear),
         seconds=clock.total(),
-        left_out=(
-            "a strength rating: factors of load, size, surface and material",
-            *(("errors of single teeth: all teeth are taken alike",) if single else ()),
-            *(("the second helix",) if request.helices > 1 else ()),
-        ),
+        left_out=tuple(left_out),
         warnings=tuple(dict.fromkeys(problem.warnings + cycle.warnings)),
     )
+
+
+def _with_inside(teeth: ToothPair, ahead: int, what: str) -> ToothPair:
+    """One helix along the path of contact; AnalysisError where its model has no inside, and so not what is asked for."""
+    teeth = teeth if ahead > 0 else mirrored(teeth)
+    if in_space(teeth)[1]:
+        raise AnalysisError(
+            f"The preview of a pair that changes along the face has no {what} to show: take --preset default."
+        )
+    return teeth
 
 
 def _root_stress_of(
     name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, gear: int, end: int, progress: Progress
 ) -> GearRootStress:
-    g = (teeth.first, teeth.second)[gear]
+    """Stress in the fillets of the pinion (0) or the gear (1); `end` is -1 where z runs from the other end of the face."""
     key = gear_key(teeth, gear, space=in_space(teeth)[0])
-    section = root_section(tooth_outline(g))
+    section = root_section(tooth_outline((teeth.first, teeth.second)[gear]))
     side = 1 if gear == 0 else -1
     loads_at = _tooth_loads(problem, cycle, gear)
+    module = problem.module
     # A plane model carries the force of a unit width; compliances are those of lengths in normal modules.
-    strength = 1.0 / ((problem.module if key.width else teeth.width) * problem.module)
+    strength = 1.0 / ((module if key.width else teeth.width) * module)
 
-    inside = tooth_inside(key, part_of(progress, 0.0, 0.3))
+    inside = ToothInside(key, part_of(progress, 0.0, 0.3))
+    pitch = inside.pitch
     progress = part_of(progress, 0.3, 1.0)
-
-    phase: list[float] = []
-    at_tangent: list[float] = []
-    largest: list[float] = []
-    places: list[tuple[float, float]] = []
+    # Fillet nodes plane by plane; their angles about the axis from the middle of the tooth are those of the middle plane.
+    fillet = pitch.fillet.reshape(len(pitch.turn), -1)
+    middle = pitch.points[fillet[len(fillet) // 2]]
+    angle = np.abs(np.arctan2(middle[:, 0], middle[:, 1]))
+    order = np.argsort(angle)
+    fillet = fillet[:, order]
+    rows = []
     for number, u in enumerate(cycle.position):
         progress(number / len(cycle.position), f"{name}, position {number + 1} of {len(cycle.position)}")
-        solution = solve_teeth(key, loads_at(number), inside=inside)
-        pitch = solution.pitch
-        # Fillet nodes plane by plane; their angles about the axis from the middle of the tooth are those of the middle plane.
-        fillet = pitch.fillet.reshape(len(pitch.turn), -1)
-        middle = pitch.points[fillet[len(fillet) // 2]]
-        order = np.argsort(np.abs(np.arctan2(middle[:, 0], middle[:, 1])))
-        fillet = fillet[:, order]
-        angle = np.abs(np.arctan2(middle[order, 0], middle[order, 1]))
-        for tooth, displacement in zip(solution.teeth, solution.displacement, strict=True):
+        for tooth, displacement in zip(*inside.solve(loads_at(number)), strict=True):
             stress = strength * pitch.stress(displacement)[1][fillet]
-            phase.append(float(u) + side * int(tooth))
-            at_tangent.append(max(float(np.interp(section.angle, angle, row)) for row in stress))
             plane, node = np.unravel_index(int(np.argmax(stress)), stress.shape)
-            point = pitch.points[fillet[plane, node]]
-            largest.append(float(stress[plane, node]))
-            z = float(point[2]) * problem.module if pitch.dimension == 3 else 0.0
-            # The gear's own face runs the other way than the pinion's.
-            places.append((2.0 * problem.module * float(np.hypot(point[0], point[1])), end * side * z))
+            x, y, *height = pitch.points[fillet[plane, node]]
+            rows.append(
+                (
+                    u + side * tooth,
+                    max(np.interp(section.angle, angle[order], row) for row in stress),
+                    stress[plane, node],
+                    2.0 * module * np.hypot(x, y),
+                    # The gear's own face runs the other way than the pinion's.
+                    end * side * (height[0] * module if height else 0.0),
+                )
+            )
+    phase, at_tangent, largest, diameter, z = np.array(rows).T
     # The whole load at the outer point of single contact: the pinion carries alone up to D, one pitch after the start, the gear
     # from B on, one pitch before the end. Helical teeth and high contact ratios have none.
     nominal = None
@@ -156,22 +158,22 @@ def _root_stress_of(
     if not line.base_helix_angle and 1.0 <= line.contact_ratio < 2.0:
         roll = line.start + line.base_pitch if gear == 0 else line.length - (line.end - line.base_pitch)
         nominal = section.nominal_stress(cycle.load / teeth.width, roll)
-    order = np.argsort(phase)
+    by_phase = np.argsort(phase)
     tangent = int(np.argmax(at_tangent))
     worst = int(np.argmax(largest))
     return GearRootStress(
         name=name,
-        phase=np.array(phase)[order],
-        at_tangent=np.array(at_tangent)[order],
-        largest=np.array(largest)[order],
+        phase=phase[by_phase],
+        at_tangent=at_tangent[by_phase],
+        largest=largest[by_phase],
         tangent_diameter=2.0 * section.radius,
         tangent_thickness=section.thickness,
-        worst_at_tangent=at_tangent[tangent],
-        worst_at_tangent_phase=phase[tangent],
-        worst=largest[worst],
-        worst_phase=phase[worst],
-        worst_diameter=places[worst][0],
-        worst_z=places[worst][1],
+        worst_at_tangent=float(at_tangent[tangent]),
+        worst_at_tangent_phase=float(phase[tangent]),
+        worst=float(largest[worst]),
+        worst_phase=float(phase[worst]),
+        worst_diameter=float(diameter[worst]),
+        worst_z=float(z[worst]),
         nominal=nominal,
     )
 
@@ -182,8 +184,7 @@ def _tooth_loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> Callab
     They are given for each tooth; teeth are counted clockwise in the gear's own frame.
     """
     slices = cycle.slices
-    place = problem.place(gear, slices.z)
-    spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, place, cycle.patch, problem.patch)
+    spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, cycle.patch, problem.patch)
     side = 1 if gear == 0 else -1
 
     def at(number: int) -> dict[int, np.ndarray]:
@@ -219,18 +220,14 @@ def tooth_fields(
     """
     request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
     assert request.teeth is not None
-    teeth = request.teeth if request.senses[0] > 0 else mirrored(request.teeth)
-    if in_space(teeth)[1]:
-        raise AnalysisError(
-            "The preview of a pair that changes along the face has no body to show: take --preset default."
-        )
+    teeth = _with_inside(request.teeth, request.senses[0], "body")
     if any(teeth.fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body)):
         teeth = replace(teeth, fe=replace(teeth.fe, space=True))  # a web carries a part of the face only
     problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
-    names = tuple(gear.name for gear in request.mesh.gears)
-    fields = [
-        _field(names[i], teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i)) for i in (0, 1)
-    ]
+    pinion, gear = (
+        _field(gear.name, teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i))
+        for i, gear in enumerate(request.mesh.gears)
+    )
     progress(1.0, "done")
     # The loaded slices as pieces of contact lines on the plane of action.
     line = problem.line
@@ -243,49 +240,61 @@ def tooth_fields(
     x = roll * c - line.base_radius[0] * s
     y = roll * s + line.base_radius[0] * c
     length = slices.length[loaded] / np.cos(line.base_helix_angle)
-    return ToothFields(
-        request.name,
-        at,
-        (fields[0], fields[1]),
-        ContactField(
-            np.stack([x, y, z], -1),
-            cycle.force[loaded] / length,
-            cycle.strip[loaded],
-            cycle.pressure[loaded],
-            slices.pair[loaded],
-        ),
+    contact = ContactField(
+        np.stack([x, y, z], -1),
+        cycle.force[loaded] / length,
+        cycle.strip[loaded],
+        cycle.pressure[loaded],
+        slices.pair[loaded],
     )
+    return ToothFields(request.name, at, (pinion, gear), contact)
 
 
 def _field(
     name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, at: float, gear: int, progress: Progress
 ) -> ToothField:
-    gear_body = (teeth.first_body, teeth.second_body)[gear]
+    """Displacements and stresses in the teeth of the pinion (0) or the gear (1), in the place where they mesh."""
     key = gear_key(teeth, gear, space=in_space(teeth)[0])
-    solution = solve_teeth(key, _tooth_loads(problem, cycle, gear)(0), progress)
+    inside = ToothInside(key, part_of(progress, 0.0, 0.4))
+    numbers, displacement = inside.solve(_tooth_loads(problem, cycle, gear)(0), part_of(progress, 0.4, 1.0))
+    pitch = inside.pitch
     module = problem.module
-    # A plane model carries the force of a unit width.
+    # A plane model carries the force of a unit width, and compliances are kept for a Young's modulus of 1.
     thickness = module if key.width else teeth.width
-    # Compliances are kept for a Young's modulus of 1.
-    stretch = 1.0 / (gear_body.youngs_modulus * thickness)
+    stretch = 1.0 / ((teeth.first_body, teeth.second_body)[gear].youngs_modulus * thickness)
     strength = 1.0 / (thickness * module)
-    stress = [solution.pitch.stress(u) for u in solution.displacement]
+    stress = [pitch.stress(u) for u in displacement]
     mises, largest = (strength * np.concatenate([part[i] for part in stress]) for i in (0, 1))
-    fillet = np.concatenate([part[1][solution.pitch.fillet] for part in stress])
-    points, moved = _placed(solution, problem, teeth, at, gear)
+    fillet = np.concatenate([part[1][pitch.fillet] for part in stress])
     # Nodes of the elements of one pitch in VTK's order.
-    places = np.array(solution.pitch.basis.elem.doflocs, float)
+    places = np.array(pitch.basis.elem.doflocs, float)
     wanted = _VTK_QUAD if places.shape[1] == 2 else _VTK_HEX
     if gear == 0 and key.width:  # the mirror image
         wanted = wanted * np.array([1, 1, -1]) + np.array([0, 0, 1])
     order = [int(np.argmin(np.abs(places - place).sum(axis=1))) for place in wanted]
-    cells = solution.pitch.cells.reshape(-1, len(places))[:, order]
-    n = len(solution.pitch.points)
+    cells = pitch.cells.reshape(-1, len(places))[:, order]
+
+    # Points in normal modules and displacements, in the place of the mesh.
+    line = problem.line
+    g = (teeth.first, teeth.second)[gear]
+    first = line.pitch_point + at * line.base_pitch
+    roll = first if gear == 0 else line.length - first
+    start = roll / g.base_radius - tooth_outline(g).base_half_angle - line.pressure_angle
+    turn = [clockwise(start + 2.0 * np.pi * tooth / g.teeth, pitch.dimension).T for tooth in numbers]
+    x = np.concatenate([pitch.points @ R for R in turn])
+    moved = np.concatenate([u @ R for u, R in zip(displacement, turn, strict=True)])
+    if gear == 1:  # the gear is the pinion's kind of body, seen through the middle of the face
+        x = -x
+        moved = -moved
+        x[:, 1] += line.centre_distance / module
+    if pitch.dimension == 2:
+        x, moved = (np.pad(values, ((0, 0), (0, 1))) for values in (x, moved))
+    n = len(pitch.points)
     return ToothField(
         name,
-        module * points,
-        np.concatenate([cells + i * n for i in range(len(solution.teeth))]),
-        np.repeat(solution.teeth, n),
+        module * x,
+        np.concatenate([cells + i * n for i in range(len(numbers))]),
+        np.repeat(numbers, n),
         stretch * moved,
         mises,
         largest,
@@ -293,37 +302,9 @@ def _field(
     )
 
 
-def _placed(
-    solution: TeethSolution, problem: ContactProblem, teeth: ToothPair, at: float, gear: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points in normal modules and displacements, both in space and in the place of the mesh."""
-    line = problem.line
-    g = (teeth.first, teeth.second)[gear]
-    outline = tooth_outline(g)
-    pitch = solution.pitch
-    first = line.pitch_point + at * line.base_pitch
-    roll = first if gear == 0 else line.length - first
-    start = roll / g.base_radius - outline.base_half_angle - line.pressure_angle
-    points = []
-    moved = []
-    for tooth, u in zip(solution.teeth, solution.displacement, strict=True):
-        R = clockwise(start + 2.0 * np.pi * tooth / g.teeth, pitch.dimension)
-        points.append(pitch.points @ R.T)
-        moved.append(u @ R.T)
-    x = np.concatenate(points)
-    u = np.concatenate(moved)
-    if gear == 1:  # the gear is the pinion's kind of body, seen through the middle of the face
-        x = -x
-        u = -u
-        x[:, 1] += line.centre_distance / problem.module
-    if pitch.dimension == 2:
-        x, u = (np.pad(values, ((0, 0), (0, 1))) for values in (x, u))
-    return x, u
-
-
 _VTK_QUAD = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])
-_FACE = [[0, 0], [1, 0], [1, 1], [0, 1]]
-_EDGE = [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]]
+_FACE = _VTK_QUAD[:4].tolist()
+_EDGE = _VTK_QUAD[4:8].tolist()
 _VTK_HEX = np.array(
     [[*p, 0] for p in _FACE]
     + [[*p, 1] for p in _FACE]

@@ -10,7 +10,7 @@ import numpy as np
 
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
-from rotorgear.analysis.teeth.request import Cycle, MeshRequest, SolvedHelices, mesh_request, solve_helices
+from rotorgear.analysis.teeth.request import MeshRequest, SolvedHelices, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
@@ -81,16 +81,15 @@ def mesh(
         periods = min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
     if not 1 <= periods <= _MOST_PERIODS:
         raise AnalysisError(f"--periods: got {periods}, expected 1 to {_MOST_PERIODS}")
-    cycle = Cycle(positions, periods)
     if accuracy is None:
         teeth = request.teeth
-        found, errors = _with_errors(request, teeth, cycle, estimate, progress)
+        found, errors = _with_errors(request, teeth, positions, periods, estimate, progress)
     else:
-        teeth, found, errors = _refined(request, cycle, accuracy, progress)
+        teeth, found, errors = _refined(request, positions, periods, accuracy, progress)
     clock.lap("teeth and contact")
     loads = []
     for factor in load_factors:
-        at = solve_helices(request, teeth, factor * request.base_force, cycle)
+        at = solve_helices(request, teeth, positions, periods, base_force=factor * request.base_force)
         loads.append(
             LoadPoint(
                 factor=factor,
@@ -116,37 +115,33 @@ def require_positions(positions: int) -> None:
 
 
 def _with_errors(
-    request: MeshRequest, teeth: ToothPair, cycle: Cycle, estimate: bool, progress: Progress
+    request: MeshRequest, teeth: ToothPair, positions: int, periods: int, estimate: bool, progress: Progress
 ) -> tuple[SolvedHelices, ErrorParts | None]:
-    share = 0.7 if estimate else 1.0
-    told = part_of(progress, 0.0, share)
-    found = solve_helices(request, teeth, request.base_force, cycle, told, judged=estimate)
-    if not estimate:
-        return found, None
-    return found, error_parts(request, teeth, found, part_of(progress, share, 1.0))
+    told = part_of(progress, 0.0, 0.7 if estimate else 1.0)
+    found = solve_helices(request, teeth, positions, periods, judged=estimate, progress=told)
+    return found, error_parts(request, teeth, found, part_of(progress, 0.7, 1.0)) if estimate else None
 
 
 def _refined(
-    request: MeshRequest, cycle: Cycle, accuracy: float, progress: Progress
+    request: MeshRequest, positions: int, periods: int, accuracy: float, progress: Progress
 ) -> tuple[ToothPair, SolvedHelices, ErrorParts]:
     """The cheapest preset whose estimates are within an accuracy."""
     assert request.teeth is not None
     said = []
     for preset in PRESETS:
-        fe = replace(request.teeth.fe, preset=preset, size=None)
-        teeth = replace(request.teeth, fe=fe)
+        teeth = replace(request.teeth, fe=replace(request.teeth.fe, preset=preset, size=None))
         if in_space(teeth)[1]:
             continue  # uncoupled slices can't know their error
-        found, errors = _with_errors(request, teeth, cycle, True, progress)
-        assert errors is not None
-        # Where the positions have most of the error, more of them are cheaper than a finer mesh.
-        denser = cycle
-        while errors.total.worst > accuracy and 2.0 * errors.sampling.worst > accuracy and denser.positions < _DENSEST:
-            denser = replace(denser, positions=2 * denser.positions)
-            found, errors = _with_errors(request, teeth, denser, True, progress)
+        count = positions
+        while True:
+            found, errors = _with_errors(request, teeth, count, periods, True, progress)
             assert errors is not None
-        if errors.total.worst <= accuracy:
-            return teeth, found, errors
+            if errors.total.worst <= accuracy:
+                return teeth, found, errors
+            # Where the positions have most of the error, more of them are cheaper than a finer mesh.
+            if 2.0 * errors.sampling.worst <= accuracy or count >= _DENSEST:
+                break
+            count *= 2
         said.append(f"{preset} {errors.total.worst:.1e}")
     raise AnalysisError(
         f"No preset reaches a relative accuracy of {accuracy:g} of stiffness, its ripple and the transmission error's ripple: "

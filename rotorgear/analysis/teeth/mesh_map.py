@@ -5,14 +5,15 @@ What a mesh does at one torque and misalignment, in a few figures: what maps and
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
-from rotorgear.analysis.teeth.request import Cycle, MeshRequest, mesh_request, solve_helices
+from rotorgear.analysis.teeth.request import MeshRequest, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.face import load_per_width
 from rotorgear.gears.loaded.tooth_contact import contact_problem
@@ -41,7 +42,6 @@ class MeshFigures:
         largest_pressure: of both helices (Pa).
         face_load_factor: K_Hbeta, largest load per width over the mean one, mean of the mesh cycle; the larger of both helices.
         mean_stiffness: transverse, of all helices (N/m).
-        dofs: of the finite elements.
         warnings: sentences.
     """
 
@@ -50,40 +50,55 @@ class MeshFigures:
     largest_pressure: float
     face_load_factor: float
     mean_stiffness: float
-    dofs: int
     warnings: tuple[str, ...]
 
 
-def mesh_figures(
-    request: MeshRequest, teeth: ToothPair, torque: float, positions: int, progress: Progress = silent
-) -> MeshFigures:
-    """Solve one mesh period.
+def figures_at(
+    request: MeshRequest,
+    teeth: ToothPair,
+    torque: np.ndarray,
+    misalignment: np.ndarray,
+    positions: int,
+    progress: Progress = silent,
+) -> list[MeshFigures]:
+    """Solve one mesh period at each of some operating points, torque by torque.
 
     Args:
         request: the mesh, whose flanks are those of the sense of its load.
-        teeth: of one helix, with the flanks and the misalignment to be looked at.
-        torque: on the pinion (N m), of the same sense as that of the request.
+        teeth: of one helix, with the flanks to be looked at.
+        torque: (t,) on the pinion (N m), of the same sense as that of the request.
+        misalignment: (m,) over the face (m).
         positions: in the mesh period.
         progress: told how far it is.
     """
-    base_force = abs(torque) / request.mesh.pinion.base_radius / request.helices
-    found = solve_helices(request, teeth, base_force, Cycle(positions), progress)
-    normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
-    places = min(_PLACES, found.problem.slices)
-    factors = [
-        float(load_per_width(cycle, teeth.width, places)[1].max()) * teeth.width / normal_force
-        for cycle in found.cycles
-    ]
-    notes = [note for cycle in found.cycles for note in cycle.warnings]
-    return MeshFigures(
-        ste_peak_to_peak=float(np.ptp(found.error)),
-        ste_harmonics=np.abs(found.curve.harmonics(ORDERS)[:, 0]),
-        largest_pressure=float(found.curve.values[:, 3].max()),
-        face_load_factor=max(factors),
-        mean_stiffness=float(found.curve.mean()[1]),
-        dofs=found.problem.unknowns,
-        warnings=tuple(dict.fromkeys((*found.problem.warnings, *notes))),
-    )
+    points = list(product(torque.tolist(), misalignment.tolist()))
+    found = []
+    for number, (load, askew) in enumerate(points):
+        told = part_of(progress, number / len(points), (number + 1) / len(points))
+        base_force = abs(load) / request.mesh.pinion.base_radius / request.helices
+        misaligned = replace(teeth, misalignment=askew)
+        solved = solve_helices(request, misaligned, positions, base_force=base_force, progress=told)
+        normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
+        places = min(_PLACES, solved.problem.slices)
+        largest = [float(load_per_width(cycle, teeth.width, places)[1].max()) for cycle in solved.cycles]
+        notes = [note for cycle in solved.cycles for note in cycle.warnings]
+        found.append(
+            MeshFigures(
+                ste_peak_to_peak=float(np.ptp(solved.error)),
+                ste_harmonics=np.abs(solved.curve.harmonics(ORDERS)[:, 0]),
+                largest_pressure=float(solved.curve.values[:, 3].max()),
+                face_load_factor=max(largest) * teeth.width / normal_force,
+                mean_stiffness=float(solved.curve.mean()[1]),
+                warnings=(*solved.problem.warnings, *notes),
+            )
+        )
+    return found
+
+
+def of_points(figures: Sequence[MeshFigures], name: str, torque: np.ndarray, misalignment: np.ndarray) -> np.ndarray:
+    """One figure of all operating points as a table (t, m, ...)."""
+    values = np.array([getattr(point, name) for point in figures])
+    return values.reshape(len(torque), len(misalignment), *values.shape[1:])
 
 
 def operating_values(given: Mapping[str, object], name: str) -> np.ndarray | None:
@@ -180,15 +195,12 @@ def mesh_map(
     clock = Clock()
     request, teeth, load, misalignment = operating_points(model, mesh, over, torque, {"preset": preset, "body": body})
     problem = contact_problem(teeth, part_of(progress, 0.0, 0.3))
-    points = [(i, j) for i in range(len(load)) for j in range(len(misalignment))]
-    figures = []
-    for number, (i, j) in enumerate(points):
-        told = part_of(progress, 0.3 + 0.7 * number / len(points), 0.3 + 0.7 * (number + 1) / len(points))
-        misaligned = replace(teeth, misalignment=float(misalignment[j]))
-        figures.append(mesh_figures(request, misaligned, float(load[i]), positions, told))
+    figures = figures_at(request, teeth, load, misalignment, positions, part_of(progress, 0.3, 1.0))
     clock.lap("teeth and contact")
-    shape = (len(load), len(misalignment))
-    notes = dict.fromkeys(note for point in figures for note in point.warnings)
+
+    def table(name: str) -> np.ndarray:
+        return of_points(figures, name, load, misalignment)
+
     missing = ["error estimates: `rotorgear mesh` gives them for one point"]
     if teeth.first_flank.single_teeth or teeth.second_flank.single_teeth:
         missing.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
@@ -203,13 +215,13 @@ def mesh_map(
         positions=positions,
         pinion_torque=load,
         misalignment=misalignment,
-        ste_peak_to_peak=np.reshape([point.ste_peak_to_peak for point in figures], shape),
-        ste_harmonics=np.reshape([point.ste_harmonics for point in figures], (*shape, -1)),
-        largest_pressure=np.reshape([point.largest_pressure for point in figures], shape),
-        face_load_factor=np.reshape([point.face_load_factor for point in figures], shape),
-        mean_stiffness=np.reshape([point.mean_stiffness for point in figures], shape),
+        ste_peak_to_peak=table("ste_peak_to_peak"),
+        ste_harmonics=table("ste_harmonics"),
+        largest_pressure=table("largest_pressure"),
+        face_load_factor=table("face_load_factor"),
+        mean_stiffness=table("mean_stiffness"),
         dofs=problem.unknowns,
         seconds=clock.total(),
         left_out=tuple(missing),
-        warnings=tuple(notes),
+        warnings=tuple(dict.fromkeys(note for point in figures for note in point.warnings)),
     )

@@ -12,28 +12,16 @@ for the band that holds 90 % of them. Only gaps change from one flank to the nex
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import quantity
-from rotorgear.analysis.teeth.flank_variables import (
-    ALONG_FACE,
-    Variable,
-    flank_variables,
-    model_values,
-    with_values,
-)
+from rotorgear.analysis.teeth.flank_variables import ALONG_FACE, Variable, flank_variables, model_values, with_values
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
-from rotorgear.analysis.teeth.mesh_map import (
-    MeshFigures,
-    mesh_figures,
-    operating_points,
-    operating_values,
-)
-from rotorgear.analysis.teeth.request import MeshRequest
+from rotorgear.analysis.teeth.mesh_map import MeshFigures, figures_at, of_points, operating_points, operating_values
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -61,30 +49,19 @@ class _EnoughError(Exception):
 
 @dataclass
 class _Search:
-    """Tries flanks, counts them and keeps the best one."""
+    """Tries flanks, counts them and keeps the best one; `points` gives the figures of flanks at all operating points."""
 
-    request: MeshRequest
     teeth: ToothPair
     variables: tuple[Variable, ...]
-    torque: np.ndarray
-    misalignment: np.ndarray
+    points: Callable[[ToothPair], list[MeshFigures]]
     weight: np.ndarray
     limit: float | None
-    positions: int
     most: int
     progress: Progress
     scale: float = 0.0
     tried: int = 0
     best: np.ndarray | None = None
     least: float = np.inf
-
-    def points(self, teeth: ToothPair) -> list[MeshFigures]:
-        """Figures at all operating points, torque by torque."""
-        return [
-            mesh_figures(self.request, replace(teeth, misalignment=float(misalignment)), float(torque), self.positions)
-            for torque in self.torque
-            for misalignment in self.misalignment
-        ]
 
     def mean(self, points: Sequence[MeshFigures]) -> float:
         """Weighted mean of the peak to peak (m)."""
@@ -243,18 +220,12 @@ def optimise_flanks(
     most = _TRIES * len(chosen) if evaluations is None else evaluations
     if most < 10 * len(chosen):
         raise AnalysisError(f"evaluations: got {most}, expected at least 10 for each of {len(chosen)} variables")
-    search = _Search(
-        request=request,
-        teeth=teeth,
-        variables=chosen,
-        torque=load,
-        misalignment=misalignment,
-        weight=_weights(weights, operating_values(over, "torque"), load, len(misalignment)),
-        limit=limit,
-        positions=positions,
-        most=most,
-        progress=part_of(progress, *_SHARES),
-    )
+
+    def points(flanks: ToothPair) -> list[MeshFigures]:
+        return figures_at(request, flanks, load, misalignment, positions)
+
+    weight = _weights(weights, operating_values(over, "torque"), load, len(misalignment))
+    search = _Search(teeth, chosen, points, weight, limit, most, part_of(progress, *_SHARES))
     before = search.points(teeth)
     search.scale = search.mean(before)
     clock.lap("teeth")
@@ -265,7 +236,7 @@ def optimise_flanks(
     if search.excess(found) > 0.0:
         worst = max(point.largest_pressure for point in found)
         raise AnalysisError(
-            f"No flank within the bounds keeps the pressure limit of {1e-6 * (search.limit or 0.0):.4g} MPa at all points; "
+            f"No flank within the bounds keeps the pressure limit of {1e-6 * (limit or 0.0):.4g} MPa at all points; "
             f"the best reaches {1e-6 * worst:.4g} MPa: raise the limit, or leave out the highest torque."
         )
     clock.lap("search")
@@ -273,7 +244,6 @@ def optimise_flanks(
     if samples and status == "success":
         band = search.band(values, spread, samples, part_of(progress, _SHARES[1], 1.0))
         clock.lap("tolerance band")
-    shape = (len(load), len(misalignment))
     notes = dict.fromkeys(note for point in found for note in point.warnings)
     at_bounds = [
         variable.text for variable, share in zip(chosen, search.best, strict=True) if share < 1e-3 or share > 1.0 - 1e-3
@@ -299,24 +269,22 @@ def optimise_flanks(
         ),
         pinion_torque=load,
         misalignment=misalignment,
-        weight=search.weight,
-        pressure_limit=search.limit,
+        weight=weight,
+        pressure_limit=limit,
         mean_before=search.scale,
         mean=search.mean(found),
         mean_band=None if band is None else (float(band[0][0]), float(band[1][0])),
-        before=np.reshape([point.ste_peak_to_peak for point in before], shape),
-        ste=np.reshape([point.ste_peak_to_peak for point in found], shape),
-        ste_low=None if band is None else band[0][1:].reshape(shape),
-        ste_high=None if band is None else band[1][1:].reshape(shape),
-        largest_pressure=np.reshape([point.largest_pressure for point in found], shape),
+        before=of_points(before, "ste_peak_to_peak", load, misalignment),
+        ste=of_points(found, "ste_peak_to_peak", load, misalignment),
+        ste_low=None if band is None else band[0][1:].reshape(weight.shape),
+        ste_high=None if band is None else band[1][1:].reshape(weight.shape),
+        largest_pressure=of_points(found, "largest_pressure", load, misalignment),
         evaluations=search.tried,
         samples=0 if band is None else samples,
         changes=model_values(request.mesh, chosen, values),
         seconds=clock.total(),
         status=status,
-        left_out=("the pressure limit in the tolerance band: flanks beyond it count there",)
-        if search.limit and band
-        else (),
+        left_out=("the pressure limit in the tolerance band: flanks beyond it count there",) if limit and band else (),
         warnings=tuple(notes),
     )
 

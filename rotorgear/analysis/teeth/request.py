@@ -31,14 +31,6 @@ from rotorgear.results.mesh import MeshLoad
 
 
 @dataclass(frozen=True)
-class Cycle:
-    """How much of a mesh is followed: positions in a mesh period, and mesh periods."""
-
-    positions: int
-    periods: int = 1
-
-
-@dataclass(frozen=True)
 class SolvedHelices:
     """All helices of one request at one load and setting.
 
@@ -85,23 +77,25 @@ class SolvedHelices:
 def solve_helices(
     request: MeshRequest,
     teeth: ToothPair,
-    base_force: float,
-    cycle: Cycle,
-    progress: Progress = silent,
+    positions: int,
+    periods: int = 1,
     *,
+    base_force: float | None = None,
     judged: bool = False,
+    progress: Progress = silent,
 ) -> SolvedHelices:
     """All helices at one load.
 
     Args:
         request: the mesh; teeth: of a helix that runs ahead at larger z, with the flanks to be looked at.
-        base_force: F_bt of one helix (N).
-        cycle: how many positions are kept, in how many mesh periods.
-        progress: told how far it is.
+        positions: how many are kept of a mesh period.
+        periods: mesh periods that are followed.
+        base_force: F_bt of one helix (N); that of the request where it is not given.
         judged: whether more positions are solved for the estimate of what lies between those that are kept.
+        progress: told how far it is.
     """
-    solving = _cycles(request, teeth, base_force, cycle.periods, progress)
-    found = solving.sample(cycle.positions, judged=judged)
+    solving = _cycles(request, teeth, request.base_force if base_force is None else base_force, periods, progress)
+    found = solving.sample(positions, judged=judged)
     u = found.curve.position
     event = found.curve.event
     if solving.twice:
@@ -114,22 +108,17 @@ def solve_helices(
     return SolvedHelices(
         problem=solving.problems[-1],
         cycles=tuple(cycles),
-        curve=CycleCurve(u, solving.values(numbers), float(cycle.periods), event),
+        curve=CycleCurve(u, solving.values(numbers), float(periods), event),
         no_load=np.mean([one.no_load for one in cycles], axis=0),
         sampling=found,
     )
 
 
 def curves_at(
-    request: MeshRequest,
-    teeth: ToothPair,
-    base_force: float,
-    positions: np.ndarray,
-    periods: int,
-    progress: Progress = silent,
+    request: MeshRequest, teeth: ToothPair, positions: np.ndarray, periods: int, progress: Progress = silent
 ) -> np.ndarray:
     """Transmission error (m), stiffness (N/m) and largest pressure (Pa) of all helices at some positions: (m, 3)."""
-    solving = _cycles(request, teeth, base_force, periods, progress)
+    solving = _cycles(request, teeth, request.base_force, periods, progress)
     solving.twice = False
     return solving.add(positions)
 

@@ -17,6 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from rotorgear.gears.geometry.line_of_action import LineOfAction
+from rotorgear.gears.tooth_fe.elasticity import quadratic
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 
 # Quadrature points of a patch across and along a slice.
@@ -265,13 +266,7 @@ class PatchLoads:
 
 
 def patch_loads(
-    slices: Slices,
-    gear: int,
-    compliance: GearCompliance,
-    module: float,
-    place: np.ndarray,
-    least: np.ndarray,
-    most: float,
+    slices: Slices, gear: int, compliance: GearCompliance, module: float, least: np.ndarray, most: float
 ) -> PatchLoads:
     """Spread the slices over the flank of one gear.
 
@@ -280,7 +275,6 @@ def patch_loads(
         gear: 0 or 1, whose roll lengths count.
         compliance: of that gear, in normal modules.
         module: normal module (m).
-        place: (n, q) places along that gear's face from its middle, in its own direction (m).
         least: (n,) least half-width c of each slice's patch, in normal modules.
         most: largest half-width, where none of the least ones is larger.
     """
@@ -299,7 +293,8 @@ def patch_loads(
     log_width = np.sum(np.log(c) * slices.weight, axis=1)
     if len(compliance.height) == 1:
         return PatchLoads(across.sum(axis=1), np.zeros((len(slices), 2), int), len(compliance.roll), log_width)
-    z = place / module
+    # The face of the gear runs the other way, so that both are the same kind of body.
+    z = (slices.z if gear == 0 else -slices.z) / module
     along = _shares(compliance.height, z[..., None], np.ones((1, 1, 1)))
     loads = np.matmul(along.transpose(0, 2, 1), across).reshape(len(slices), -1)
     ends = np.stack([z.min(axis=1), z.max(axis=1)], axis=1)
@@ -317,10 +312,7 @@ def _shares(nodes: np.ndarray, places: np.ndarray, weights: np.ndarray) -> np.nd
     ends = nodes[::2]
     element = _element(ends, places)
     t = np.clip(2.0 * (places - ends[element]) / (ends[element + 1] - ends[element]) - 1.0, -1.0, 1.0)
-    shapes = (
-        np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1)
-        * np.broadcast_to(weights, (n, q, m))[..., None]
-    )
+    shapes = quadratic(t) * np.broadcast_to(weights, (n, q, m))[..., None]
     row = np.arange(n * q).reshape(n, q, 1, 1) * len(nodes)
     index = row + 2 * element[..., None] + np.arange(3)
     return np.bincount(index.ravel(), shapes.ravel(), n * q * len(nodes)).reshape(n, q, len(nodes))

@@ -8,14 +8,12 @@ Where patches grow, those of slices far from the ends of the flank stay what the
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from rotorgear.gears.loaded.contact_points import PatchLoads, Slices, patch_loads
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
-from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 
 # Positions that are taken together.
 _TOGETHER = 16
@@ -44,9 +42,12 @@ def slice_compliances(
     found: list[tuple[np.ndarray, np.ndarray]] = []
     for first in range(0, len(positions), _TOGETHER):
         some = positions[first : first + _TOGETHER]
-        before = None if known is None else [known[i] for i in some]
-        found += _compliances(problem, slices, some, least, before)
+        found += _compliances(problem, slices, some, least, None if known is None else [known[i] for i in some])
     return found
+
+
+# The slices of one position among those taken together, and those of each of its tooth pairs, which stand in a row.
+_Block = tuple[slice, dict[int, slice]]
 
 
 def _compliances(
@@ -59,104 +60,62 @@ def _compliances(
     ranges = [slices.at(position) for position in positions]
     here = np.concatenate(ranges)
     some = slices.take(here)
-    blocks = [_Block.of(some.pair, low, high) for low, high in pairwise(np.cumsum([0, *map(len, ranges)]).tolist())]
+    blocks: list[_Block] = []
+    for low, high in pairwise(np.cumsum([0, *map(len, ranges)]).tolist()):
+        number, start = np.unique(some.pair[low:high], return_index=True)
+        ends = pairwise([*(low + start).tolist(), high])
+        blocks.append((slice(low, high), {k: slice(*one) for k, one in zip(number.tolist(), ends, strict=True)}))
     matrices = [np.zeros((len(one), len(one))) for one in ranges]
-    log_width = np.empty((len(here), 2))
-    patches = []
-    for gear in (0, 1):
-        place = problem.place(gear, some.z)
-        patches.append(
-            patch_loads(some, gear, problem.compliance[gear], problem.module, place, least[here], problem.patch)
-        )
-        log_width[:, gear] = np.log(problem.module * np.cos(problem.line.base_helix_angle)) + patches[gear].log_width
-    if known is None:
-        for gear in (0, 1):
-            _add_gear(problem, gear, patches[gear], blocks, matrices)
-        done = [_completed(problem, some.take(block.all), C) for block, C in zip(blocks, matrices, strict=True)]
-    else:
+    patches = [
+        patch_loads(some, gear, problem.compliance[gear], problem.module, least[here], problem.patch) for gear in (0, 1)
+    ]
+    log_width = np.log(problem.module * problem.cosine) + np.stack([one.log_width for one in patches], axis=1)
+    changed = None
+    if known is not None:
         changed = np.any(log_width != np.concatenate([width for _, width in known]), axis=1)
-        for gear in (0, 1):
-            _add_rows(problem, gear, patches[gear], blocks, matrices, changed)
+    for gear in (0, 1):
+        _add(problem, gear, patches[gear], blocks, matrices, changed)
+    if known is None or changed is None:
+        done = [_completed(problem, some.take(block), C) for (block, _), C in zip(blocks, matrices, strict=True)]
+    else:
         done = [
-            _with_rows(old, C, np.flatnonzero(changed[block.all]))
-            for (old, _), C, block in zip(known, matrices, blocks, strict=True)
+            _with_rows(old, C, np.flatnonzero(changed[block]))
+            for (old, _), C, (block, _) in zip(known, matrices, blocks, strict=True)
         ]
-    return [(C, log_width[block.all]) for block, C in zip(blocks, done, strict=True)]
+    return [(C, log_width[block]) for (block, _), C in zip(blocks, done, strict=True)]
 
 
-@dataclass(frozen=True)
-class _Block:
-    """The slices of one position among those taken together, and those of each of its tooth pairs, which stand in a row."""
-
-    all: slice
-    by_pair: dict[int, slice]
-
-    @classmethod
-    def of(cls, pair: np.ndarray, low: int, high: int) -> _Block:
-        """Block of the slices low to high, with pair numbers (n,) that rise."""
-        number, start = np.unique(pair[low:high], return_index=True)
-        ends = [*(low + start).tolist(), high]
-        return cls(slice(low, high), {k: slice(*one) for k, one in zip(number.tolist(), pairwise(ends), strict=True)})
-
-
-def _add_gear(
-    problem: ContactProblem, gear: int, patches: PatchLoads, blocks: list[_Block], matrices: list[np.ndarray]
-) -> None:
-    """Add P G_o P' of one gear where the pair of the row is o >= 0 ahead of that of the column."""
-    compliance = problem.compliance[gear]
-    # Pair k + 1 of the pinion stands clockwise of pair k, that of the gear the other way.
-    side = 1 if gear == 0 else -1
-    for o in range(_span(blocks, compliance) + 1):
-        touching = [
-            (block, C, rows, block.by_pair[k - o])
-            for block, C in zip(blocks, matrices, strict=True)
-            for k, rows in block.by_pair.items()
-            if k - o in block.by_pair
-        ]
-        asked = np.concatenate([np.arange(rows.start, rows.stop) for _, _, rows, _ in touching])
-        moved = patches.moved(compliance.response(side * o), asked)
-        first = 0
-        for block, C, rows, columns in touching:
-            last = first + rows.stop - rows.start
-            part = moved[first:last] @ patches.loads[columns].T
-            low = block.all.start
-            C[rows.start - low : rows.stop - low, columns.start - low : columns.stop - low] += (
-                problem.scale[gear] * part
-            )
-            first = last
-
-
-def _span(blocks: list[_Block], compliance: GearCompliance) -> int:
-    """Largest distance of pairs at one position that still feel each other."""
-    return min(compliance.reach, max(max(block.by_pair) - min(block.by_pair) for block in blocks))
-
-
-def _add_rows(
+def _add(
     problem: ContactProblem,
     gear: int,
     patches: PatchLoads,
     blocks: list[_Block],
     matrices: list[np.ndarray],
-    chosen: np.ndarray,
+    chosen: np.ndarray | None,
 ) -> None:
-    """Add P G_o P' of one gear in the rows of chosen (n,) slices, for pairs before and behind."""
+    """Add P G_o P' of one gear, the pair of the row being o ahead of that of the column.
+
+    All rows with o >= 0, or `chosen` (n,) rows with pairs before and behind.
+    """
     compliance = problem.compliance[gear]
+    # Pair k + 1 of the pinion stands clockwise of pair k, that of the gear the other way.
     side = 1 if gear == 0 else -1
-    span = _span(blocks, compliance)
-    for o in range(-span, span + 1):
-        touching = [
-            (block, C, rows.start + np.flatnonzero(chosen[rows]), block.by_pair[k - o])
-            for block, C in zip(blocks, matrices, strict=True)
-            for k, rows in block.by_pair.items()
-            if k - o in block.by_pair and chosen[rows].any()
-        ]
+    # Largest distance of pairs at one position that still feel each other.
+    span = min(compliance.reach, max(max(by_pair) - min(by_pair) for _, by_pair in blocks))
+    for o in range(0 if chosen is None else -span, span + 1):
+        touching = []
+        for (block, by_pair), C in zip(blocks, matrices, strict=True):
+            for k, of_pair in by_pair.items():
+                if k - o in by_pair:
+                    rows = np.arange(of_pair.start, of_pair.stop)
+                    rows = rows if chosen is None else rows[chosen[of_pair]]
+                    touching.append((C, rows, by_pair[k - o], block.start))
         if not touching:
             continue
-        moved = patches.moved(compliance.response(side * o), np.concatenate([rows for _, _, rows, _ in touching]))
+        moved = patches.moved(compliance.response(side * o), np.concatenate([rows for _, rows, _, _ in touching]))
         first = 0
-        for block, C, rows, columns in touching:
+        for C, rows, columns, low in touching:
             part = moved[first : first + len(rows)] @ patches.loads[columns].T
-            low = block.all.start
             C[rows - low, columns.start - low : columns.stop - low] += problem.scale[gear] * part
             first += len(rows)
 

@@ -14,13 +14,7 @@ from rotorgear.gears.geometry.line_of_action import LineOfAction, generated_line
 from rotorgear.gears.loaded.contact_points import Slices
 from rotorgear.gears.stiffness.blank_note import web_left_out
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.gears.tooth_fe.compliance_model import (
-    ComplianceKey,
-    compliance_key,
-    gear_compliance,
-    held_radius,
-    wind_up,
-)
+from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance, wind_up
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.progress import Progress, silent
 
@@ -70,9 +64,15 @@ class ContactProblem:
     unknowns: int
     warnings: tuple[str, ...] = ()
 
-    def place(self, gear: int, z: np.ndarray) -> np.ndarray:
-        """Places along a gear's own face; that of the gear runs the other way, so that both are the same kind of body."""
-        return z if gear == 0 else -z
+    @property
+    def cosine(self) -> float:
+        """cos b_b: F_bt = F_n cos b_b."""
+        return float(np.cos(self.line.base_helix_angle))
+
+    @property
+    def one_slice(self) -> bool:
+        """Whether a tooth pair has one slice, in the plane: then solutions are cheap, and patches follow no load."""
+        return self.plane and not self.uncoupled
 
     @property
     def oblique(self) -> bool:
@@ -162,7 +162,7 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
         if fe.excludes_torsion(chosen):  # the rotation of the teeth about the axis against the held circle is left out
             compliance = replace(compliance, flexibility=compliance.flexibility - wind_up(key))
         compliances.append(compliance)
-        held_radii.append(module * held_radius(key))
+        held_radii.append(module * key.held_radius)
         # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement,
         # lie in that section. In space the compliance of a body grows as 1 / (E m_n).
         scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)

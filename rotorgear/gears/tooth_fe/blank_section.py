@@ -20,7 +20,15 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import splu
 
 from rotorgear.gears.geometry.blank import BlankShape
-from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, lame, node_dofs
+from rotorgear.gears.tooth_fe.elasticity import (
+    assembled,
+    component_dofs,
+    condensed,
+    lame,
+    node_dofs,
+    quadratic,
+    with_middles,
+)
 
 # Largest side of an element over the thickness of its part, and in normal modules along the radius and along the axis. Along the
 # axis it is no coarser than the layers of the teeth above: what they do between two nodes of the blank would meet no resistance.
@@ -97,13 +105,7 @@ class BlankSection:
 
     def stiffness(self, harmonic: int) -> np.ndarray:
         """K (3 k, 3 k) of the amplitudes of the nodes on the circle: the bore held, all others condensed."""
-        K = self.free_stiffness(harmonic)
-        circle = node_dofs(self._circle, 3)
-        inside = node_dofs(self._inside, 3)
-        couple = K[inside][:, circle].toarray()
-        factor = splu(sp.csc_matrix(K[inside][:, inside]), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-        condensed = K[circle][:, circle].toarray() - couple.T @ factor.solve(couple)
-        return np.asarray(0.5 * (condensed + condensed.T))
+        return condensed(self.free_stiffness(harmonic), node_dofs(self._inside, 3), node_dofs(self._circle, 3))
 
     def stiffnesses(self, harmonics: int) -> Callable[[int], np.ndarray]:
         """K (3 k, 3 k) by harmonic, 0 to `harmonics`; those beyond the twelfth by a spline through some of them."""
@@ -185,7 +187,7 @@ def _section_mesh(parts: Sequence[Rectangle], axial_side: float, coarseness: flo
     step = np.array([[i, j] for i in range(3) for j in range(3)])
     lattice = 2 * first[:, None, :] + step
     used, cells = np.unique(lattice.reshape(-1, 2), axis=0, return_inverse=True)
-    points = np.stack([_with_middles(r)[used[:, 0]], _with_middles(z)[used[:, 1]]], -1)
+    points = np.stack([with_middles(r)[used[:, 0]], with_middles(z)[used[:, 1]]], -1)
     return points, cells.reshape(-1, 9).T
 
 
@@ -199,13 +201,6 @@ def _lines(intervals: Sequence[Sequence[float]], largest: float, across: float) 
         count = max(1, int(np.ceil((high - low) / min(side, largest) - 1e-9)))
         found.append(np.linspace(low, high, count + 1)[1:])
     return np.concatenate(found)
-
-
-def _with_middles(lines: np.ndarray) -> np.ndarray:
-    found = np.empty(2 * len(lines) - 1)
-    found[::2] = lines
-    found[1::2] = 0.5 * (lines[1:] + lines[:-1])
-    return found
 
 
 def _line_shares(z: np.ndarray) -> np.ndarray:
@@ -226,7 +221,7 @@ def _matrices(
 
     # Quadratic shape functions in r and z and their products at 4 x 4 Gauss points: 1/r is no polynomial.
     t, weight = np.polynomial.legendre.leggauss(4)
-    line = np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)])
+    line = quadratic(t).T
     slope = np.stack([t - 0.5, -2.0 * t, t + 0.5])
     N = np.einsum("ap,bq->abpq", line, line).reshape(9, -1)
     by_r = np.einsum("ap,bq->abpq", slope, line).reshape(9, -1)

@@ -55,26 +55,6 @@ _SHARE = 0.8
 
 
 @dataclass(frozen=True)
-class Forecast:
-    """Memory (bytes) of the process and seconds."""
-
-    memory: float
-    seconds: float
-
-    def require_room(self) -> None:
-        """AnalysisError where the machine has less memory to give."""
-        free = free_memory()
-        if free is not None and self.memory > free:
-            raise AnalysisError(
-                f"These teeth in space would take {1e-9 * self.memory:.2g} GB of memory, and {1e-9 * free:.2g} GB are free: "
-                'take tooth_fe = { preset = "preview" } (--preset preview), a narrower face, or a machine with more memory.'
-            )
-
-    def __str__(self) -> str:
-        return f"about {self.seconds:.0f} s and {1e-9 * self.memory:.1f} GB"
-
-
-@dataclass(frozen=True)
 class Stack:
     """Sizes that decide the cost of a gear in layers.
 
@@ -91,15 +71,14 @@ class Stack:
     layers: int
     pitches: int
 
-    def forecast(self) -> Forecast:
-        """What this machine needs for it."""
+    def forecast(self) -> tuple[float, float]:
+        """Memory (bytes) of the process and seconds that this machine needs for it."""
         sizes = self._condensed()
         operations = sum(_eliminated(size, self.inside) for size in sizes)
         planes = 2 * self.layers + 1
         operations += (planes * self.flank) ** 3
         operations += 4.0 * self.pitches * (planes * self.cut) ** 3
-        memory = _PROGRAM + _COPIES * 8.0 * max(sizes) ** 2
-        return Forecast(memory, operations / (_SHARE * _speed()))
+        return _PROGRAM + _COPIES * 8.0 * max(sizes) ** 2, operations / (_SHARE * _speed())
 
     def _condensed(self) -> list[int]:
         """Sizes of the matrices, each of which loses the inside of one plane, in the order of `sector.stacked_layers`."""
@@ -180,6 +159,11 @@ class ComplianceKey:
     face: float = 0.0
     coarseness: float = 1.0
 
+    @property
+    def held_radius(self) -> float:
+        """Radius of the circle that is held: the bore of a wheel, else the inner circle of the pitches."""
+        return self.blank.bore_radius if self.blank else self.inner_radius
+
 
 def compliance_key(
     geometry: GearGeometry,
@@ -230,11 +214,6 @@ def compliance_key(
         _rounded(width / m) if wheel else 0.0,
         fe.blank_coarseness if wheel else 1.0,
     )
-
-
-def held_radius(key: ComplianceKey) -> float:
-    """Radius in normal modules of the circle that is held: the bore of a wheel, else the inner circle of the pitches."""
-    return key.blank.bore_radius if key.blank else key.inner_radius
 
 
 def _seat_radius(blank: BlankShape, root: float) -> float:
@@ -290,9 +269,14 @@ def forget() -> None:
 def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
     outline, mesh = pitch_of(key)
     if key.width:
-        expected = layers_of(key, mesh).forecast()
-        expected.require_room()
-        progress(0.0, f"teeth in space, {expected}")
+        memory, seconds = layers_of(key, mesh).forecast()
+        free = free_memory()
+        if free is not None and memory > free:
+            raise AnalysisError(
+                f"These teeth in space would take {1e-9 * memory:.2g} GB of memory, and {1e-9 * free:.2g} GB are free: "
+                'take tooth_fe = { preset = "preview" } (--preset preview), a narrower face, or a machine with more memory.'
+            )
+        progress(0.0, f"teeth in space, about {seconds:.0f} s and {1e-9 * memory:.1f} GB")
     height = np.linspace(-0.5 * key.width, 0.5 * key.width, 2 * key.size.face + 1) if key.width else np.zeros(1)
     teeth = key.geometry.teeth if key.arc == 0 else key.arc
     reach = min(REACH, (teeth - 1) // 2)

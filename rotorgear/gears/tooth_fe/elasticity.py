@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 
 def lame(poisson_ratio: float) -> tuple[float, float]:
@@ -49,3 +50,28 @@ def assembled(elements: np.ndarray, dofs: np.ndarray, size: int) -> sp.csc_array
     rows = np.repeat(dofs, n, axis=1).ravel()
     columns = np.tile(dofs, n).ravel()
     return sp.csc_array(sp.coo_array((elements.ravel(), (rows, columns)), (size, size)))
+
+
+def factorised(K: sp.csc_array) -> Any:
+    """Sparse factorisation of a symmetric matrix: minimum degree on its own pattern, which pivots on the diagonal keep."""
+    return splu(sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+
+def condensed(K: sp.csc_array, inside: np.ndarray, keep: np.ndarray) -> np.ndarray:
+    """Stiffness of a sparse K in the kept unknowns, those inside being eliminated: K_kk - K_ki K_ii^-1 K_ik."""
+    couple = K[inside][:, keep].toarray()
+    S = K[keep][:, keep].toarray() - couple.T @ factorised(K[inside][:, inside]).solve(couple)
+    return np.asarray(0.5 * (S + S.T))
+
+
+def quadratic(t: np.ndarray) -> np.ndarray:
+    """The three quadratic shape functions (..., 3) at places between -1 and 1."""
+    return np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1)
+
+
+def with_middles(knots: np.ndarray) -> np.ndarray:
+    """Knots with the middle of each interval between them: the nodes of a line of quadratic elements."""
+    nodes = np.empty(2 * len(knots) - 1)
+    nodes[::2] = knots
+    nodes[1::2] = 0.5 * (knots[1:] + knots[:-1])
+    return nodes

@@ -60,21 +60,17 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
 
     A ring closes on itself; a rim is held at both ends.
     """
-    c = sector.cut
-    S = sector.stiffness
-    factor = la.cho_factor(S[2 * c :, 2 * c :], lower=True, check_finite=False)
+    factor, carried = _condensed_flank(sector)
     held_cuts = la.cho_solve(
         factor, np.eye(sector.flank)
     )  # S_ff^-1: flexibility of the loaded tooth with its cuts at rest
-    carried = la.cho_solve(factor, S[2 * c :, : 2 * c])  # S_ff^-1 S_fc
-    cuts = _cut_motions(S[: 2 * c, : 2 * c] - S[: 2 * c, 2 * c :] @ carried, carried.T, teeth, c, ring)
+    cuts = _cut_motions(sector, carried, carried.T, teeth, ring)
     middle = teeth // 2
     G = np.zeros((2 * reach + 1, sector.flank, sector.flank))
     for o in range(-reach, reach + 1):
         left = middle + o
         right = (left + 1) % len(cuts) if ring else left + 1
-        inside = left >= 0 and left + 1 < len(cuts) + (1 if ring else 0)
-        if inside:
+        if left >= 0 and left + 1 < len(cuts) + ring:
             moved = np.vstack([cuts[left], cuts[right]])
             G[reach + o] = (held_cuts if o == 0 else 0.0) - carried @ moved
 
@@ -86,34 +82,39 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
 
 def cut_motions(sector: Sector, force: np.ndarray, teeth: int, *, ring: bool) -> np.ndarray:
     """Motions (cuts, c, k) of the cuts between pitches for k sets of flank forces (f, k) on the middle one."""
+    factor, carried = _condensed_flank(sector)
+    h = 2 * sector.cut
+    return _cut_motions(sector, carried, sector.stiffness[:h, h:] @ la.cho_solve(factor, force), teeth, ring)
+
+
+def _condensed_flank(sector: Sector) -> tuple[tuple[np.ndarray, bool], np.ndarray]:
+    """Factorisation of S_ff, and S_ff^-1 S_fc."""
+    h = 2 * sector.cut
+    factor = la.cho_factor(sector.stiffness[h:, h:], lower=True, check_finite=False)
+    return factor, la.cho_solve(factor, sector.stiffness[h:, :h])
+
+
+def _cut_motions(sector: Sector, carried: np.ndarray, load: np.ndarray, teeth: int, ring: bool) -> np.ndarray:
+    """Motions (cuts, c, n) of all cuts for the loads on the middle pitch; the held end cuts of a rim do not move."""
     c = sector.cut
     S = sector.stiffness
-    factor = la.cho_factor(S[2 * c :, 2 * c :], lower=True, check_finite=False)
-    load = S[: 2 * c, 2 * c :] @ la.cho_solve(factor, force)
-    carried = la.cho_solve(factor, S[2 * c :, : 2 * c])
-    return _cut_motions(S[: 2 * c, : 2 * c] - S[: 2 * c, 2 * c :] @ carried, load, teeth, c, ring)
-
-
-def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool) -> np.ndarray:
-    """Motions (cuts, c, n) of all cuts for the loads on the middle pitch; the held end cuts of a rim do not move."""
-    A = K[:c, :c]
+    K = S[: 2 * c, : 2 * c] - S[: 2 * c, 2 * c :] @ carried
     B = K[:c, c:]
-    D = K[c:, c:]
-    middle = teeth // 2
-    n = load.shape[1]
+    diagonal = K[c:, c:] + K[:c, :c]
     if ring:
-        return _closed(A + D, B, -load, middle, teeth, c)
+        return _closed(diagonal, B, -load, teeth)
 
-    # A rim: block-tridiagonal, diagonal blocks D + A, right neighbours B. The loaded pitch stands between cuts m and m + 1.
-    diagonal = D + A
-    moved = np.zeros((teeth + 1, c, n))
-    rhs = np.zeros((teeth + 1, c, n))
+    # A rim: block-tridiagonal, right neighbours B. The loaded pitch stands between cuts m and m + 1.
+    middle = teeth // 2
+    moved = np.zeros((teeth + 1, c, load.shape[1]))
+    rhs = np.zeros_like(moved)
     rhs[middle] = -load[:c]
     rhs[middle + 1] = -load[c:]
     factors: list[tuple[np.ndarray, bool]] = []
     for cut in range(1, teeth):  # block elimination from the left
-        pivot = diagonal if cut == 1 else diagonal - B.T @ la.cho_solve(factors[-1], B)
-        if cut > 1:
+        pivot = diagonal
+        if factors:
+            pivot = diagonal - B.T @ la.cho_solve(factors[-1], B)
             rhs[cut] -= B.T @ la.cho_solve(factors[-1], rhs[cut - 1])
         factors.append(la.cho_factor(pivot, lower=True, check_finite=False))
     for cut in range(teeth - 1, 0, -1):  # back substitution from the right
@@ -122,20 +123,19 @@ def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool
     return moved
 
 
-def _closed(diagonal: np.ndarray, B: np.ndarray, load: np.ndarray, middle: int, teeth: int, c: int) -> np.ndarray:
+def _closed(diagonal: np.ndarray, B: np.ndarray, load: np.ndarray, teeth: int) -> np.ndarray:
     """The cuts of a closed ring by its cyclic symmetry: one complex system of one cut for each harmonic round the gear."""
-    first = load[:c]
-    second = load[c:]
+    c = len(B)
+    middle = teeth // 2
     moved = np.zeros((teeth, c, load.shape[1]))
-    index = np.arange(teeth)
     for harmonic in range(teeth // 2 + 1):
         angle = 2.0 * np.pi * harmonic / teeth
         turn = np.exp(1j * angle)
         system = diagonal + B * turn + B.T * np.conj(turn)
-        rhs = first * np.exp(-1j * angle * middle) + second * np.exp(-1j * angle * (middle + 1))
+        rhs = load[:c] * np.exp(-1j * angle * middle) + load[c:] * np.exp(-1j * angle * (middle + 1))
         amplitude = np.linalg.solve(system, rhs)
         # Real motions: harmonics h and z - h are conjugate, so only those up to z/2 are solved and the others counted double.
         weight = 1.0 if harmonic == 0 or 2 * harmonic == teeth else 2.0
-        for k in index:
+        for k in range(teeth):
             moved[k] += weight / teeth * (amplitude * np.exp(1j * angle * k)).real
     return moved

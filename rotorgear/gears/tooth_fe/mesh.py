@@ -68,6 +68,17 @@ class PitchMesh:
         """2 pi / z (rad)."""
         return 2.0 * math.pi / self.outline.geometry.teeth
 
+    @property
+    def twist(self) -> float:
+        """tan(b_b)/r_b: angle by which the section turns clockwise over the length along the face."""
+        return float(np.tan(self.outline.geometry.base_helix_angle) / self.outline.geometry.base_radius)
+
+    @property
+    def helicoid_normal(self) -> np.ndarray:
+        """(k, 3) outward unit normals of the helicoid at the flank nodes."""
+        b = self.outline.geometry.base_helix_angle
+        return np.hstack([np.cos(b) * self.normal, np.full((len(self.normal), 1), -np.sin(b))])
+
 
 def scikit_fem() -> Any:
     """The package scikit-fem; MissingExtraError where it is not installed."""

@@ -58,21 +58,13 @@ class Pitch:
         """2 or 3."""
         return self.points.shape[1]
 
-    def left_frame(self, cut: np.ndarray) -> np.ndarray:
-        """Displacements of the left cut in the tooth's frame from those in the frames of its planes."""
-        return self.plane_frame(cut)
+    def in_tooth(self, u: np.ndarray, ahead: int = 0) -> np.ndarray:
+        """Displacements of nodes in the tooth's frame from those in the frames of their planes, plane by plane.
 
-    def right_frame(self, cut: np.ndarray) -> np.ndarray:
-        """The same of the right cut, which is given in the frame of the next pitch."""
-        return self._turned(cut, self.turn @ self.pitch_turn)
-
-    def plane_frame(self, nodes: np.ndarray) -> np.ndarray:
-        """The same of any nodes, given plane by plane in the frames of the planes."""
-        return self._turned(nodes, self.turn)
-
-    def _turned(self, cut: np.ndarray, turn: np.ndarray) -> np.ndarray:
-        u = cut.reshape(len(turn), -1, self.dimension)
-        return np.einsum("pij,pnj->pni", turn, u).ravel()
+        Those of the right cut are given in the frames of the pitch `ahead`, which is 1.
+        """
+        turn = self.turn @ self.pitch_turn if ahead else self.turn
+        return np.einsum("pij,pnj->pni", turn, u.reshape(len(turn), -1, self.dimension)).ravel()
 
     def stress(self, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Equivalent stress (von Mises) and largest principal one (n,), means of the elements that meet at a node."""
@@ -101,60 +93,42 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
     """A pitch of face `width` in so many layers; 0 layers: plane strain, unit width."""
     skfem = scikit_fem()
     p = len(mesh.points)
-    g = mesh.outline.geometry
+    d = 3 if layers else 2
 
     # Fillet: from the foot of the involute down the loaded column, then along the root to the cut.
     low, high = mesh.tooth_rows
     column = mesh.loaded_column
     inside = (mesh.lattice[:, 0] == column) & (mesh.lattice[:, 1] >= low) & (mesh.lattice[:, 1] <= high)
     fillet = np.flatnonzero(inside | ((mesh.lattice[:, 1] == low) & (mesh.lattice[:, 0] >= column)))
-    if not layers:
-        element = skfem.ElementQuad2()
-        basis, at_nodes = _bases(mesh.mesh, element)
-        cells = mesh.cells.T[None]
-        K = assembled(element_matrices(basis, poisson_ratio), component_dofs(mesh.cells, 2), 2 * p)
-        unturned = np.eye(2)[None]
-        return Pitch(
-            points=mesh.points,
-            cells=cells,
-            stiffness=K,
-            inner=mesh.inner,
-            left=mesh.left,
-            right=mesh.right,
-            flank=mesh.flank,
-            fillet=fillet,
-            normal=mesh.normal,
-            turn=unturned,
-            layer_turn=unturned,
-            pitch_turn=clockwise(mesh.pitch_angle, 2),
-            poisson_ratio=poisson_ratio,
-            basis=at_nodes,
-        )
 
     # Planes and layers turn with the helix about the middle of the face; quadratic elements have a plane in their middle.
-    height = width / layers
-    twist = np.tan(g.base_helix_angle) / g.base_radius
-    hexes, place_of = layer_mesh(mesh, height, twist)
-    basis, at_nodes = _bases(hexes, skfem.ElementHex2())
-    first = place_of[hexes.dofs.element_dofs].T
-    cells = first[None] + 2 * p * np.arange(layers)[:, None, None]
-    z = 0.5 * height * np.arange(2 * layers + 1) - 0.5 * width
-    turn = np.array([clockwise(twist * h, 3) for h in z])
-    layer_turn = turn[0] @ np.array([clockwise(twist * height * i, 3) for i in range(layers)])
+    if layers:
+        height = width / layers
+        elements, place_of = layer_mesh(mesh, height)
+        basis, at_nodes = _bases(elements, skfem.ElementHex2())
+        first = place_of[elements.dofs.element_dofs].T
+        z = 0.5 * height * np.arange(2 * layers + 1) - 0.5 * width
+    else:
+        height = 0.0
+        basis, at_nodes = _bases(mesh.mesh, skfem.ElementQuad2())
+        first = mesh.cells.T
+        z = np.zeros(1)
+    number = np.arange(layers or 1)
+    cells = first[None] + 2 * p * number[:, None, None]
+    turn = np.array([clockwise(mesh.twist * h, d) for h in z])
+    layer_turn = turn[0] @ np.array([clockwise(mesh.twist * height * i, d) for i in number])
     points = np.einsum("pij,nj->pni", turn[:, :2, :2], mesh.points)
-    points = np.concatenate([points, np.broadcast_to(z[:, None, None], (*points.shape[:2], 1))], -1).reshape(-1, 3)
-    tilted = np.hstack(
-        [np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))]
-    )
+    if layers:
+        points = np.concatenate([points, np.broadcast_to(z[:, None, None], (*points.shape[:2], 1))], -1)
+    points = points.reshape(-1, d)
 
     # Every layer has the element matrices of the first one, turned: K = R K_1 R^T node by node.
-    blocks = element_matrices(basis, poisson_ratio)
-    e, k = cells.shape[1:]
-    blocks = blocks.reshape(e, k, 3, k, 3)
-    K = sp.csc_array((3 * len(points), 3 * len(points)))
+    e, k = first.shape
+    blocks = element_matrices(basis, poisson_ratio).reshape(e, k, d, k, d)
+    K = sp.csc_array((d * len(points), d * len(points)))
     for of_layer, R in zip(cells, layer_turn, strict=True):
-        turned = np.einsum("ij,eajbl,ml->eaibm", R, blocks, R, optimize=True).reshape(e, 3 * k, 3 * k)
-        K = K + assembled(turned, component_dofs(of_layer.T, 3), 3 * len(points))
+        turned = np.einsum("ij,eajbl,ml->eaibm", R, blocks, R, optimize=True).reshape(e, d * k, d * k)
+        K = K + assembled(turned, component_dofs(of_layer.T, d), d * len(points))
 
     def planes(nodes: np.ndarray) -> np.ndarray:
         return np.asarray((nodes[None] + p * np.arange(len(z))[:, None]).ravel())
@@ -168,10 +142,10 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
         right=planes(mesh.right),
         flank=planes(mesh.flank),
         fillet=planes(fillet),
-        normal=np.einsum("pij,nj->pni", turn, tilted).reshape(-1, 3),
+        normal=np.einsum("pij,nj->pni", turn, mesh.helicoid_normal if layers else mesh.normal).reshape(-1, d),
         turn=turn,
         layer_turn=layer_turn,
-        pitch_turn=clockwise(mesh.pitch_angle, 3),
+        pitch_turn=clockwise(mesh.pitch_angle, d),
         poisson_ratio=poisson_ratio,
         basis=at_nodes,
     )

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.gears.geometry.outline import ToothOutline
+from rotorgear.gears.tooth_fe.elasticity import with_middles
 
 # The curve between rim and tooth sags by this share of its half width, which keeps the angles at its ends open.
 _SAG = 0.35
@@ -50,14 +51,6 @@ class MeshSize:
         return self.columns * self.rim + self.tooth * (self.involute + self.fillet)
 
 
-def _halves(knots: np.ndarray) -> np.ndarray:
-    """Knots with the middle of each interval between them."""
-    with_middles = np.empty(2 * len(knots) - 1)
-    with_middles[::2] = knots
-    with_middles[1::2] = 0.5 * (knots[1:] + knots[:-1])
-    return with_middles
-
-
 def _geometric(count: int, ratio: float) -> np.ndarray:
     """Knots from 0 to 1 whose steps shrink by `ratio` each."""
     steps = ratio ** -np.arange(count, dtype=float)
@@ -70,7 +63,7 @@ def flank_rolls(outline: ToothOutline, size: MeshSize) -> np.ndarray:
     high = outline.tip_roll_length**2
     # Denser at both ends, where contact begins and tip corners touch.
     t = np.linspace(0.0, 1.0, size.involute + 1)
-    share = _halves(t - 0.5 * np.sin(2.0 * np.pi * t) / (2.0 * np.pi))
+    share = with_middles(t - 0.5 * np.sin(2.0 * np.pi * t) / (2.0 * np.pi))
     return np.sqrt(low + (high - low) * share)
 
 
@@ -91,7 +84,7 @@ def _base_curve(outline: ToothOutline, across: np.ndarray) -> np.ndarray:
 
 def _across(size: MeshSize) -> np.ndarray:
     """Columns of the tooth from 0 on the left to 1 on the loaded flank, where they are densest."""
-    return _halves(_geometric(size.tooth, _COLUMN_RATIO))
+    return with_middles(_geometric(size.tooth, _COLUMN_RATIO))
 
 
 def rim_points(outline: ToothOutline, size: MeshSize, inner_radius: float) -> np.ndarray:
@@ -112,7 +105,7 @@ def rim_points(outline: ToothOutline, size: MeshSize, inner_radius: float) -> np
     # Rows of a deep rim grow towards the inner circle, where the stresses of the teeth have died away.
     depth = outline.root_radius - inner_radius
     ratio = max(1.0, (depth / 3.0) ** (1.0 / size.rim)) if depth > 3.0 else 1.0
-    t = _halves(_geometric(size.rim, ratio))[:, None, None]
+    t = with_middles(_geometric(size.rim, ratio))[:, None, None]
     return np.asarray((1.0 - t) * bottom + t * top)
 
 

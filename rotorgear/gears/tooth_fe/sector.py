@@ -75,13 +75,11 @@ def layered_sector(
     mesh: PitchMesh, poisson_ratio: float, width: float, layers: int, progress: Progress = silent
 ) -> Sector:
     """Superelement of a helical pitch of face width `width` (normal modules) in so many layers; end faces free."""
-    b = mesh.outline.geometry.base_helix_angle
-    tilted = np.hstack([np.cos(b) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(b))])
-    frame, free, inside, keep = _frames(mesh, tilted)
+    frame, free, inside, keep = _frames(mesh, mesh.helicoid_normal)
     K = layer_stiffness(mesh, poisson_ratio, width / layers, frame)
     cut = 3 * len(mesh.left)
     groups = [cut, cut, len(keep) - 2 * cut]
-    S = stacked_layers(K, 3 * len(mesh.points), inside, keep, layers, groups, progress)
+    S = stacked_layers(K, inside, keep, layers, groups, progress)
     planes = 2 * layers + 1
     return Sector(S, planes * cut, planes * groups[2], len(free) * planes)
 
@@ -89,20 +87,18 @@ def layered_sector(
 def layer_stiffness(mesh: PitchMesh, poisson_ratio: float, height: float, frame: sp.csc_array) -> sp.csc_array:
     """Stiffness of one layer in the unknowns of its three planes, each turned with the helix: all layers have the same."""
     skfem = scikit_fem()
-    g = mesh.outline.geometry
-    twist = np.tan(g.base_helix_angle) / g.base_radius
-    hexes, place_of = layer_mesh(mesh, height, twist)
+    hexes, place_of = layer_mesh(mesh, height)
     K_e = element_matrices(skfem.Basis(hexes, skfem.ElementHex2(), intorder=4), poisson_ratio)
     K = assembled(K_e, component_dofs(place_of[hexes.dofs.element_dofs], 3), 9 * len(mesh.points))
     turn = [
-        sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), clockwise(twist * h, 3))) @ frame
+        sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), clockwise(mesh.twist * h, 3))) @ frame
         for h in (0.0, 0.5 * height, height)
     ]
     T = sp.block_diag(turn, format="csc")
     return sp.csc_array(T.T @ K @ T)
 
 
-def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.ndarray]:
+def layer_mesh(mesh: PitchMesh, height: float) -> tuple[Any, np.ndarray]:
     """One layer of quadratic hexahedra, and the place of each of its nodes: plane by plane, there as in the plane mesh."""
     skfem = scikit_fem()
     quads = mesh.mesh.t
@@ -119,8 +115,8 @@ def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.nd
 
     # The plane's nodes, turned clockwise with the helix as z rises.
     z = 0.5 * height * lattice[:, 2]
-    cosine = np.cos(twist * z)
-    sine = np.sin(twist * z)
+    cosine = np.cos(mesh.twist * z)
+    sine = np.sin(mesh.twist * z)
     x, y = mesh.points[below].T
     points = np.vstack([cosine * x + sine * y, cosine * y - sine * x, z])
     return skfem.MeshHex2(points, straight.t), lattice[:, 2] * len(mesh.points) + below
@@ -160,13 +156,7 @@ def _condensed(K: np.ndarray, inside: int) -> np.ndarray:
 
 
 def stacked_layers(
-    K: sp.csc_array,
-    p: int,
-    inside: np.ndarray,
-    keep: np.ndarray,
-    layers: int,
-    groups: list[int],
-    progress: Progress,
+    K: sp.csc_array, inside: np.ndarray, keep: np.ndarray, layers: int, groups: list[int], progress: Progress
 ) -> np.ndarray:
     """Stiffness of a stack of equal layers in the kept unknowns of all planes, group by group, plane by plane within a group.
 
@@ -174,7 +164,6 @@ def stacked_layers(
 
     Args:
         K: of one layer with its three planes.
-        p: unknowns of a plane.
         inside: those of a plane that are condensed.
         keep: those that are kept.
         layers: how many.
@@ -183,6 +172,7 @@ def stacked_layers(
     """
     i = len(inside)
     k = len(keep)
+    p = K.shape[0] // 3  # unknowns of a plane
     order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
     block = _condensed(K[order][:, order].toarray(), i)  # bottom and top inside, then what is kept of its planes
 

@@ -10,6 +10,7 @@ Reference: cyclic symmetry as in D. L. Thomas, International Journal for Numeric
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,12 +42,12 @@ def wheel_flexibility(
     pitch = _JoinedPitches.of(sector)
     circle = _Circle(sector, blank, teeth)
     total = _HermitianSum(sector.flank, reach)
-    seats = _on_seats(pitch, circle.column, min(teeth, _ANGLES), total)
+    on_seats = _on_seats(pitch, circle.column, min(teeth, _ANGLES), total)
     u = len(circle.column)
     last = teeth // 2
     for first in range(0, last + 1, _HARMONICS_TOGETHER):
         some = np.arange(first, min(first + _HARMONICS_TOGETHER, last + 1))
-        for n, reduced in zip(some, seats.at(2.0 * np.pi * some / teeth), strict=True):
+        for n, reduced in zip(some, on_seats(2.0 * np.pi * some / teeth), strict=True):
             progress(2.0 * n / teeth, f"harmonic {n} of {last} round the wheel")
             system = reduced[:, :u] + circle.stiffness(int(n))
             factor = la.cholesky(system, lower=True, check_finite=False)
@@ -133,10 +134,6 @@ class _JoinedPitches:
         load[2] = -load[1]
         return cls(stiffness, load)
 
-    def ordered(self, order: np.ndarray) -> _JoinedPitches:
-        """The same with unknowns in another order."""
-        return _JoinedPitches(self.stiffness[:, order[:, None], order], self.load[:, order])
-
     def at(self, turn: complex) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness (c + m, c + m) and load (c + m, f), where the right cut moves by `turn` times the left one."""
         found = []
@@ -148,32 +145,18 @@ class _JoinedPitches:
         return found[0], found[1]
 
 
-@dataclass(frozen=True)
-class _OnSeats:
-    """What is left on the seat's unknowns, as a sum over pitches k of R_k e^(i k angle): stiffness (u, u) beside load (u, f).
+def _on_seats(
+    pitch: _JoinedPitches, seat: np.ndarray, count: int, total: _HermitianSum
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Eliminate the rest of the cuts at `count` angles; what loads move with seats at rest is added to `total`.
 
-    Attributes:
-        pitches: (p,) numbers k.
-        reduced: (p, u, u + f) R_k.
+    Returns:
+        A function of angles (a,) from pitch to pitch: stiffness (u, u) beside load (u, f) that is left on the seat's unknowns, as
+        a sum over pitches k of R_k e^(i k angle), (a, u, u + f).
     """
-
-    pitches: np.ndarray
-    reduced: np.ndarray
-
-    def at(self, angles: np.ndarray) -> np.ndarray:
-        """Values (a, u, u + f) at angles (a,) from pitch to pitch."""
-        flat = self.reduced.reshape(len(self.pitches), -1)
-        phase = angles[:, None] * self.pitches
-        found = np.empty((len(angles), flat.shape[1]), complex)
-        found.real = np.cos(phase) @ flat
-        found.imag = np.sin(phase) @ flat
-        return found.reshape(len(angles), *self.reduced.shape[1:])
-
-
-def _on_seats(pitch: _JoinedPitches, seat: np.ndarray, count: int, total: _HermitianSum) -> _OnSeats:
-    """Eliminate the rest of the cuts at `count` angles; what loads move with seats at rest is added to `total`."""
     r = len(pitch.load[0]) - len(seat)
-    ordered = pitch.ordered(np.concatenate([np.setdiff1d(np.arange(len(pitch.load[0])), seat), seat]))
+    order = np.concatenate([np.setdiff1d(np.arange(len(pitch.load[0])), seat), seat])  # the seat's unknowns come last
+    ordered = _JoinedPitches(pitch.stiffness[:, order[:, None], order], pitch.load[:, order])
     u = len(seat)
     samples = np.empty((count // 2 + 1, u, u + pitch.load.shape[2]), complex)
     for j, sample in enumerate(samples):
@@ -187,9 +170,18 @@ def _on_seats(pitch: _JoinedPitches, seat: np.ndarray, count: int, total: _Hermi
         sample[:, u:] = load[r:]
         sample -= carried[:, :u].conj().T @ carried
     # R(-angle) is conjugate to R(angle), so that all R_k are real.
-    values = np.fft.irfft(np.conjugate(samples, out=samples), count, axis=0)
-    pitches = np.arange(count)
-    return _OnSeats(np.where(pitches > count // 2, pitches - count, pitches), values)
+    reduced = np.fft.irfft(np.conjugate(samples, out=samples), count, axis=0).reshape(count, -1)
+    numbers = np.arange(count)
+    pitches = np.where(numbers > count // 2, numbers - count, numbers)
+
+    def at(angles: np.ndarray) -> np.ndarray:
+        phase = angles[:, None] * pitches
+        found = np.empty((len(angles), reduced.shape[1]), complex)
+        found.real = np.cos(phase) @ reduced
+        found.imag = np.sin(phase) @ reduced
+        return found.reshape(len(angles), u, -1)
+
+    return at
 
 
 class _HermitianSum:

@@ -13,16 +13,24 @@ of a plane model. Young's modulus 1, lengths in normal modules.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.polynomial import legendre
-from scipy.sparse.linalg import splu
 
-from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices, lame, node_dofs
+from rotorgear.gears.tooth_fe.elasticity import (
+    assembled,
+    component_dofs,
+    condensed,
+    element_matrices,
+    lame,
+    node_dofs,
+    quadratic,
+)
 from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
-from rotorgear.gears.tooth_fe.sector import layer_stiffness, node_frames, stacked_layers
+from rotorgear.gears.tooth_fe.sector import Sector, layer_stiffness, node_frames, stacked_layers
 from rotorgear.progress import Progress, silent
 
 # Quadratic elements of the seat over one pitch.
@@ -30,73 +38,37 @@ SEATS = 2
 
 
 @dataclass(frozen=True)
-class WheelSector:
+class WheelSector(Sector):
     """Superelement of one pitch; unknowns: left cut, right cut (in the next pitch's frame), middle of the seat, flank normals.
 
+    The seat's end is among the unknowns of a cut.
+
     Attributes:
-        stiffness: (n, n), condensed.
-        cut: unknowns of one cut, those of the seat's end among them.
         middle: unknowns of the seat between the cuts.
-        flank: unknowns of the flank.
         seat: (2 SEATS, s, 3) where the components (radial, tangential, axial) of the seat's s functions along the face stand: of
             its end among those of a cut, of its other nodes among the middle ones; -1 where a function has no such component.
         along: the s functions along the face at places (k,): (k, s).
         twist: angle of the teeth over the length along the axis.
-        unknowns: degrees of freedom before condensation.
     """
 
-    stiffness: np.ndarray
-    cut: int
     middle: int
-    flank: int
     seat: np.ndarray
-    along: AlongFace
+    along: Callable[[np.ndarray], np.ndarray]
     twist: float
-    unknowns: int
 
 
-@dataclass(frozen=True)
-class AlongFace:
-    """Functions along the face: quadratic shape functions of layers, or Legendre polynomials.
-
-    Attributes:
-        width: of the face.
-        layers: quadratic elements along the face; 0 for polynomials.
-        order: highest polynomial.
-    """
-
-    width: float
-    layers: int
-    order: int = 0
-
-    def __call__(self, z: np.ndarray) -> np.ndarray:
-        """Values (k, s) at places (k,)."""
-        t = np.clip(2.0 * z / self.width, -1.0, 1.0)
-        if not self.layers:
-            return np.asarray(legendre.legvander(t, self.order))
-        place = 0.5 * (t + 1.0) * self.layers
-        element = np.clip(place.astype(int), 0, self.layers - 1)
-        values = np.zeros((len(z), 2 * self.layers + 1))
-        shapes = quadratic(2.0 * (place - element) - 1.0)
-        for node in range(3):
-            values[np.arange(len(z)), 2 * element + node] = shapes[:, node]
-        return values
-
-
-def quadratic(t: np.ndarray) -> np.ndarray:
-    """The three quadratic shape functions (k, 3) at places (k,) between -1 and 1."""
-    return np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1)
+def _row_of_elements(place: np.ndarray, elements: int) -> np.ndarray:
+    """Shape functions (k, 2 e + 1) of a row of e equal quadratic elements at places (k,), counted in elements."""
+    element = np.clip(place.astype(int), 0, elements - 1)
+    values = np.zeros((len(place), 2 * elements + 1))
+    nodes = 2 * element[:, None] + np.arange(3)
+    np.put_along_axis(values, nodes, quadratic(2.0 * (place - element) - 1.0), axis=1)
+    return values
 
 
 def seat_shapes(share: np.ndarray) -> np.ndarray:
     """Functions (k, 2 SEATS + 1) of the seat at shares (k,) of a pitch between -1/2 and 1/2."""
-    place = (share + 0.5) * SEATS
-    element = np.clip(place.astype(int), 0, SEATS - 1)
-    values = np.zeros((len(share), 2 * SEATS + 1))
-    shapes = quadratic(2.0 * (place - element) - 1.0)
-    for node in range(3):
-        values[np.arange(len(share)), 2 * element + node] = shapes[:, node]
-    return values
+    return _row_of_elements((share + 0.5) * SEATS, SEATS)
 
 
 def seat_frame(mesh: PitchMesh) -> tuple[np.ndarray, np.ndarray]:
@@ -156,14 +128,11 @@ def layered_wheel(
     mesh: PitchMesh, poisson_ratio: float, width: float, layers: int, progress: Progress = silent
 ) -> WheelSector:
     """Superelement in layers of hexahedra, spur or helical; end faces free."""
-    b = mesh.outline.geometry.base_helix_angle
-    normal = np.hstack([np.cos(b) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(b))])
-    frame = _frame(mesh, normal)
-    twist = float(np.tan(b) / mesh.outline.geometry.base_radius)
+    frame = _frame(mesh, mesh.helicoid_normal)
     K = layer_stiffness(mesh, poisson_ratio, width / layers, frame.matrix)
     keep = np.concatenate([*frame.cut, frame.middle, frame.flank])
     groups = [len(frame.cut[0]), len(frame.cut[1]), len(frame.middle), len(frame.flank)]
-    S = stacked_layers(K, 3 * len(mesh.points), frame.inside, keep, layers, groups, progress)
+    S = stacked_layers(K, frame.inside, keep, layers, groups, progress)
     planes = 2 * layers + 1
     cut, _, middle, flank = groups
 
@@ -171,14 +140,18 @@ def layered_wheel(
     plane = np.arange(planes)[:, None]
     end = cut * plane + np.arange(3)
     rest = [middle * plane + 3 * node + np.arange(3) for node in range(2 * SEATS - 1)]
+
+    def along(z: np.ndarray) -> np.ndarray:
+        return _row_of_elements(0.5 * (np.clip(2.0 * z / width, -1.0, 1.0) + 1.0) * layers, layers)
+
     return WheelSector(
         stiffness=S,
         cut=planes * cut,
         middle=planes * middle,
         flank=planes * flank,
         seat=np.stack([end, *rest]),
-        along=AlongFace(width, layers),
-        twist=twist,
+        along=along,
+        twist=mesh.twist,
         unknowns=planes * (len(frame.inside) + len(keep)),
     )
 
@@ -194,8 +167,7 @@ def even_wheel(mesh: PitchMesh, poisson_ratio: float, width: float, order: int, 
     axial = orders[1::2] if centred else orders
     u = _frame(mesh, mesh.normal)
     w = _frame(mesh, np.empty((0, 1)))
-    UU, UW, WW = _polynomial_stiffness(mesh, poisson_ratio, width, in_plane, axial, u.matrix, w.matrix)
-    K = sp.csc_array(sp.block_array([[UU, UW], [UW.T, WW]]))
+    K = _polynomial_stiffness(mesh, poisson_ratio, width, (in_plane, axial), (u.matrix, w.matrix))
 
     # Unknowns order by order: those in the plane, then the axial ones.
     p = len(mesh.points)
@@ -212,9 +184,6 @@ def even_wheel(mesh: PitchMesh, poisson_ratio: float, width: float, order: int, 
     # Normal displacements of higher polynomials, and all that is inside.
     others = (place_u[1:] + u.flank).ravel()
     inside = np.concatenate([both(u.inside, w.inside), others])
-    couple = K[inside][:, keep].toarray()
-    factor = splu(sp.csc_matrix(K[inside][:, inside]), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    S = K[keep][:, keep].toarray() - couple.T @ factor.solve(couple)
 
     def seats(node: int, size: tuple[int, int]) -> np.ndarray:
         """Where a node of the seat stands in its group, by polynomial and component."""
@@ -227,13 +196,17 @@ def even_wheel(mesh: PitchMesh, poisson_ratio: float, width: float, order: int, 
 
     end = seats(0, (len(u.cut[0]), len(w.cut[0])))
     rest = [seats(node, (len(u.middle), len(w.middle))) for node in range(2 * SEATS - 1)]
+
+    def along(z: np.ndarray) -> np.ndarray:
+        return np.asarray(legendre.legvander(np.clip(2.0 * z / width, -1.0, 1.0), order))
+
     return WheelSector(
-        stiffness=0.5 * (S + S.T),
+        stiffness=condensed(K, inside, keep),
         cut=len(cuts[0]),
         middle=len(middle),
         flank=len(flank),
         seat=np.stack([end, *rest]),
-        along=AlongFace(width, 0, order),
+        along=along,
         twist=0.0,
         unknowns=len(inside) + len(keep),
     )
@@ -243,12 +216,10 @@ def _polynomial_stiffness(
     mesh: PitchMesh,
     poisson_ratio: float,
     width: float,
-    in_plane: np.ndarray,
-    axial: np.ndarray,
-    u_frame: sp.csc_array,
-    w_frame: sp.csc_array,
-) -> tuple[sp.csc_array, sp.csc_array, sp.csc_array]:
-    """Blocks of the stiffness over the face: plane with plane, plane with axial, axial with axial, polynomial by polynomial.
+    powers: tuple[np.ndarray, np.ndarray],
+    frames: tuple[sp.csc_array, sp.csc_array],
+) -> sp.csc_array:
+    """Stiffness over the face, polynomial by polynomial, for powers and frames in the plane and along the axis.
 
     With the plane integrals H_ij = (d_i N_a)(d_j N_b), C_i = (d_i N_a) N_b, Q = N_a N_b and those along the face
     M_kl = int P_k P_l, R_kl = int P_k P_l', T_kl = int P_k' P_l':
@@ -257,6 +228,8 @@ def _polynomial_stiffness(
     """
     skfem = scikit_fem()
     lam, mu = lame(poisson_ratio)
+    in_plane, axial = powers
+    u_frame, w_frame = frames
     basis = skfem.Basis(mesh.mesh, skfem.ElementQuad2(), intorder=4)
     p = len(mesh.points)
     nodes = component_dofs(mesh.cells, 1)
@@ -295,4 +268,4 @@ def _polynomial_stiffness(
     Q_w = w_frame.T @ Q @ w_frame
     tr_w = w_frame.T @ tr_H @ w_frame
     WW = (lam + 2.0 * mu) * sp.kron(cut(T, axial, axial), Q_w) + mu * sp.kron(cut(M, axial, axial), tr_w)
-    return sp.csc_array(UU), sp.csc_array(UW), sp.csc_array(WW)
+    return sp.csc_array(sp.block_array([[UU, UW], [UW.T, WW]]))

@@ -13,7 +13,7 @@ import scipy.sparse.linalg as spl
 import rotorgear as rg
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.teeth.errors import error_parts
-from rotorgear.analysis.teeth.request import Cycle, SolvedHelices, mesh_request, solve_helices
+from rotorgear.analysis.teeth.request import SolvedHelices, mesh_request, solve_helices
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
@@ -193,7 +193,7 @@ def test_estimates_of_helical_teeth_are_larger_than_errors_against_thinner_layer
     def solved(fe: ToothFe) -> tuple[ToothPair, SolvedHelices]:
         assert request.teeth is not None
         teeth = replace(request.teeth, fe=fe)
-        return teeth, solve_helices(request, teeth, request.base_force, Cycle(32), judged=True)
+        return teeth, solve_helices(request, teeth, 32, judged=True)
 
     def figures(found: SolvedHelices) -> np.ndarray:
         return np.array([found.curve.mean()[1], np.ptp(found.stiffness), np.ptp(found.error)])
