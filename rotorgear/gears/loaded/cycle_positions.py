@@ -14,8 +14,8 @@ judge those that are, so that an estimate rests on contact solutions that its re
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -46,14 +46,10 @@ _LEAST_BUBBLE = 0.25
 _SAME = 1e-7
 
 
-class Solved(Protocol):
-    """Contact solutions over a cycle, to which positions can be added."""
-
-    def add(self, positions: np.ndarray) -> np.ndarray:
-        """Solve new positions (m,); values (m, c) of the curves there."""
-
-    def events(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where pairs come and go: guesses (k,) that would be solved next, and the solved position (k,) nearest to each."""
+# Solves new positions (m,) and gives the values (m, c) of the curves there.
+Add = Callable[[np.ndarray], np.ndarray]
+# Where pairs come and go: guesses (k,) that would be solved next, and the solved position (k,) nearest to each.
+Events = Callable[[], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -101,19 +97,20 @@ def _bounds(curve: CycleCurve, error: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def sampled(
-    solved: Solved, count: int, period: float, known: np.ndarray, sides: np.ndarray, *, judged: bool = True
+    add: Add, events: Events, count: int, period: float, known: np.ndarray, sides: np.ndarray, *, judged: bool = True
 ) -> SampledCurves:
     """Choose and solve positions.
 
     Args:
-        solved: takes positions and gives values.
+        add: solves positions.
+        events: where pairs come and go among those that are solved.
         count: positions that are kept, over the whole cycle.
         period: length of the cycle in base pitches.
         known: (k,) events that geometry knows.
         sides: (c,) 2 for curves whose peak to peak is asked for, 1 for those whose largest value is.
         judged: whether more positions are solved, which judge those that are kept; else errors are those of the last rounds.
     """
-    search = _Search(solved, period, sides, known)
+    search = _Search(add, events, period, sides, known)
     first = round(min(max(count / 3, _FIRST[0] * period), _FIRST[1] * period, count))
     search.add(np.arange(first) * (period / first))
     search.fill(count)
@@ -128,8 +125,9 @@ def sampled(
 class _Search:
     """Positions that are solved, and what each interval between them may be wrong by."""
 
-    def __init__(self, solved: Solved, period: float, sides: np.ndarray, known: np.ndarray) -> None:
-        self.solved = solved
+    def __init__(self, solve: Add, events: Events, period: float, sides: np.ndarray, known: np.ndarray) -> None:
+        self.solve = solve
+        self.events = events
         self.period = period
         self.sides = sides
         self.known = np.unique(np.mod(known, period))
@@ -146,7 +144,7 @@ class _Search:
         """Add positions until there are `count`: at events first, then where the curves may be wrong."""
         self.add(self._new(self.known)[: count - len(self.position)])
         for _ in range(_CHORDS):
-            guesses = self._new(self.solved.events()[0])[: count - len(self.position)]
+            guesses = self._new(self.events()[0])[: count - len(self.position)]
             if not len(guesses):
                 break
             self.add(guesses)
@@ -175,7 +173,7 @@ class _Search:
         return np.asarray(u[apart.min(axis=1) > _SAME])
 
     def _mark_events(self) -> None:
-        places = np.concatenate([self.known, self.solved.events()[1]])
+        places = np.concatenate([self.known, self.events()[1]])
         if len(places):
             apart = np.abs(self.position[:, None] - np.mod(places, self.period))
             self.event = apart.min(axis=1) <= _SAME
@@ -184,36 +182,34 @@ class _Search:
         """Solve positions (m,), and learn from what the cubics had there."""
         if not len(positions):
             return
-        values = self.solved.add(positions)
-        if len(self.position):
-            miss = np.abs(values - self.curve().at(positions))
+        values = self.solve(positions)
+        first = not len(self.position)
+        error = self.error
+        if not first:
+            curve = self.curve()
+            miss = np.abs(values - curve.at(positions))
             parent = np.mod(np.searchsorted(self.position, positions, side="right") - 1, len(self.position))
             left = _BY_CHANCE * self.error
             # The error of a cubic is about 4 t (1 - t) of that in its middle.
-            share = np.mod(positions - self.position[parent], self.period) / self.curve().width[parent]
+            share = np.mod(positions - self.position[parent], self.period) / curve.width[parent]
             np.maximum.at(left, parent, miss / np.maximum(4.0 * share * (1.0 - share), _LEAST_BUBBLE)[:, None])
-            error = self.error.copy()
             error[parent] = left[parent]
-            self.error = np.concatenate([error, left[parent]])
+            error = np.concatenate([error, left[parent]])
         order = np.argsort(np.concatenate([self.position, positions]), kind="stable")
-        first = not len(self.position)
         self.position = np.concatenate([self.position, positions])[order]
         self.values = np.concatenate([self.values, values])[order]
         self.event = np.concatenate([self.event, np.zeros(len(positions), bool)])[order]
-        if first:
-            # Nothing has judged the cubics yet: they may be wrong by as much as they are away from the chord.
-            middle = self.curve().within(np.array([0.5]))[:, 0]
-            self.error = np.abs(middle - 0.5 * (self.values + np.roll(self.values, -1, axis=0)))
-        else:
-            self.error = self.error[order]
-        # No interval can hide more than the curve climbs in it where it is steepest.
         curve = self.curve()
-        steepest = np.abs((np.roll(self.values, -1, axis=0) - self.values) / curve.width[:, None]).max(axis=0)
-        self.error = np.minimum(self.error, steepest * curve.width[:, None])
+        width = curve.width[:, None]
+        following = np.roll(self.values, -1, axis=0)
+        rise = np.abs(following - self.values)
+        # As long as nothing has judged the cubics, they may be wrong by as much as they are away from the chord.
+        from_chord = np.abs(curve.within(np.array([0.5]))[:, 0] - 0.5 * (self.values + following))
+        error = from_chord if first else error[order]
+        # No interval can hide more than the curve climbs in it where it is steepest.
+        error = np.minimum(error, (rise / width).max(axis=0) * width)
         # Near positions enclose an event; between them curves are monotone: a quarter of the rise is the most for that.
-        rise = np.abs(np.roll(self.values, -1, axis=0) - self.values)
-        narrow = curve.width[:, None] <= NEAR
-        self.error = np.where(narrow, np.minimum(self.error, 0.25 * rise), self.error)
+        self.error = np.where(width <= NEAR, np.minimum(error, 0.25 * rise), error)
 
     def _next(self, most: int) -> np.ndarray:
         """New positions in the intervals that may change a result most."""

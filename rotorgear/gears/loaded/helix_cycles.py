@@ -209,7 +209,8 @@ class HelixCycles:
         if not first.first.helix_angle:
             known = np.concatenate([known_events(first, shift) for shift in self.shift])
             known = (known + np.arange(self.periods)[:, None]).ravel()
-        return sampled(self, positions * self.periods // halves, self.repeats, known, _SIDES, judged=judged)
+        count = positions * self.periods // halves
+        return sampled(self.add, self.events, count, self.repeats, known, _SIDES, judged=judged)
 
 
 def _largest_pressure(cycle: MeshCycle) -> np.ndarray:

@@ -1,11 +1,8 @@
-(
-    """Loaded tooth contact of one helix over the mesh cycle: positions, slices, compliance of all of them, and the sweep.
+"""Loaded tooth contact of one helix over the mesh cycle: positions, slices, compliance of all of them, and the sweep.
 
 Transmission error and stiffness are transverse, along the line of action: k = F_bt / (delta - delta_0), delta_0 being the one
 without load; the tangent stiffness is its derivative dF_bt / d delta at the load.
 """
-    ""
-)
 
 from __future__ import annotations
 
@@ -16,12 +13,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.gears.loaded.contact_points import MOST_BEYOND, Slices, contact_slices
-from rotorgear.gears.loaded.loaded_contact import (
-    ContactState,
-    PositionContact,
-    moment_and_tangents,
-    tangent_compliance,
-)
+from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents, tangent_compliance
 from rotorgear.gears.loaded.settled_contacts import PASSES, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -146,12 +138,11 @@ class MeshCycle:
         new[numbers] = np.arange(len(numbers))
         here = np.flatnonzero(new[self.slices.position] >= 0)
         slices = self.slices.take(here)
-        at_positions: dict[str, Any] = {name: getattr(self, name)[numbers] for name in _BY_POSITION}
-        of_slices: dict[str, Any] = {name: getattr(self, name)[here] for name in _BY_SLICE}
+        arrays: dict[str, Any] = {name: getattr(self, name)[numbers] for name in _BY_POSITION}
+        arrays |= {name: getattr(self, name)[here] for name in _BY_SLICE}
         return replace(
             self,
-            **at_positions,
-            **of_slices,
+            **arrays,
             slices=replace(slices, position=new[slices.position]),
             contacts=tuple(self.contacts[i] for i in numbers),
             states=tuple(self.states[i] for i in numbers),
@@ -165,19 +156,13 @@ def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, prog
         WideContactError: a load under which the contact is no line any more.
         ConvergenceError: a position has no solution to the tolerance.
     """
-    if len(positions) < 2 * _STRIDE:
-        return _followed(problem, load, positions, _first_reach(problem, load), progress)
-    return _followed(problem, load, positions, corner_reach(problem, load, positions[::_STRIDE]), progress)
+    reach = None if len(positions) < 2 * _STRIDE else corner_reach(problem, load, positions[::_STRIDE])
+    return _followed(problem, load, positions, reach, progress)
 
 
 def corner_reach(problem: ContactProblem, load: float, positions: np.ndarray) -> tuple[float, float]:
     """How far corners touch before the start and after the end (m) for F_bt = load (N), as some positions tell it."""
-    return _followed(problem, load, positions, _first_reach(problem, load), silent, passes=1).beyond
-
-
-def _first_reach(problem: ContactProblem, load: float) -> tuple[float, float]:
-    """As for a typical stiffness: a guess that spares passes."""
-    return beyond_line(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
+    return _followed(problem, load, positions, None, silent, passes=1).beyond
 
 
 def with_more(
@@ -209,15 +194,14 @@ def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
 
     a = first.slices
     b = second.slices
-    at_positions = {name: both(first, second, name, order) for name in _BY_POSITION}
-    of_slices = {name: both(first, second, name, here) for name in _BY_SLICE}
+    arrays = {name: both(first, second, name, order) for name in _BY_POSITION}
+    arrays |= {name: both(first, second, name, here) for name in _BY_SLICE}
     slices = {name: both(a, b, name, here) for name in ("pair", "z", "length", "gap", "corner")}
     contacts = first.contacts + second.contacts
     states = first.states + second.states
     return replace(
         first,
-        **at_positions,
-        **of_slices,
+        **arrays,
         slices=replace(a, **slices, position=number[here], roll=both(a, b, "roll", here, axis=1)),
         residual=max(first.residual, second.residual),
         contacts=tuple(contacts[i] for i in order),
@@ -230,11 +214,16 @@ def _followed(
     problem: ContactProblem,
     load: float,
     positions: np.ndarray,
-    beyond: tuple[float, float],
+    beyond: tuple[float, float] | None,
     progress: Progress,
     passes: int = PASSES,
 ) -> MeshCycle:
-    """The cycle with corners followed as far as they touch, but not much farther: slices that never touch cost time."""
+    """The cycle with corners followed as far as they touch, but not much farther: slices that never touch cost time.
+
+    `beyond` is how far they are followed at first; None: as for a typical stiffness, a guess that spares passes.
+    """
+    if beyond is None:
+        beyond = beyond_line(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
     for _ in range(_PASSES):
         cycle = _swept(problem, load, positions, beyond, progress, passes)
         approach = float((cycle.deflection - cycle.no_load).max())
@@ -267,7 +256,7 @@ def _swept(
     least: float = 0.0,
 ) -> MeshCycle:
     """One sweep over all positions; passes: for the widths of patches at most; least: of oblique lines, in normal modules."""
-    cosine = float(np.cos(problem.line.base_helix_angle))
+    cosine = problem.cosine
     slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
     gap = problem.gap(slices)
     found = settled(problem, slices, gap, load / cosine, progress, passes=passes, least=least)
@@ -325,8 +314,7 @@ def _notes(
         )
     # Loaded slices whose kinematic gap is near that of the last place where corners were looked for.
     most = MOST_BEYOND * problem.line.base_pitch
-    cosine = np.cos(problem.line.base_helix_angle)
-    widest = min(float(problem.line.corner(gear, np.array([0.9 * most]))[0][0]) for gear in (0, 1)) * cosine
+    widest = min(float(problem.line.corner(gear, np.array([0.9 * most]))[0][0]) for gear in (0, 1)) * problem.cosine
     far = (slices.gap @ slices.weight >= widest) & (force > 0.0)
     if max(beyond) >= most * (1.0 - 1e-9) and far.any():
         notes.append(

@@ -83,7 +83,6 @@ def settled(
     """
     numbers = [slices.at(i) for i in range(int(slices.position[-1]) + 1)]
     count = len(numbers)
-    cosine = float(np.cos(problem.line.base_helix_angle))
     patch = _least_patches(problem, slices, least) if known is None else known.patch.copy()
     contacts: dict[int, PositionContact] = {}
     start: dict[int, np.ndarray] = {}
@@ -109,7 +108,7 @@ def settled(
         if problem.plane:
             break
         # The patches' half-widths lie in the transverse section; cos b_b brings them across the line.
-        wanted = {i: margin * states[i].strip / cosine / problem.module for i in unsettled}
+        wanted = {i: margin * states[i].strip / problem.cosine / problem.module for i in unsettled}
         unsettled = [i for i in unsettled if np.any(wanted[i] > patch[numbers[i]])]
         if not unsettled or number + 1 == passes:
             break
@@ -154,11 +153,10 @@ def _with_patches(
     known: dict[int, PositionContact],
 ) -> dict[int, PositionContact]:
     """Contacts at some positions with patches (n,) of such least half-widths; of those `known` only rows that change are new."""
-    cosine = float(np.cos(problem.line.base_helix_angle))
     # In the plane of action: length of the contact line dz / cos b_b, and R = rho_1 rho_2 / (rho_1 + rho_2) with
     # rho = xi / cos b_b.
-    length = slices.length / cosine
-    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / cosine
+    length = slices.length / problem.cosine
+    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / problem.cosine
     before = {i: (known[i].compliance, known[i].log_width) for i in positions if i in known}
     found = {}
     compliances = slice_compliances(problem, slices, positions, patch, before or None)

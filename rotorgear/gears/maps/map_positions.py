@@ -66,7 +66,7 @@ _MODERATE = 2.5
 
 def load_groups(problem: ContactProblem, near: bool = False) -> tuple[tuple[float, ...], ...]:
     """Groups of rising loads over the working one; `near`: in space up to about twice it only, for linear analyses."""
-    if problem.plane and not problem.uncoupled:
+    if problem.one_slice:
         return _IN_PLANE
     groups = _NEAR_IN_SPACE if near else _IN_SPACE
     if not problem.oblique:

@@ -19,8 +19,8 @@ from __future__ import annotations
 import hashlib
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
-from functools import lru_cache
+from dataclasses import fields, is_dataclass, replace
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -53,14 +53,12 @@ _TELLING = 12
 _FARTHER = 1.05
 
 
-def cosine(problem: ContactProblem) -> float:
-    """cos b_b: F_bt = F_n cos b_b."""
-    return float(np.cos(problem.line.base_helix_angle))
+# Groups of loads as multiples of the working one, and groups with the contacts under their largest load.
+Groups = tuple[tuple[float, ...], ...]
+_Solved = list[tuple[tuple[float, ...], Settled]]
 
 
-def up_to(
-    problem: ContactProblem, cycle: MeshCycle, load: float, family: tuple[tuple[float, ...], ...]
-) -> list[tuple[tuple[float, ...], Settled]]:
+def up_to(problem: ContactProblem, cycle: MeshCycle, load: float, family: Groups) -> _Solved:
     """Groups of rising multiples of a force (N), the last of which is that of the cycle, and contacts on its slices."""
     last = Settled(cycle.contacts, cycle.states, cycle.patch)
     if len(family) == 1:
@@ -75,8 +73,8 @@ def up_to(
 
 
 def above(
-    problem: ContactProblem, load: float, family: tuple[tuple[float, ...], ...], place: np.ndarray, progress: Progress
-) -> tuple[Slices, list[tuple[tuple[float, ...], Settled]]]:
+    problem: ContactProblem, load: float, family: Groups, place: np.ndarray, progress: Progress
+) -> tuple[Slices, _Solved]:
     """Slices that reach as far as corners touch under the largest of the forces, and groups with their contacts.
 
     Groups end before the first one under whose largest force the contact is no line.
@@ -91,20 +89,21 @@ def above(
     Raises:
         WideContactError: there is none, or it is no larger than the working one.
     """
-    reach = corner_reach(problem, load * family[-1][-1] * cosine(problem), place[:: max(1, len(place) // _TELLING)])
+    reach = corner_reach(problem, load * family[-1][-1] * problem.cosine, place[:: max(1, len(place) // _TELLING)])
     while True:
         slices = contact_slices(problem.line, place, problem.width, problem.slices, reach, stations=problem.uncoupled)
         gap = problem.gap(slices)
-        found: list[tuple[tuple[float, ...], Settled]] = []
+        settle = partial(settled, problem, slices, gap, progress=progress)
+        found: _Solved = []
         for group in family:
             try:
-                found += _contacts(problem, slices, gap, load, group, found[-1][1] if found else None, progress)
+                found += _contacts(problem, settle, load, group, found[-1][1] if found else None)
             except WideContactError:
                 if not found or group[-1] < 1.0 + 1e-9:
                     raise
                 break
         deflection = max(state.approach for state in found[-1][1].states) - float(gap.min())
-        wanted = beyond_line(problem, deflection / cosine(problem) + problem.largest_gap)
+        wanted = beyond_line(problem, deflection / problem.cosine + problem.largest_gap)
         if wanted[0] <= reach[0] and wanted[1] <= reach[1]:
             return slices, found
         # Rare: the positions that told the reach missed where most is touched.
@@ -113,25 +112,23 @@ def above(
 
 def _contacts(
     problem: ContactProblem,
-    slices: Slices,
-    gap: np.ndarray,
+    settle: Callable[..., Settled],
     load: float,
     group: tuple[float, ...],
     below: Settled | None,
-    progress: Progress,
-) -> list[tuple[tuple[float, ...], Settled]]:
+) -> _Solved:
     """A group and its contacts, which grow from those `below` it.
 
     Where patches of oblique lines change within it, each load by itself on those that it asks for.
     """
     if problem.oblique and below is None:
-        below = settled(problem, slices, gap, load * group[0], progress)
-    last = settled(problem, slices, gap, load * group[-1], progress, below)
+        below = settle(load * group[0])
+    last = settle(load * group[-1], known=below)
     if not problem.oblique or below is None or np.array_equal(last.patch, below.patch):
         return [(group, last)]
     found = []
     for factor in group[:-1]:
-        below = settled(problem, slices, gap, load * factor, progress, below)
+        below = settle(load * factor, known=below)
         found.append(((factor,), below))
     return [*found, (group[-1:], last)]
 
@@ -148,21 +145,12 @@ def of_period_ahead(problem: ContactProblem, slices: Slices, commonest: Settled,
 _TOLERANCE = 1e-6
 
 
-@dataclass(frozen=True)
-class Column:
-    """Approach along the normal (p,) in m, its slope d delta / dF (p,) in m/N, moment (p,) in N m, at one load."""
-
-    approach: np.ndarray
-    slope: np.ndarray
-    moment: np.ndarray
-
-
-def map_columns(slices: Slices, found: Settled, loads: list[float], *, few: bool) -> list[Column]:
-    """Columns at rising normal forces (N), the contacts being settled under the last one.
+def map_columns(slices: Slices, found: Settled, loads: list[float], *, few: bool) -> np.ndarray:
+    """Approach (m), its slope d delta / dF (m/N) and moment (N m) at rising normal forces (N): (3, l, p).
 
     Args:
         slices: of all positions.
-        found: the contacts.
+        found: the contacts, settled under the last of the forces.
         loads: normal forces.
         few: whether a tooth pair has one slice: then all positions and loads are solved at once.
     """
@@ -173,12 +161,12 @@ def map_columns(slices: Slices, found: Settled, loads: list[float], *, few: bool
         _row(contact, state, loads, place[slices.at(i)])
         for i, (contact, state) in enumerate(zip(found.contacts, found.states, strict=True))
     ]
-    return [Column(*(np.array([row[j][i] for row in rows]) for i in range(3))) for j in range(len(loads))]
+    return np.array(rows).transpose(2, 1, 0)
 
 
-def _few_slices(contacts: Sequence[PositionContact], loads: list[float]) -> list[Column]:
+def _few_slices(contacts: Sequence[PositionContact], loads: list[float]) -> np.ndarray:
     """Columns of a pair that has one slice for a tooth pair: all positions with as many pairs, and all loads, at once."""
-    found = np.empty((2, len(contacts), len(loads)))
+    found = np.zeros((3, len(loads), len(contacts)))
     for n in {len(contact.gap) for contact in contacts}:
         which = [i for i, contact in enumerate(contacts) if len(contact.gap) == n]
 
@@ -187,8 +175,8 @@ def _few_slices(contacts: Sequence[PositionContact], loads: list[float]) -> list
 
         many = contacts[which[0]].with_arrays(stacked)
         approach, tangent = solve_many(many, np.tile(loads, len(which)))
-        found[:, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads))
-    return [Column(found[0, :, j], found[1, :, j], np.zeros(len(contacts))) for j in range(len(loads))]
+        found[:2, :, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads)).swapaxes(1, 2)
+    return found
 
 
 def _row(
@@ -216,15 +204,15 @@ def _row(
     return found[::-1]
 
 
-def faded(columns: list[Column], below: Column, factors: list[float]) -> list[Column]:
-    """Columns above a bound, the first of them at it, led from the value `below` it to their own at the last load."""
-    jump = columns[0].approach - below.approach
-    turn = columns[0].moment - below.moment
-    left = [(factors[-1] - factor) / (factors[-1] - factors[0]) for factor in factors[1:]]
-    return [
-        Column(column.approach - jump * share, column.slope, column.moment - turn * share)
-        for column, share in zip(columns[1:], left, strict=True)
-    ]
+def faded(columns: np.ndarray, below: np.ndarray, factors: list[float]) -> np.ndarray:
+    """Columns (3, l, p), the first of them at a bound, led from those `below` it (3, p) to their own at the last load.
+
+    Slopes stay what they are.
+    """
+    jump = columns[:, 0] - below
+    jump[1] = 0.0
+    left = np.array([(factors[-1] - factor) / (factors[-1] - factors[0]) for factor in factors[1:]])
+    return np.asarray(columns[:, 1:] - jump[:, None] * left[:, None])
 
 
 def with_start(slope: np.ndarray, approach: np.ndarray, loads: np.ndarray) -> np.ndarray:
@@ -272,24 +260,19 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
 def _kept(teeth: ToothPair, load: float, positions: int | None, near: bool) -> ContactMap:
     """The map from disk, or solved and kept."""
 
-    def judged(found: ContactMap, problem: ContactProblem) -> ContactMap:
-        return replace(found, error=_error(problem, found, load))
-
     def solve() -> ContactMap:
         progress = listener()
         problem = contact_problem(teeth, part_of(progress, 0.0, 0.5))
-        told = part_of(progress, 0.5, 1.0)
-        groups = load_groups(problem, near)
-        if problem.plane and not problem.uncoupled:
-            # One slice for a tooth pair: cheap, with patches that follow no load, so that one group has all loads.
-            return judged(solved_map(problem, load, even_positions(positions or POSITIONS), groups, told), problem)
-        if positions:
-            return judged(solved_map(problem, load, even_positions(positions), groups, told), problem)
-        count = _IN_SPACE_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
-        if any(flank.single_teeth for flank in problem.flanks):
-            count = max(count, _WITH_ODD_TEETH)
-        working = float(f"{load * cosine(problem):.12g}")  # that of the mesh's stiffness, whose cycle is known
-        return judged(solved_map(problem, load, map_positions(teeth, working, count), groups, told), problem)
+        if positions or problem.one_slice:
+            chosen = even_positions(positions or POSITIONS)
+        else:
+            count = _IN_SPACE_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
+            if any(flank.single_teeth for flank in problem.flanks):
+                count = max(count, _WITH_ODD_TEETH)
+            working = float(f"{load * problem.cosine:.12g}")  # that of the mesh's stiffness, whose cycle is known
+            chosen = map_positions(teeth, working, count)
+        found = solved_map(problem, load, chosen, load_groups(problem, near), part_of(progress, 0.5, 1.0))
+        return replace(found, error=_error(problem, found, load))
 
     return kept_map((teeth, load, positions, near), solve)
 
@@ -322,11 +305,7 @@ def _text(value: Any) -> str:
 
 
 def solved_map(
-    problem: ContactProblem,
-    load: float,
-    positions: MapPositions,
-    groups: tuple[tuple[float, ...], ...],
-    progress: Progress,
+    problem: ContactProblem, load: float, positions: MapPositions, groups: Groups, progress: Progress
 ) -> ContactMap:
     """The map at some positions for groups of rising multiples of a working load (N)."""
     of_period = errors_by_period(problem)
@@ -334,8 +313,7 @@ def solved_map(
     # Patches are those of the commonest period: where an odd tooth carries they are wider, and would move all the others.
     common = of_period.index(max(kinds, key=of_period.count))
     place = common + positions.position
-    few = problem.plane and not problem.uncoupled
-    solved: list[list[Column]] = [[] for _ in kinds]
+    solved: list[list[np.ndarray]] = [[] for _ in kinds]
     below: dict[int, Settled] = {}
     touch: list[np.ndarray] = []
     notes: list[str] = []
@@ -349,7 +327,7 @@ def solved_map(
             if not factors and not problem.oblique:
                 top = load * family[-1][-1]
                 known = None if common or family[-1][-1] != 1.0 else positions.cycle
-                cycle = known or mesh_cycle(problem, top * cosine(problem), place, told)
+                cycle = known or mesh_cycle(problem, top * problem.cosine, place, told)
                 notes += cycle.warnings
                 slices = cycle.slices
                 contacts = up_to(problem, cycle, load, family)
@@ -365,12 +343,12 @@ def solved_map(
                 # Where patches are those of the group below, its last load needs no second solution; a single load fades nothing.
                 new = bool(factors) and len(group) > 1 and not same_patches(found, below[kind])
                 bound = factors[-1:] if new else []
-                columns = map_columns(slices, found, [load * f for f in (*bound, *group)], few=few)
+                columns = map_columns(slices, found, [load * f for f in (*bound, *group)], few=problem.one_slice)
                 if bound:
-                    columns = faded(columns, solved[kind][-1], [*bound, *group])
+                    columns = faded(columns, solved[kind][-1][:, -1], [*bound, *group])
                 if not factors:
                     touch.append(np.array([contact.gap.min() for contact in found.contacts]))
-                solved[kind] += columns
+                solved[kind].append(columns)
                 below[kind] = found
                 told((kind + 1) / len(kinds), f"teeth {kind + 1} of {len(kinds)}")
             factors += group
@@ -381,31 +359,28 @@ def solved_map(
             break
     order = [kinds.index(errors) for errors in of_period]
     loads = load * np.array([0.0, *factors])
+    curves = []
+    for first, parts in zip(touch, solved, strict=True):
+        approach, slope, moment = np.concatenate(parts, axis=1).swapaxes(1, 2)
+        approach = np.column_stack([first, approach])
+        curves.append((approach, with_start(slope, approach, loads), np.column_stack([np.zeros(len(first)), moment])))
     # Over all periods, period n being of the kind order[n].
-    numbers = range(len(solved))
-    approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in numbers]
-    slope = [with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in numbers]
-    moment = [np.stack([np.zeros(len(positions.position)), *(c.moment for c in columns)], axis=1) for columns in solved]
-    position, *curves = positions.kept(
-        np.concatenate([approach[k] for k in order]),
-        np.concatenate([slope[k] for k in order]),
-        np.concatenate([moment[k] for k in order]),
-        int(np.argmin(np.abs(loads - load))),
-    )
+    over_periods = (np.concatenate([curves[k][i] for k in order]) for i in range(3))
+    position, approach, slope, moment = positions.kept(*over_periods, int(np.argmin(np.abs(loads - load))))
     return ContactMap(
         position=position,
         periods=len(order),
         load=loads,
-        approach=curves[0],
+        approach=approach,
         warnings=tuple(dict.fromkeys((*problem.warnings, *notes))),
-        compliance=curves[1],
-        moment=curves[2] if not problem.plane or problem.uncoupled else None,
+        compliance=slope,
+        moment=None if problem.one_slice else moment,
     )
 
 
 def _error(problem: ContactProblem, solved: ContactMap, load: float) -> float:
     """Largest difference (m along the flank normal) of a map to contacts that it has not seen, about a working force (N)."""
-    along = cosine(problem)
+    along = problem.cosine
     of_period = errors_by_period(problem)
     first = [of_period.index(errors) for errors in dict.fromkeys(of_period)]  # base pitches of each kind take turns
     most = 0.0

@@ -64,7 +64,8 @@ def test_smooth_curves_converge_with_order_three() -> None:
 @pytest.mark.parametrize("tells", [True, False])
 @pytest.mark.parametrize("count", [8, 16, 32, 64, 256])
 def test_no_error_is_larger_than_what_is_said_of_it(count: int, tells: bool) -> None:
-    found = sampled(Curve(tells=tells), count, 1.0, np.empty(0), np.array([2, 2]))
+    curve = Curve(tells=tells)
+    found = sampled(curve.add, curve.events, count, 1.0, np.empty(0), np.array([2, 2]))
     assert len(found.curve.position) == count
     actual = np.array([0.75, 2.0]) - np.ptp(found.curve.values, axis=0)
     assert (actual <= 1.5 * found.peak_to_peak_error() + 1e-9).all()
@@ -93,14 +94,16 @@ class Bump:
 @pytest.mark.parametrize("count", [8, 12, 16])
 def test_judges_look_into_wide_intervals_before_they_look_for_events(count: int) -> None:
     """A bump that no kept position has met; the largest pressure of a helical pair was 14 % off and said to be 9 %."""
-    found = sampled(Bump(), count, 1.0, np.empty(0), np.array([1]))
+    bump = Bump()
+    found = sampled(bump.add, bump.events, count, 1.0, np.empty(0), np.array([1]))
     actual = 1.2 - found.curve.values.max()
     assert actual > 0.1
     assert actual <= 1.5 * found.largest_error()[0]
 
 
 def test_a_kink_that_tells_itself_is_met_exactly() -> None:
-    found = sampled(Curve(tells=True), 24, 1.0, np.empty(0), np.array([2, 2]))
+    curve = Curve(tells=True)
+    found = sampled(curve.add, curve.events, 24, 1.0, np.empty(0), np.array([2, 2]))
     assert np.ptp(found.curve.values[:, 0]) == pytest.approx(0.75, abs=1e-3)
     assert found.curve.values[:, 0].max() == pytest.approx(1.0, abs=1e-9)
 
