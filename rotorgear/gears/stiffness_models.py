@@ -5,7 +5,6 @@ The model file takes its names from here, so that nothing of numerics is loaded 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -21,35 +20,18 @@ if TYPE_CHECKING:
     StiffnessModel = Callable[[ToothPair, float | None, int], MeshStiffness]
 
 
-@dataclass(frozen=True)
-class Registered:
-    """A stiffness model by name: where its function is, whether it needs a load, and what it is in a line."""
-
-    home: str
-    needs_load: bool
-    meaning: str
-
-
+# Where the function of each model is.
 MODELS = {
-    "iso": Registered(
-        "rotorgear.gears.stiffness.iso:iso_stiffness",
-        False,
-        "mean stiffness c_gamma_alpha of ISO 6336-1, without ripple",
-    ),
-    "contact_line": Registered(
-        "rotorgear.gears.stiffness.contact_lines:contact_line_stiffness",
-        False,
-        "that mean, spread in proportion to the length of the contact lines",
-    ),
-    "potential_energy": Registered(
-        "rotorgear.gears.stiffness.energy:potential_energy_stiffness",
-        False,
-        "tooth slices as beams on an elastic ring, with Hertz' contact",
-    ),
-    "tooth_fe": Registered(
-        "rotorgear.gears.loaded.stiffness:tooth_fe_stiffness", True, "finite elements and loaded tooth contact"
-    ),
+    # Mean stiffness c_gamma_alpha of ISO 6336-1, without ripple.
+    "iso": "rotorgear.gears.stiffness.iso:iso_stiffness",
+    # That mean, spread in proportion to the length of the contact lines.
+    "contact_line": "rotorgear.gears.stiffness.contact_lines:contact_line_stiffness",
+    # Tooth slices as beams on an elastic ring, with Hertz' contact.
+    "potential_energy": "rotorgear.gears.stiffness.energy:potential_energy_stiffness",
+    # Finite elements and loaded tooth contact.
+    "tooth_fe": "rotorgear.gears.loaded.helix_cycles:tooth_fe_stiffness",
 }
+NEEDS_LOAD = ("tooth_fe",)
 
 
 @lru_cache(maxsize=128)  # a refined analysis asks for the same meshes again and again
@@ -69,12 +51,11 @@ def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, posit
         guess = nearest(name, list(MODELS))
         hint = f"did you mean '{guess}'?" if guess else "there are " + ", ".join(MODELS)
         raise AnalysisError(f"There is no stiffness model '{name}': {hint}.")
-    entry = MODELS[name]
-    if entry.needs_load and not load:
+    if name in NEEDS_LOAD and not load:
         raise AnalysisError(
             f"The stiffness model '{name}' needs a load: give the torque or power that the mesh carries."
         )
-    module, function = entry.home.split(":")
+    module, function = MODELS[name].split(":")
     model: StiffnessModel = getattr(import_module(module), function)
     curve = model(teeth, load, positions)
     # The cache hands the same arrays out again: nobody may write into them.

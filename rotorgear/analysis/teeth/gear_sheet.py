@@ -14,25 +14,18 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank_tolerance import base_pitch_deviation, profile_form_deviation
 from rotorgear.gears.geometry.geometry import GearGeometry, check_gear
 from rotorgear.gears.geometry.line_of_action import generated_line
-from rotorgear.gears.geometry.measure import (
-    best_span,
-    normal_thickness,
-    over_balls,
-    span_width,
-    with_allowance,
-)
+from rotorgear.gears.geometry.measure import best_span, normal_thickness, over_balls, span_width, with_allowance
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.geometry.pair import profile_shift_sum, standard_centre_distance
 from rotorgear.gears.stiffness.contact_lines import contact_line_length, mean_contact_line_length
 from rotorgear.gears.stiffness.dynamic_factor import (
     DynamicFactor,
-    DynamicMesh,
     iso_dynamic_factor,
     reduced_mass,
     simple_dynamic_factor,
 )
 from rotorgear.gears.stiffness.iso import pair_iso_stiffness
-from rotorgear.gears.stiffness_models import MODELS
+from rotorgear.gears.stiffness_models import NEEDS_LOAD
 from rotorgear.model.checks.gears import ball_diameter
 from rotorgear.model.checks.meshes import mesh_findings
 from rotorgear.model.layout.mesh_layout import MeshLayout
@@ -52,48 +45,42 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
     """
     mesh = model.layout.mesh(name)
     speed = model.operating_speed
-    grades = [gear.part.accuracy_grade for gear in mesh.gears]
-    if grades[0] is None or grades[1] is None:
+    grades = [gear.part.accuracy_grade for gear in mesh.gears if gear.part.accuracy_grade is not None]
+    if len(grades) < 2:
         return "K_v: give accuracy_grade of both gears"
     if not speed or not base_force:
         return "K_v: give the speed and the load of the operating point"
     teeth = mesh.teeth
-    order = mesh.gears
-    if teeth.first.teeth > teeth.second.teeth:
-        teeth = teeth.swapped()
-        order = order[::-1]
-        grades = grades[::-1]
-    spin = abs(model.layout.train.ratio(order[0].shaft) * speed)
-    line_load = (
-        mesh.part.application_factor * base_force * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    # The pinion of the standard is the gear with fewer teeth.
+    order, geometry = zip(
+        *sorted(zip(mesh.gears, (teeth.first, teeth.second), strict=True), key=lambda item: item[1].teeth), strict=True
     )
-    velocity = 0.5 * teeth.first.reference_diameter * spin
+    pinion, wheel = geometry
+    spin = abs(model.layout.train.ratio(order[0].shaft) * speed)
+    line_load = mesh.part.application_factor * base_force * math.cos(pinion.transverse_pressure_angle) / teeth.width
+    velocity = 0.5 * pinion.reference_diameter * spin
+    ratio = wheel.teeth / pinion.teeth
     inertias = [gear.body.polar_inertia / mesh.helices for gear in order]
     try:
-        if min(inertias) > 0.0:
-            g1 = teeth.first
-            g2 = teeth.second
-            stiffness = pair_iso_stiffness(teeth, line_load)
+        if min(inertias) <= 0.0:
+            worst = max(grades)
+            return simple_dynamic_factor(velocity, pinion.teeth, ratio, line_load, teeth.pair.overlap_ratio, worst)
+        stiffness = pair_iso_stiffness(teeth, line_load)
+        return iso_dynamic_factor(
+            pinion_teeth=pinion.teeth,
+            ratio=ratio,
+            pinion_speed=spin,
+            pitch_line_velocity=velocity,
+            total_contact_ratio=teeth.pair.total_contact_ratio,
+            line_load=line_load,
+            single_stiffness=stiffness.single,
+            mesh_stiffness=stiffness.mesh_alpha,
+            reduced_mass=reduced_mass(*inertias, pinion.base_radius, wheel.base_radius, teeth.width),
             # Deviations are those of the tolerance classes.
-            classes = [(gear, grade) for gear, grade in zip((g1, g2), grades, strict=True) if grade is not None]
-            inputs = DynamicMesh(
-                pinion_teeth=g1.teeth,
-                ratio=g2.teeth / g1.teeth,
-                pinion_speed=spin,
-                pitch_line_velocity=velocity,
-                total_contact_ratio=teeth.pair.total_contact_ratio,
-                line_load=line_load,
-                single_stiffness=stiffness.single,
-                mesh_stiffness=stiffness.mesh_alpha,
-                reduced_mass=reduced_mass(inertias[0], inertias[1], g1.base_radius, g2.base_radius, teeth.width),
-                base_pitch_deviation=max(base_pitch_deviation(*item) for item in classes),
-                profile_deviation=max(profile_form_deviation(*item) for item in classes),
-                tip_relief=min(gear.part.tip_relief for gear in order),
-            )
-            return iso_dynamic_factor(inputs)
-        ratio = teeth.second.teeth / teeth.first.teeth
-        worst = max(grade for grade in grades if grade is not None)
-        return simple_dynamic_factor(velocity, teeth.first.teeth, ratio, line_load, teeth.pair.overlap_ratio, worst)
+            base_pitch_deviation=max(map(base_pitch_deviation, (teeth.first, teeth.second), grades)),
+            profile_deviation=max(map(profile_form_deviation, (teeth.first, teeth.second), grades)),
+            tip_relief=min(gear.part.tip_relief for gear in order),
+        )
     except AnalysisError as error:
         return f"K_v: {error}"
 
@@ -206,9 +193,8 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         force = sum(force.normal_force for force in forces) / len(forces)
         sense = forces[0].torque_sense
     given = mesh.part.stiffness
-    needs_load = isinstance(given, str) and MODELS[given].needs_load
     curve = None
-    if force or not needs_load:
+    if force or given not in NEEDS_LOAD:
         curve = mesh.stiffness(force or None, sense=sense).about_load
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, mesh.name, force * base or None)

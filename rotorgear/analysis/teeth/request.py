@@ -20,7 +20,7 @@ from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.gears.stiffness_models import MODELS
+from rotorgear.gears.stiffness_models import MODELS, NEEDS_LOAD
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.mesh_layout import MeshLayout, mirrored
 from rotorgear.model.layout.torque_flow import applied_torques
@@ -203,7 +203,7 @@ def mesh_request(
         working = mesh.working_teeth(sense)
         settings: ToothFe = replace(working.fe, **wanted)  # type: ignore[arg-type]
         teeth = replace(working, fe=settings)
-    if load is None and chosen in MODELS and MODELS[chosen].needs_load:
+    if load is None and chosen in NEEDS_LOAD:
         raise AnalysisError(
             f"meshes.{mesh.name} carries no torque, and the stiffness of loaded teeth needs one: give --torque, or power or "
             "loads in the model."

@@ -78,18 +78,23 @@ def _require_positive(**lengths: float) -> None:
             raise ValueError(f"the {name.replace('_', ' ')} must be positive and finite, not {value:g}")
 
 
-def _millimetres(length: float) -> str:
+def _mm(length: float) -> str:
     return f"{1e3 * length:.6g} mm"
+
+
+def _require(holds: bool, sentence: str) -> None:
+    """ValueError with a sentence unless a condition holds."""
+    if not holds:
+        raise ValueError(sentence)
 
 
 def hollow_cylinder(outer_diameter: float, bore: float, width: float, density: float) -> RigidBody:
     """A cylinder (m, m, m, kg/m^3), solid for bore = 0; ValueError unless 0 <= bore < outer diameter."""
     _require_positive(outer_diameter=outer_diameter, width=width, density=density)
-    if not 0.0 <= bore < outer_diameter:
-        raise ValueError(
-            f"the bore of {_millimetres(bore)} must be 0 or more and below "
-            f"the outer diameter of {_millimetres(outer_diameter)}"
-        )
+    _require(
+        0.0 <= bore < outer_diameter,
+        f"the bore of {_mm(bore)} must be 0 or more and below the outer diameter of {_mm(outer_diameter)}",
+    )
     # (D - d)(D + d), not D^2 - d^2, which would cancel in a thin ring.
     mass = density * math.pi / 4 * (outer_diameter - bore) * (outer_diameter + bore) * width
     polar = mass * (outer_diameter**2 + bore**2) / 8
@@ -150,55 +155,38 @@ def gear_blank(
 
     # The rim is measured from the root circle, as gear standards do (s_R of ISO 6336-1).
     rim_inside = root_diameter - 2.0 * rim_thickness
-    if rim_inside <= 0.0:
-        raise ValueError(
-            f"a rim {_millimetres(rim_thickness)} thick leaves no room inside "
-            f"the root diameter of {_millimetres(root_diameter)}"
-        )
+    _require(
+        rim_inside > 0.0,
+        f"a rim {_mm(rim_thickness)} thick leaves no room inside the root diameter of {_mm(root_diameter)}",
+    )
     web_inside = bore if hub_diameter is None else hub_diameter
-    if rim_inside <= web_inside:
-        raise ValueError(
-            f"the rim's inner diameter of {_millimetres(rim_inside)} must be above the diameter of "
-            f"{_millimetres(web_inside)} of the hub or bore inside it: make the rim thinner, or leave it out for a "
-            "solid blank"
-        )
-    if web_thickness > width:
-        raise ValueError(
-            f"a web {_millimetres(web_thickness)} thick is wider than the face width of {_millimetres(width)}"
-        )
+    _require(
+        rim_inside > web_inside,
+        f"the rim's inner diameter of {_mm(rim_inside)} must be above the diameter of {_mm(web_inside)} of the hub or bore "
+        "inside it: make the rim thinner, or leave it out for a solid blank",
+    )
+    web = f"a web {_mm(web_thickness)} thick"
+    _require(web_thickness <= width, f"{web} is wider than the face width of {_mm(width)}")
     # The end of the web that is farther from the middle of the face.
     reach = abs(web_position) + 0.5 * web_thickness
-    if reach > 0.5 * width * (1.0 + 1e-9):
-        raise ValueError(
-            f"a web {_millimetres(web_thickness)} thick at {_millimetres(web_position)} from the middle of the face reaches "
-            f"beyond the face width of {_millimetres(width)}"
+    web += f" at {_mm(web_position)} from the middle of the face reaches beyond"
+    _require(reach <= 0.5 * width * (1.0 + 1e-9), f"{web} the face width of {_mm(width)}")
+    parts = [
+        hollow_cylinder(reference_diameter, rim_inside, width, density),
+        hollow_cylinder(rim_inside, web_inside, web_thickness, density),
+    ]
+    offsets = [0.0, web_position]
+    if hub_diameter is not None:
+        hub_width = width if hub_width is None else hub_width
+        _require(hub_diameter > bore, f"the hub diameter of {_mm(hub_diameter)} must be above the bore of {_mm(bore)}")
+        _require(
+            hub_width >= web_thickness,
+            f"a hub {_mm(hub_width)} wide is narrower than its web of {_mm(web_thickness)}",
         )
-    rim = hollow_cylinder(reference_diameter, rim_inside, width, density)
-    web = hollow_cylinder(rim_inside, web_inside, web_thickness, density)
-    if hub_diameter is None:
-        return _about_middle([rim, web], web_position)
-
-    hub_width = width if hub_width is None else hub_width
-    if hub_diameter <= bore:
-        raise ValueError(
-            f"the hub diameter of {_millimetres(hub_diameter)} must be above the bore of {_millimetres(bore)}"
-        )
-    if hub_width < web_thickness:
-        raise ValueError(
-            f"a hub {_millimetres(hub_width)} wide is narrower than its web of {_millimetres(web_thickness)}"
-        )
-    if reach > 0.5 * hub_width * (1.0 + 1e-9):
-        raise ValueError(
-            f"a web {_millimetres(web_thickness)} thick at {_millimetres(web_position)} from the middle of the face reaches "
-            f"beyond the hub, {_millimetres(hub_width)} wide"
-        )
-    hub = hollow_cylinder(hub_diameter, bore, hub_width, density)
-    return _about_middle([rim, web, hub], web_position)
-
-
-def _about_middle(bodies: Sequence[RigidBody], web_position: float) -> RigidBody:
-    """Rim, web and hub as one body about the middle of the face: a web off the middle adds m e^2."""
-    offsets = [0.0, web_position, 0.0][: len(bodies)]
-    whole = stack(bodies, offsets)
-    arm = mass_centre(bodies, offsets)
+        _require(reach <= 0.5 * hub_width * (1.0 + 1e-9), f"{web} the hub, {_mm(hub_width)} wide")
+        parts.append(hollow_cylinder(hub_diameter, bore, hub_width, density))
+        offsets.append(0.0)
+    # About the middle of the face: a web off the middle adds m e^2.
+    whole = stack(parts, offsets)
+    arm = mass_centre(parts, offsets)
     return replace(whole, diametral_inertia=whole.diametral_inertia + whole.mass * arm**2)

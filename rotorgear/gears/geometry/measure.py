@@ -1,4 +1,4 @@
-"""What a gear is measured by: tooth thickness, span over teeth, dimension over balls or pins, and back.
+"""What a gear is measured by: tooth thickness, span over teeth, dimension over balls or pins.
 
 Base tangent: W_k = m_n cos a_n [(k - 1/2) pi + z inv a_t + 2 x tan a_n].
 Over balls of diameter D: inv a_K = D / (z m_n cos a_n) - eta_b with half the space at the base circle,
@@ -86,23 +86,6 @@ def over_balls(g: GearGeometry, ball_diameter: float) -> float:
     return ball_diameter + 2.0 * g.base_radius / math.cos(inverse_involute(value)) * _oddness(g)
 
 
-def shift_from_over_balls(g: GearGeometry, ball_diameter: float, dimension: float) -> float:
-    """Profile shift x that a measured dimension over balls (m) means; that of `g` itself does not enter.
-
-    Raises:
-        AnalysisError: a dimension too small for any involute.
-    """
-    cosine = 2.0 * g.base_radius * _oddness(g) / (dimension - ball_diameter)
-    if not 0.0 < cosine <= 1.0:
-        raise AnalysisError(
-            f"A dimension of {1e3 * dimension:.6g} mm over balls of {1e3 * ball_diameter:.6g} mm is impossible: the balls' "
-            "centres would lie inside the base circle."
-        )
-    space = ball_diameter / _base_length(g) - involute(math.acos(cosine))
-    shift = math.pi / 2 - g.teeth * (space + involute(g.transverse_pressure_angle))
-    return shift / (2.0 * math.tan(g.normal_pressure_angle))
-
-
 def _oddness(g: GearGeometry) -> float:
     """1 for an even number of teeth; cos(pi / 2z) for an odd one, whose spaces don't stand opposite."""
     return math.cos(math.pi / (2.0 * g.teeth)) if g.teeth % 2 else 1.0
@@ -116,12 +99,6 @@ def best_span(g: GearGeometry) -> int:
     # A tangent that touches at this cylinder is W_k = z m_n cos a_n tan a_y / cos^2 b_b long; solved for k.
     k = round(g.teeth / math.pi * (touch - shift - involute(g.transverse_pressure_angle)) + 0.5)
     return max(1, min(k, g.teeth - 1)) if g.teeth > 1 else 1
-
-
-def span_diameter(g: GearGeometry, teeth_spanned: int) -> float:
-    """Diameter (m) at which the base tangent over k teeth touches the flanks."""
-    roll = g.base_tangent_length(teeth_spanned) * math.cos(g.base_helix_angle)
-    return math.hypot(2.0 * g.base_radius, roll)
 
 
 def span_width(g: GearGeometry, teeth_spanned: int) -> float:

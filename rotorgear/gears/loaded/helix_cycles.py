@@ -24,7 +24,7 @@ from rotorgear.gears.loaded.cycle_positions import SampledCurves, sampled
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle, with_more
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, line_of_action
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
-from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.progress import Progress, listener, part_of, silent
 
 # A chord's zero keeps this share of the bracket away from its ends, until the bracket is short.
@@ -259,3 +259,21 @@ def helix_cycle(teeth: ToothPair, load: float, positions: int) -> HelixCycle:
     solving = HelixCycles((teeth,), load, progress=progress)
     found = solving.sample(positions).curve
     return HelixCycle(solving.problems[0], solving.cycles[0].chosen(solving.numbers(found.position)), found.event)
+
+
+def tooth_fe_stiffness(teeth: ToothPair, load: float, positions: int) -> MeshStiffness:
+    """Secant and tangent stiffness of one helix over one mesh period at F_bt = load (N), at some positions of it."""
+    found = helix_cycle(teeth, load, positions)
+    return MeshStiffness(
+        model="tooth_fe",
+        position=found.cycle.position,
+        transverse=found.cycle.secant,
+        definition="secant",
+        helices=1,
+        load=load,
+        body=found.problem.body,
+        base_helix_angle=found.problem.line.base_helix_angle,
+        warnings=found.problem.warnings + found.cycle.warnings,
+        tangent=found.cycle.tangent,
+        event=found.event,
+    )

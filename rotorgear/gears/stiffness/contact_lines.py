@@ -1,8 +1,7 @@
 """Contact lines of a pair over one mesh period, their length, and a mesh stiffness in proportion to it.
 
 In the plane of action pair j touches along xi = (u + j) p_bt + z tan b_b, |z| <= b/2, between start and end of contact. The
-mean of their length over a period is eps_alpha b / cos b_b, and its harmonic n is 2 sinc(n eps_alpha) sinc(n eps_beta) of
-that, because the length is the convolution of two boxes. Lengths in m.
+mean of their length over a period is eps_alpha b / cos b_b. Lengths in m.
 
 The stiffness has the mean of ISO 6336-1 and the ripple of that length: k(u) = c_gamma_alpha b L(u) / L_mean: the teeth are
 taken as equally stiff along the path of contact, so that the ripple is that of the length alone. A value per position is the
@@ -69,13 +68,3 @@ def contact_line_length(teeth: ToothPair, positions: np.ndarray) -> np.ndarray:
 def mean_contact_line_length(teeth: ToothPair) -> float:
     """Mean over a mesh period: eps_alpha b / cos b_b."""
     return teeth.pair.transverse_contact_ratio * teeth.width / math.cos(teeth.pair.base_helix_angle)
-
-
-def contact_line_harmonics(teeth: ToothPair, count: int) -> np.ndarray:
-    """Complex harmonics 1 ... count of the length over its mean, as `MeshStiffness.harmonics` has them, shape (count,)."""
-    n = np.arange(1, count + 1)
-    middle = 0.5 * (teeth.pair.start_of_contact + teeth.pair.end_of_contact) / teeth.base_pitch
-    overlap = teeth.width * math.tan(teeth.pair.base_helix_angle) / teeth.base_pitch
-    # The transform of two boxes, eps_alpha and eps_beta wide, about the middle of the path of contact.
-    size = 2.0 * np.sinc(n * teeth.pair.transverse_contact_ratio) * np.sinc(n * overlap)
-    return np.asarray(size * np.exp(-2j * np.pi * n * middle))

@@ -27,7 +27,8 @@ _K2_HELICAL = 0.0087
 # Limits of v z1/100 sqrt(u^2/(1+u^2)) in m/s: method B is meant for faster gears than the first, method C holds up to the second.
 _LEAST_B = 3.0
 _MOST_C = 10.0
-# Running in takes no more than this off a deviation (m).
+# Running in takes this share off a deviation of hardened gears, and no more than 3 um (m).
+_RUN_IN = 0.075
 _MOST_RUN_IN = 3e-6
 
 
@@ -42,11 +43,31 @@ class DynamicFactor:
     warnings: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class DynamicMesh:
-    """What method B asks for, of one helix: the pinion is the gear with fewer teeth.
+def reduced_mass(
+    first_inertia: float, second_inertia: float, first_radius: float, second_radius: float, width: float
+) -> float:
+    """m_red (kg/m) per face width (m) from the polar inertias (kg m^2) and base radii (m) of both gears."""
+    return 1.0 / (width * (first_radius**2 / first_inertia + second_radius**2 / second_inertia))
 
-    Attributes:
+
+def iso_dynamic_factor(
+    *,
+    pinion_teeth: int,
+    ratio: float,
+    pinion_speed: float,
+    pitch_line_velocity: float,
+    total_contact_ratio: float,
+    line_load: float,
+    single_stiffness: float,
+    mesh_stiffness: float,
+    reduced_mass: float,
+    base_pitch_deviation: float,
+    profile_deviation: float,
+    tip_relief: float = 0.0,
+) -> DynamicFactor:
+    """K_v by method B, of one helix: the pinion is the gear with fewer teeth.
+
+    Args:
         pinion_teeth: z1.
         ratio: u = z2 / z1.
         pinion_speed: rad/s.
@@ -59,66 +80,26 @@ class DynamicMesh:
         base_pitch_deviation: f_pb (m), the larger of both gears.
         profile_deviation: f_fa (m), the larger of both gears.
         tip_relief: C_a (m), or the running-in amount C_ay.
-        running_in: share of both deviations that running in takes away, at most 3 um each; 0.075 for hardened gears.
-    """
-
-    pinion_teeth: int
-    ratio: float
-    pinion_speed: float
-    pitch_line_velocity: float
-    total_contact_ratio: float
-    line_load: float
-    single_stiffness: float
-    mesh_stiffness: float
-    reduced_mass: float
-    base_pitch_deviation: float
-    profile_deviation: float
-    tip_relief: float = 0.0
-    running_in: float = 0.075
-
-    @property
-    def resonance_speed(self) -> float:
-        """w_E1 (rad/s) of the pinion, where the mesh frequency meets the pair's own."""
-        return math.sqrt(self.mesh_stiffness / self.reduced_mass) / self.pinion_teeth
-
-    @property
-    def resonance_ratio(self) -> float:
-        """N."""
-        return self.pinion_speed / self.resonance_speed
-
-
-def reduced_mass(
-    first_inertia: float, second_inertia: float, first_radius: float, second_radius: float, width: float
-) -> float:
-    """m_red (kg/m) per face width (m) from the polar inertias (kg m^2) and base radii (m) of both gears."""
-    return 1.0 / (width * (first_radius**2 / first_inertia + second_radius**2 / second_inertia))
-
-
-def iso_dynamic_factor(mesh: DynamicMesh) -> DynamicFactor:
-    """K_v by method B.
 
     Raises:
         AnalysisError: a total contact ratio of 1 or less, or no load.
     """
-    if mesh.total_contact_ratio <= 1.0:
-        raise AnalysisError(
-            f"K_v of ISO 6336-1 needs a total contact ratio above 1, not {mesh.total_contact_ratio:.4g}."
-        )
-    if not mesh.line_load > 0.0:
+    if total_contact_ratio <= 1.0:
+        raise AnalysisError(f"K_v of ISO 6336-1 needs a total contact ratio above 1, not {total_contact_ratio:.4g}.")
+    if not line_load > 0.0:
         raise AnalysisError("K_v of ISO 6336-1 needs a load: give the torque or power that the mesh carries.")
 
     # B_p, B_f, B_k: deviations that are left after running in, and relief, in terms of the deflection w / c'.
     left_pitch, left_profile = (
-        deviation - min(mesh.running_in * deviation, _MOST_RUN_IN)
-        for deviation in (mesh.base_pitch_deviation, mesh.profile_deviation)
+        deviation - min(_RUN_IN * deviation, _MOST_RUN_IN) for deviation in (base_pitch_deviation, profile_deviation)
     )
-    per_deflection = mesh.single_stiffness / mesh.line_load
+    per_deflection = single_stiffness / line_load
     B_p = per_deflection * left_pitch
     B_f = per_deflection * left_profile
-    B_k = abs(1.0 - per_deflection * mesh.tip_relief)
+    B_k = abs(1.0 - per_deflection * tip_relief)
 
     # C_v1 ... C_v7 of the standard's table: one column up to eps_gamma = 2, another above.
-    eps = mesh.total_contact_ratio
+    eps = total_contact_ratio
     C1 = 0.32
     C2 = 0.34 if eps <= 2.0 else 0.57 / (eps - 0.3)
     C3 = 0.23 if eps <= 2.0 else 0.096 / (eps - 1.56)
@@ -128,9 +109,10 @@ def iso_dynamic_factor(mesh: DynamicMesh) -> DynamicFactor:
     C7 = 0.75 if eps <= 1.5 else 1.0 if eps > 2.5 else 0.125 * math.sin(math.pi * (eps - 2.0)) + 0.875
 
     # N_S: under light load the range of the main resonance begins at a lower speed.
-    light = mesh.line_load < _LOW_LINE_LOAD
-    subcritical_end = 0.5 + 0.35 * math.sqrt(mesh.line_load / _LOW_LINE_LOAD) if light else 0.85
-    N = mesh.resonance_ratio
+    light = line_load < _LOW_LINE_LOAD
+    subcritical_end = 0.5 + 0.35 * math.sqrt(line_load / _LOW_LINE_LOAD) if light else 0.85
+    # Over w_E1, where the mesh frequency meets the pair's own.
+    N = pinion_speed / (math.sqrt(mesh_stiffness / reduced_mass) / pinion_teeth)
     resonance = 1.0 + C1 * B_p + C2 * B_f + C4 * B_k
     beyond = C5 * B_p + C6 * B_f + C7
     if subcritical_end >= N:
@@ -145,7 +127,7 @@ def iso_dynamic_factor(mesh: DynamicMesh) -> DynamicFactor:
     else:
         value = beyond
         words = "supercritical"
-    slow = _speed_term(mesh.pitch_line_velocity, mesh.pinion_teeth, mesh.ratio) < _LEAST_B
+    slow = _speed_term(pitch_line_velocity, pinion_teeth, ratio) < _LEAST_B
     note = ("K_v: v z1/100 sqrt(u^2/(1+u^2)) is below 3 m/s, where method B is not meant for use",) if slow else ()
     return DynamicFactor(value, "ISO 6336-1 method B", N, words, note)
 

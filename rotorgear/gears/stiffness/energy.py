@@ -49,19 +49,26 @@ def tooth_compliance(outline: ToothOutline, body: ToothBody, roll_length: np.nda
         body: material, and the inner radius of the ring; a smaller one than the fit's is taken as the fit's last.
         roll_length: xi (n,) of the loaded points.
     """
-    inclination, cut = _load(outline, roll_length)
-    return _beam(outline, body, roll_length, inclination, cut) + _ring(outline, body, inclination, cut)
+    inclination, cut, height = _load(outline, roll_length)
+    # The ring below. A polynomial says nothing outside the range of h that it was fitted for: the range's end stands in there.
+    ratio, theta = ring_shape(outline, body)
+    h = min(max(ratio, RING_RATIO[0]), RING_RATIO[1])
+    L, M, P, Q = _RING @ np.array([theta**-2, h**2, h / theta, 1.0 / theta, h, 1.0])
+    arm = (cut - outline.root_radius) / (2.0 * outline.root_radius * theta)
+    tangent = np.tan(inclination)
+    ring = np.cos(inclination) ** 2 / body.youngs_modulus * (L * arm**2 + M * arm + P * (1.0 + Q * tangent**2))
+    return np.asarray(_beam(outline, body, inclination, cut, height) + ring)
 
 
-def _load(outline: ToothOutline, roll: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Inclination a1 of the load, and height y0 at which its line meets the tooth's middle line, each (n,)."""
+def _load(outline: ToothOutline, roll: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Inclination a1 of the load, height y0 at which its line meets the tooth's middle line, and its own height, each (n,)."""
     radius, half = outline.involute(roll)
     inclination = np.arctan(roll / outline.geometry.base_radius) - half
-    return inclination, radius * (np.cos(half) - np.sin(half) * np.tan(inclination))
+    return inclination, radius * (np.cos(half) - np.sin(half) * np.tan(inclination)), radius * np.cos(half)
 
 
 def _beam(
-    outline: ToothOutline, body: ToothBody, roll: np.ndarray, inclination: np.ndarray, cut: np.ndarray
+    outline: ToothOutline, body: ToothBody, inclination: np.ndarray, cut: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
     """Bending, shear and compression of the tooth, (n,)."""
     # Height and thickness of the tooth from the root circle to the tip.
@@ -75,32 +82,15 @@ def _beam(
     G = body.youngs_modulus / (2.0 * (1.0 + body.poisson_ratio))
 
     # I = s^3 / 12 and A = s. (y0 - y)^2 is multiplied out, so that one set of integrals serves every loaded point.
-    powers = np.stack([_integral(y, y**k / thickness**3) for k in range(3)])
-    slender = _integral(y, 1.0 / thickness)
-    radius, half = outline.involute(roll)
-    load = radius * np.cos(half)
-    zeroth, first, second = (np.interp(load, y, power) for power in powers)
+    zeroth, first, second = (np.interp(height, y, _integral(y, y**k / thickness**3)) for k in range(3))
     bending = 12.0 / E * np.cos(inclination) ** 2 * (cut**2 * zeroth - 2.0 * cut * first + second)
     rest = _SHEAR * np.cos(inclination) ** 2 / G + np.sin(inclination) ** 2 / E
-    return np.asarray(bending + rest * np.interp(load, y, slender))
+    return np.asarray(bending + rest * np.interp(height, y, _integral(y, 1.0 / thickness)))
 
 
 def _integral(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Integral of y from the first x to each, by the trapezoidal rule, (n,)."""
     return np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x))])
-
-
-def _ring(outline: ToothOutline, body: ToothBody, inclination: np.ndarray, cut: np.ndarray) -> np.ndarray:
-    """Give of the ring below the tooth, (n,)."""
-    # A polynomial says nothing outside the range of h that it was fitted for: the range's end stands in there.
-    ratio, theta = ring_shape(outline, body)
-    h = min(max(ratio, RING_RATIO[0]), RING_RATIO[1])
-    L, M, P, Q = _RING @ np.array([theta**-2, h**2, h / theta, 1.0 / theta, h, 1.0])
-    arm = (cut - outline.root_radius) / (2.0 * outline.root_radius * theta)
-    tangent = np.tan(inclination)
-    return np.asarray(
-        np.cos(inclination) ** 2 / body.youngs_modulus * (L * arm**2 + M * arm + P * (1.0 + Q * tangent**2))
-    )
 
 
 def ring_shape(outline: ToothOutline, body: ToothBody) -> tuple[float, float]:
@@ -120,22 +110,17 @@ _FINER = 16
 def slice_stiffness(teeth: ToothPair, position: np.ndarray) -> np.ndarray:
     """Stiffness of one pair per face width (N/m^2), shape (n,), touching at positions (n,) from the pitch point."""
     tangent = math.tan(teeth.pair.working_transverse_pressure_angle)
-    outlines = _outlines(teeth)
     bodies = (teeth.first_body, teeth.second_body)
     # Roll lengths on both flanks: they add up to the distance between the base tangent points.
     first = teeth.first.base_radius * tangent + position
     second = teeth.second.base_radius * tangent - position
     give = sum(
-        tooth_compliance(outline, body, roll)
-        for outline, body, roll in zip(outlines, bodies, (first, second), strict=True)
+        tooth_compliance(tooth_outline(g), body, roll)
+        for g, body, roll in zip((teeth.first, teeth.second), bodies, (first, second), strict=True)
     )
     # Hertz' approach of two cylinders depends on the load by a logarithm only; 2 / (pi E*) is its constant of Yang and Sun.
     contact = 2.0 / math.pi * sum((1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in bodies)
     return np.asarray(1.0 / (give + contact))
-
-
-def _outlines(teeth: ToothPair) -> tuple[ToothOutline, ToothOutline]:
-    return tooth_outline(teeth.first), tooth_outline(teeth.second)
 
 
 def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
@@ -161,11 +146,31 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
     z = 0.5 * (low + high)[..., None] + 0.5 * (high - low)[..., None] * nodes
     along = np.interp(xi[..., None] + z * math.tan(teeth.pair.base_helix_angle), path, per_width)
     total = np.sum(0.5 * (high - low) * (along @ weights), axis=1).reshape(positions, _FINER).mean(axis=1)
-    # Where the ring was held: its bore, or the end of the range that the ring formula was fitted for.
-    held = [
-        outline.root_radius / min(max(ring_shape(outline, body)[0], RING_RATIO[0]), RING_RATIO[1])
-        for outline, body in zip(_outlines(teeth), (teeth.first_body, teeth.second_body), strict=True)
-    ]
+    held = []
+    notes: list[str] = []
+    tangent = math.tan(teeth.pair.working_transverse_pressure_angle)
+    lowest = (
+        teeth.first.base_radius * tangent + teeth.pair.start_of_contact,
+        teeth.second.base_radius * tangent - teeth.pair.end_of_contact,
+    )
+    bodies = (teeth.first_body, teeth.second_body)
+    for number, (g, body, roll) in enumerate(zip((teeth.first, teeth.second), bodies, lowest, strict=True), 1):
+        outline = tooth_outline(g)
+        ratio, angle = ring_shape(outline, body)
+        # The ring is held at its bore, or at the end of the range that its formula was fitted for.
+        radius = outline.root_radius / min(max(ratio, RING_RATIO[0]), RING_RATIO[1])
+        held.append(f"ring held at radius {1e3 * radius:.4g} mm")
+        if roll < outline.form_roll_length - 1e-6 * g.base_radius:
+            notes.append(f"gear {number}: contact begins in the fillet, which is taken as involute there")
+        if ratio < RING_RATIO[0]:
+            notes.append(
+                f"gear {number}: the rim is thinner than the ring formula covers (r_f / r_inner = {ratio:.3g})"
+            )
+        if not RING_ANGLE[0] <= angle <= RING_ANGLE[1]:
+            notes.append(
+                f"gear {number}: theta_f = {angle:.3g} rad is outside 0.01 ... 0.12, the range of the ring formula"
+            )
+        notes += web_left_out(f"gear {number}", g, body, teeth.width, "the elastic ring")
     return MeshStiffness(
         model="potential_energy",
         position=start,
@@ -173,33 +178,7 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
         definition="secant",
         helices=1,
         load=load,
-        body="; ".join(f"ring held at radius {1e3 * radius:.4g} mm" for radius in held),
+        body="; ".join(held),
         base_helix_angle=teeth.pair.base_helix_angle,
-        warnings=_warnings(teeth),
+        warnings=tuple(notes),
     )
-
-
-def _warnings(teeth: ToothPair) -> tuple[str, ...]:
-    """Where the teeth lie outside what beam and ring formula were made for."""
-    sentences = []
-    bodies = (teeth.first_body, teeth.second_body)
-    pair = teeth.pair
-    tangent = math.tan(pair.working_transverse_pressure_angle)
-    lowest = (
-        teeth.first.base_radius * tangent + pair.start_of_contact,
-        teeth.second.base_radius * tangent - pair.end_of_contact,
-    )
-    for number, (outline, body) in enumerate(zip(_outlines(teeth), bodies, strict=True), 1):
-        ratio, angle = ring_shape(outline, body)
-        if lowest[number - 1] < outline.form_roll_length - 1e-6 * outline.geometry.base_radius:
-            sentences.append(f"gear {number}: contact begins in the fillet, which is taken as involute there")
-        if ratio < RING_RATIO[0]:
-            sentences.append(
-                f"gear {number}: the rim is thinner than the ring formula covers (r_f / r_inner = {ratio:.3g})"
-            )
-        if not RING_ANGLE[0] <= angle <= RING_ANGLE[1]:
-            sentences.append(
-                f"gear {number}: theta_f = {angle:.3g} rad is outside 0.01 ... 0.12, the range of the ring formula"
-            )
-        sentences += web_left_out(f"gear {number}", outline.geometry, body, teeth.width, "the elastic ring")
-    return tuple(sentences)

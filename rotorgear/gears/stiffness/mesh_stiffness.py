@@ -12,6 +12,7 @@ the sense of approach of the pinion to recess: pair j stands at xi = (u + j) p_b
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -87,21 +88,6 @@ class ToothPair:
     def base_pitch(self) -> float:
         """p_bt (m)."""
         return self.first.transverse_base_pitch
-
-    def swapped(self) -> ToothPair:
-        """The same teeth with gear 2 as gear 1."""
-        p = self.pair
-        turned = replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact)
-        return replace(
-            self,
-            first=self.second,
-            second=self.first,
-            pair=turned,
-            first_body=self.second_body,
-            second_body=self.first_body,
-            first_flank=self.second_flank,
-            second_flank=self.first_flank,
-        )
 
 
 @dataclass(frozen=True)
@@ -246,3 +232,28 @@ class MeshStiffness:
             load=load,
             warnings=notes,
         )
+
+
+def given_stiffness(
+    values: Sequence[float], base_helix_angle: float, helices: int, load: float | None, positions: int
+) -> MeshStiffness:
+    """A given stiffness as a curve of the whole mesh.
+
+    Args:
+        values: N/m along the flank normal, of all helices together, evenly spaced over the period; one is constant over it.
+        base_helix_angle: b_b (rad).
+        helices: 1 or 2.
+        load: F_bt (N) of all helices, where one is known; the values don't depend on it.
+        positions: how many positions to give a single value at; several values keep their own.
+    """
+    normal = np.full(positions, values[0]) if len(values) == 1 else np.asarray(values, float)
+    return MeshStiffness(
+        model="given",
+        position=np.arange(len(normal)) / len(normal),
+        transverse=normal * math.cos(base_helix_angle) ** 2,
+        definition="tangent",
+        helices=helices,
+        load=load,
+        body="as whoever gave the stiffness took it",
+        base_helix_angle=base_helix_angle,
+    )

@@ -399,7 +399,7 @@ class MeshLayout:
         Raises:
             AnalysisError: teeth or a load that the stiffness model can't do.
         """
-        from rotorgear.gears.stiffness.given import given_stiffness
+        from rotorgear.gears.stiffness.mesh_stiffness import given_stiffness
         from rotorgear.gears.stiffness_models import mesh_stiffness
 
         given = name or self.part.stiffness

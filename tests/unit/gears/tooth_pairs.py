@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -47,3 +48,18 @@ def helical(**given: Any) -> ToothPair:
 def cycle(teeth: ToothPair, load: float = LOAD, positions: int = 16) -> MeshCycle:
     """Loaded contact over one period."""
     return loaded_cycle(teeth, load, np.arange(positions) / positions)[1]
+
+
+def swapped(teeth: ToothPair) -> ToothPair:
+    """The same teeth with gear 2 as gear 1."""
+    p = teeth.pair
+    return replace(
+        teeth,
+        first=teeth.second,
+        second=teeth.first,
+        pair=replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact),
+        first_body=teeth.second_body,
+        second_body=teeth.first_body,
+        first_flank=teeth.second_flank,
+        second_flank=teeth.first_flank,
+    )

@@ -17,7 +17,7 @@ from rotorgear.gears.loaded.settled_contacts import settled
 from rotorgear.gears.loaded.tooth_contact import contact_problem, line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
-from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur
+from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur, swapped
 
 # CalculiX, plane strain, spur 34/80 at the pitch point: approach 10 um, arc of three pitches, rim of three modules.
 PITCH_POINT = 18.708e9
@@ -119,7 +119,7 @@ def test_a_corner_comes_into_contact_without_a_jump_of_the_approach() -> None:
 def test_pinion_and_gear_may_change_names(teeth: ToothPair) -> None:
     # The path runs the other way, so position u becomes -u.
     one = cycle(teeth)
-    other = cycle(teeth.swapped())
+    other = cycle(swapped(teeth))
     back = (-np.arange(16)) % 16
     assert other.secant[back] == pytest.approx(one.secant, rel=1e-9)
     assert other.deflection[back] == pytest.approx(one.deflection, rel=1e-9)

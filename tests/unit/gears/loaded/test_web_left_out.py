@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotorgear.gears.geometry.blank import BlankShape, solid_blank
-from rotorgear.gears.loaded.stiffness import tooth_fe_stiffness
+from rotorgear.gears.loaded.helix_cycles import tooth_fe_stiffness
 from rotorgear.gears.loaded.tooth_contact import contact_problem, in_space
 from rotorgear.gears.stiffness.blank_note import wind_up_per_width
 from rotorgear.gears.stiffness.energy import potential_energy_stiffness
