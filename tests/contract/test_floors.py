@@ -235,7 +235,7 @@ def unplanned_arrows(graph: Arrows) -> list[str]:
 
 
 def lazy_arrows(root: Path, graph: Arrows, package: str = "rotorgear") -> Arrows:
-    """Return the graph with the imports that hide in strings, "rotorgear.gears.loaded.stiffness:curve"."""
+    """Return the graph with the imports that hide in strings, "rotorgear.gears.stiffness.iso:iso_stiffness"."""
     found = {module: dict(targets) for module, targets in graph.items()}
     for module in graph:
         place = root / module.replace(".", "/")

@@ -75,7 +75,7 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
             line_load=line_load,
             single_stiffness=stiffness.single,
             mesh_stiffness=stiffness.mesh_alpha,
-            reduced_mass=reduced_mass(*inertias, pinion.base_radius, wheel.base_radius, teeth.width),
+            reduced_mass=reduced_mass(inertias, (pinion.base_radius, wheel.base_radius), teeth.width),
             # Deviations are those of the tolerance classes.
             base_pitch_deviation=max(map(base_pitch_deviation, (teeth.first, teeth.second), grades)),
             profile_deviation=max(map(profile_form_deviation, (teeth.first, teeth.second), grades)),

@@ -365,8 +365,8 @@ def solved_map(
         approach = np.column_stack([first, approach])
         curves.append((approach, with_start(slope, approach, loads), np.column_stack([np.zeros(len(first)), moment])))
     # Over all periods, period n being of the kind order[n].
-    over_periods = (np.concatenate([curves[k][i] for k in order]) for i in range(3))
-    position, approach, slope, moment = positions.kept(*over_periods, int(np.argmin(np.abs(loads - load))))
+    approach, slope, moment = (np.concatenate([curves[k][i] for k in order]) for i in range(3))
+    position, approach, slope, moment = positions.kept(approach, slope, moment, int(np.argmin(np.abs(loads - load))))
     return ContactMap(
         position=position,
         periods=len(order),

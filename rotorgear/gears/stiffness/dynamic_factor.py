@@ -14,6 +14,7 @@ Reference: ISO 6336-1:2006, clause 6.5; DIN 3990-1:1987, method C. SI units.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rotorgear.errors import AnalysisError
@@ -43,11 +44,9 @@ class DynamicFactor:
     warnings: tuple[str, ...] = ()
 
 
-def reduced_mass(
-    first_inertia: float, second_inertia: float, first_radius: float, second_radius: float, width: float
-) -> float:
+def reduced_mass(inertias: Sequence[float], base_radii: Sequence[float], width: float) -> float:
     """m_red (kg/m) per face width (m) from the polar inertias (kg m^2) and base radii (m) of both gears."""
-    return 1.0 / (width * (first_radius**2 / first_inertia + second_radius**2 / second_inertia))
+    return 1.0 / (width * sum(r**2 / J for r, J in zip(base_radii, inertias, strict=True)))
 
 
 def iso_dynamic_factor(

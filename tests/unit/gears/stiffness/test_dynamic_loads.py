@@ -77,7 +77,7 @@ def test_the_simple_form_gives_the_factors_that_a_study_of_two_herringbone_pairs
 
 
 def test_two_equal_disks_have_half_the_mass_of_one_at_the_base_circle() -> None:
-    assert reduced_mass(0.02, 0.02, 0.1, 0.1, 0.05) == pytest.approx(0.02 / 0.1**2 / 2 / 0.05, rel=1e-14)
+    assert reduced_mass((0.02, 0.02), (0.1, 0.1), 0.05) == pytest.approx(0.02 / 0.1**2 / 2 / 0.05, rel=1e-14)
 
 
 def test_no_load_and_a_contact_ratio_of_1_are_refused() -> None:
