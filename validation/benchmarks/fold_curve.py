@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 
-from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of, told_of
+from rotorgear.analysis.orbits.family import SPEED, SystemFamily, outputs_of, range_of
 from rotorgear.analysis.orbits.follow import main_branches, special_curves
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, scale_of
 from rotorgear.analysis.orbits.verify import first_node
@@ -49,7 +49,7 @@ def main() -> None:
         first = first_node(orbits, family, from_transient=False, progress=silent)
         branches = main_branches(orbits, first, Walk(), silent)
         begun = time.process_time()
-        curves = special_curves(branches, family, told_of(family), Walk(longest=STEP, most=POINTS), silent)
+        curves = special_curves(branches, family, outputs_of(family), Walk(longest=STEP, most=POINTS), silent)
         used = time.process_time() - begun
         for curve in curves:
             places = [f"{curve.value[k] * rpm:.2f} rpm, {curve.second[k]:.3f} N m" for k in (0, -1)]

@@ -1,9 +1,10 @@
-"""The local system of a model over one or two parameters, what of it excites, and the places where its motions are told."""
+"""The local system of a model over one or two parameters, what of it excites, and the displacements by which its motions are told."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -93,8 +94,6 @@ class SystemFamily:
         self._plants = Plants()
         self._known: dict[tuple[float, ...], Plant] = {}
         self._systems: dict[tuple[float, ...], LocalSystem] = {}
-        self._through: Between | None = None
-        self._asked_between = False
         first = self.model_at([0.0] * len(ranges))
         if not first.operating_speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or follow over it")
@@ -103,6 +102,7 @@ class SystemFamily:
         films = [bearing.film for bearing in first.bearings.values() if bearing.film is not None]
         held = depends_on_speed(first) or any(film.settles for film in films) or (films and first.meshes)
         self._turning = None if held else self._speed_axis
+        self._moving = [i for i in range(len(ranges)) if i != self._turning]
         self.local = self._built([0.0] * len(ranges))
         self.order, excited, self.notes = _excitation(self.local, excite)
         # What excites, in words.
@@ -133,7 +133,9 @@ class SystemFamily:
             key[self._turning] = 0.0
         own = self._systems.get(tuple(key))
         if own is None:
-            own = self._between(key) or self._exact(key)
+            share = key[self._moving[0]] if len(self._moving) == 1 else 0.0
+            near = self._through if share not in (0.0, 1.0) and -_BEYOND < share < 1.0 + _BEYOND else None
+            own = near.at(share) if near else self._exact(key)
             if len(self._systems) > _KEPT:
                 self._systems.clear()
             self._systems[tuple(key)] = own
@@ -149,24 +151,19 @@ class SystemFamily:
         """The system assembled at shares of the ranges."""
         return self._with_means((self._built(shares) if any(shares) else self.local).local)
 
-    def _between(self, shares: Sequence[float]) -> LocalSystem | None:
-        """The system between exact ones where a single range, besides a speed that only turns, leads there smoothly."""
-        moving = [i for i in range(len(shares)) if i != self._turning]
-        if len(moving) != 1 or shares[moving[0]] in (0.0, 1.0) or not -_BEYOND < shares[moving[0]] < 1.0 + _BEYOND:
-            return None
-        own = moving[0]
-        if not self._asked_between:
-            self._asked_between = True
-            over = self.ranges[own]
+    @cached_property
+    def _through(self) -> Between | None:
+        """Numbers between exact systems, where one range alone, besides a speed that only turns, leads there smoothly."""
+        own = self._moving[0]
+        over = self.ranges[own]
 
-            def exact(share: float) -> LocalSystem:
-                return self._exact([share if i == own else 0.0 for i in range(len(shares))])
+        def exact(share: float) -> LocalSystem:
+            return self._exact([share if i == own else 0.0 for i in range(len(self.ranges))])
 
-            def factor(share: float) -> float:
-                return over.at(share) / over.begin if own == self._speed_axis else 1.0
+        def factor(share: float) -> float:
+            return over.at(share) / over.begin if own == self._speed_axis else 1.0
 
-            self._through = between(exact, factor)
-        return self._through.at(shares[own]) if self._through else None
+        return between(exact, factor)
 
     def _varies(self, i: int) -> bool:
         return i in self._varied and not self.local.parts[i].law.steady
@@ -280,7 +277,7 @@ _PLACES = ("bearings", "nonlinear_elements", "unbalances")
 
 
 @dataclass(frozen=True)
-class Told:
+class Outputs:
     """All that a result tells of a motion, by columns of the local displacements.
 
     Attributes:
@@ -311,7 +308,7 @@ class Told:
         return both[self.contact_column] / self.transverse[:, None], both[self.place_column]
 
 
-def told_of(family: SystemFamily) -> Told:
+def outputs_of(family: SystemFamily) -> Outputs:
     """Contacts and the displacements across bearings, nonlinear elements and at unbalances.
 
     Raises:
@@ -333,7 +330,7 @@ def told_of(family: SystemFamily) -> Told:
             for k, axis in enumerate(axes, int(first))
             if plant.B[:, k].any()
         ]
-    told = Told(
+    outputs = Outputs(
         contact=tuple(family.parts[i].label for i in law),
         contact_column=firsts[law],
         contact_law=law,
@@ -342,9 +339,9 @@ def told_of(family: SystemFamily) -> Told:
         place_column=np.array([k for _, k, _ in places], int),
         place_unit=tuple(unit for _, _, unit in places),
     )
-    if not told.columns.size:
+    if not outputs.columns.size:
         raise AnalysisError(
             "nothing tells one motion from another: orbits looks at meshes, bearings of rolling elements or oil films, nonlinear "
             "elements and unbalances, and the model has none of them; response solves for its forced motions"
         )
-    return told
+    return outputs

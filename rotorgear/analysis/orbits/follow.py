@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rotorgear.analysis.orbits.family import SystemFamily, Told
+from rotorgear.analysis.orbits.family import Outputs, SystemFamily
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.results.orbits import SpecialCurve
@@ -137,7 +137,7 @@ def doubled_branches(branch: Branch, plan: Walk, progress: Progress) -> list[Bra
 
 
 def special_curves(
-    branches: list[Branch], family: SystemFamily, told: Told, plan: Walk, progress: Progress
+    branches: list[Branch], family: SystemFamily, outputs: Outputs, plan: Walk, progress: Progress
 ) -> tuple[SpecialCurve, ...]:
     """Follow each fold and period doubling of the branches over the second range."""
     found: list[SpecialCurve] = []
@@ -156,7 +156,7 @@ def special_curves(
         progress(0.8 + 0.15 * count / len(starts), f"curve of the {one.kind}")
         points, ended = _curve(branches[number].orbits, one.kind, node, family, plan)
         ends += [(one.kind, p, q) for p, q, _ in points[-1:]]
-        extremes = [told.extremes(cycle) for _, _, cycle in points]
+        extremes = [outputs.extremes(cycle) for _, _, cycle in points]
         found.append(
             SpecialCurve(
                 one.kind,

@@ -16,7 +16,7 @@ import numpy as np
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_whole, missed
-from rotorgear.analysis.orbits.family import SystemFamily, Told, range_of, told_of
+from rotorgear.analysis.orbits.family import Outputs, SystemFamily, outputs_of, range_of
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches, special_curves
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
 from rotorgear.analysis.transient.notes import left_out_in_time
@@ -157,7 +157,7 @@ def orbits(
     with single_thread(0):
         progress(0.0, "model")
         family = SystemFamily(model, ranges, excite, elements)
-        told = told_of(family)
+        outputs = outputs_of(family)
         plant = family.plant(0.0)
         scale = scale_of(plant)
         clock.lap("model")
@@ -166,7 +166,9 @@ def orbits(
             N = instants * 2**doublings if instants else INSTANTS * H
             N += N % 2
             problem, why = equations_of(method, family, Grid(H, N, family.order), scale)
-            from_rest = partial(settled, problem, family, progress=progress) if _small(plant) else None
+            # Of small systems transients from rest cost little.
+            small = _coordinates(plant) <= MOST_COORDINATES
+            from_rest = partial(settled, problem, family, progress=progress) if small else None
             used = time.process_time()
             first = first_node(problem, family, from_transient=from_transient, progress=progress)
             branches = main_branches(problem, first, plan, progress, from_rest)
@@ -174,16 +176,16 @@ def orbits(
                 branches += [twice for branch in branches for twice in doubled_branches(branch, plan, progress)]
             used = time.process_time() - used
             progress(0.95, "error estimate")
-            error = largest_error(branches[0], told.columns)
+            error = largest_error(branches[0], outputs.columns)
             if accuracy is None or error <= accuracy or isinstance(problem, ShootingOrbits):
                 break
         if len(ranges) > 1:
-            curves = special_curves(branches, family, told, plan, progress)
+            curves = special_curves(branches, family, outputs, plan, progress)
         clock.lap("branches")
         progress(0.97, "statistics")
-        fields = gathered(branches, told, family, H)
+        fields = gathered(branches, outputs, family, H)
         clock.lap("statistics")
-        checks = verified(branches, family, told.columns) if verify else ()
+        checks = verified(branches, family, outputs.columns) if verify else ()
     short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
     progress(1.0, "done")
     count = sum(len(branch.nodes) for branch in branches)
@@ -194,9 +196,9 @@ def orbits(
         per_unit=np.array([one.per_unit for one in ranges]),
         excited=family.label,
         order=family.order,
-        contact=told.contact,
-        place=told.place,
-        place_unit=told.place_unit,
+        contact=outputs.contact,
+        place=outputs.place,
+        place_unit=outputs.place_unit,
         statistic=STATISTICS,
         **fields,  # type: ignore[arg-type]
         curves=curves,
@@ -248,10 +250,9 @@ def _check(
 def scale_of(plant: Plant) -> np.ndarray:
     """Sizes of the local displacements: their static ones, at least a micrometre's share where there are none."""
     d = np.abs(static_displacements(plant) if plant.m else np.zeros(0))
-    k = np.diag(plant.forces.reference_stiffness)
-    least = np.where(k > 0.0, _UNLOADED, 0.0)
-    largest = max(float(d[k > 0.0].max(initial=0.0)), _UNLOADED)
-    return np.maximum(np.where(k > 0.0, d, largest), least)
+    stiff = np.diag(plant.forces.reference_stiffness) > 0.0
+    largest = max(float(d[stiff].max(initial=0.0)), _UNLOADED)
+    return np.where(stiff, np.maximum(d, _UNLOADED), largest)
 
 
 def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarray) -> tuple[AnyOrbits, str]:
@@ -263,11 +264,9 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
     plant = family.plant(0.0)
     # Steps of shooting would end at each kink.
     kinked = method == "auto" and any(part.law.many_kinks for part in family.parts)
-    if method != "harmonic balance" and _small(plant) and not kinked:
-        w = grid.frequency(plant.speed)
+    if method != "harmonic balance" and _coordinates(plant) <= MOST_COORDINATES and not kinked:
         trial = HarmonicOrbits(family.plant, grid, scale)
-        ratio = trial.modes(0.0).highest / w
-        if ratio <= MOST_RATIO:
+        if trial.modes(0.0).highest / grid.frequency(plant.speed) <= MOST_RATIO:
             own = ShootingOrbits(family.plant, grid.order, scale, grid.harmonics, grid.instants)
             return own, f"shooting with steps to the switches of the laws, {own.size} states"
     if method == "shooting":
@@ -275,19 +274,13 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
             f"method: shooting takes up to {MOST_COORDINATES} coordinates that are not stiff, this model has "
             f"{_coordinates(plant)}; take harmonic balance"
         )
-    return (
-        HarmonicOrbits(family.plant, grid, scale),
-        f"harmonic balance of {plant.m} local displacements, {grid.harmonics} harmonics at {grid.instants} instants, arc length",
-    )
+    cut = f"{grid.harmonics} harmonics at {grid.instants} instants"
+    why = f"harmonic balance of {plant.m} local displacements, {cut}, arc length"
+    return HarmonicOrbits(family.plant, grid, scale), why
 
 
 def _coordinates(plant: Plant) -> int:
     return int(plant.M.shape[0] - plant.free.shape[1])
-
-
-def _small(plant: Plant) -> bool:
-    """Whether shooting and transients from rest cost little."""
-    return _coordinates(plant) <= MOST_COORDINATES
 
 
 def _modes_left_out(problem: AnyOrbits) -> Iterator[Note]:
@@ -324,7 +317,7 @@ _MULTIPLIERS = 12
 _LUCK = 0.03
 
 
-def gathered(branches: list[Branch], told: Told, family: SystemFamily, harmonics: int) -> dict[str, object]:
+def gathered(branches: list[Branch], outputs: Outputs, family: SystemFamily, harmonics: int) -> dict[str, object]:
     """The fields of a result that belong to points and special points.
 
     The error of a statistic is its difference from that of the finer solution at the same value of the parameter.
@@ -339,13 +332,13 @@ def gathered(branches: list[Branch], told: Told, family: SystemFamily, harmonics
             node = one.node
             plant = family.plant(node.p)
             cycle = orbits.cycle(node.y, node.p)
-            found = statistics_of(cycle, plant, told)
-            better = refined(orbits, finer, node) if told.contact else None
+            found = statistics_of(cycle, plant, outputs)
+            better = refined(orbits, finer, node) if outputs.contact else None
             error = np.full(found.values.shape, np.nan)
             if better is not None:
-                exact = statistics_of(finer.cycle(better, node.p), plant, told)
+                exact = statistics_of(finer.cycle(better, node.p), plant, outputs)
                 error = compared(found.values, exact.values, found.scales, 1.0, _LUCK)
-            approach, moved = told.extremes(cycle)
+            approach, moved = outputs.extremes(cycle)
             # Harmonics of the base period: of a motion of k periods every k-th.
             force = cycle.force[:: branch.periods][: harmonics + 1]
             displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
@@ -365,17 +358,17 @@ def gathered(branches: list[Branch], told: Told, family: SystemFamily, harmonics
                     "apart": found.shares[:, 1],
                     "back": found.shares[:, 2],
                     "statistics_error": error,
-                    "force_harmonics": force[:, told.contact_column],
-                    "displacement_harmonics": displacement[:, told.contact_column],
+                    "force_harmonics": force[:, outputs.contact_column],
+                    "displacement_harmonics": displacement[:, outputs.contact_column],
                     "place_extremes": moved,
-                    "place_harmonics": displacement[:, told.place_column],
+                    "place_harmonics": displacement[:, outputs.place_column],
                 }
             )
         for point in branch.special:
             node = point.at.node
             cycle = orbits.cycle(node.y, node.p)
             mu = point.at.multipliers[:_MULTIPLIERS]
-            sizes = (mu.real.copy(), mu.imag.copy(), *told.extremes(cycle))
+            sizes = (mu.real.copy(), mu.imag.copy(), *outputs.extremes(cycle))
             special.append(SpecialPoint(point.kind, along.at(node.p), number, cycle.period, *sizes))
     return {
         **{name: np.array([point[name] for point in points]) for name in points[0]},
@@ -384,13 +377,13 @@ def gathered(branches: list[Branch], told: Told, family: SystemFamily, harmonics
     }
 
 
-def statistics_of(cycle: Cycle, plant: Plant, told: Told) -> MotionStatistics:
+def statistics_of(cycle: Cycle, plant: Plant, outputs: Outputs) -> MotionStatistics:
     """Statistics of the contacts over a period, what is between its instants included."""
 
     def laws(t: np.ndarray, d: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         at = answered(t, d, v, plant.forces, plant.speed)
-        return at.F[:, told.contact_column], at.side[:, told.contact_law]
+        return at.F[:, outputs.contact_column], at.side[:, outputs.contact_law]
 
     force, shares = over_period(PeriodicCurve(cycle.period, cycle.at.d, cycle.at.v), laws)
     watched = PeriodicCurve(cycle.period, cycle.watched, cycle.watched_rate).extremes()
-    return MotionStatistics(force, shares, watched[: len(told.contact)], told.extremes(cycle)[0])
+    return MotionStatistics(force, shares, watched[: len(outputs.contact)], outputs.extremes(cycle)[0])

@@ -81,8 +81,8 @@ def estimate_chance(
         modes_in_band=int(np.count_nonzero((mode_hz >= low) & (mode_hz <= high))),
         coverage=coverage,
         expected_random_matches=float(scores[:, 0].mean()),
-        probability_as_many=_significance(scores[:, 0] >= matched),
-        probability_as_close=_significance(scores[:, 1] <= distance + TIE),
+        probability_as_many=significance(scores[:, 0] >= matched),
+        probability_as_close=significance(scores[:, 1] <= distance + TIE),
         binomial_expected=rig_hz.size * coverage,
         binomial_probability=binomial_tail(rig_hz.size, matched, coverage),
         samples=samples,
@@ -107,7 +107,8 @@ def _score(lines: NDArray[np.float64], modes: NDArray[np.float64], tolerance: fl
     return len(pairs), distance + (lines.size - len(pairs)) * miss_cost(tolerance)
 
 
-def _significance(hits: NDArray[np.bool_]) -> float:
+def significance(hits: NDArray[np.bool_]) -> float:
+    """Monte Carlo significance: of random lists that do as well, and of the one that was measured."""
     return float((1 + np.count_nonzero(hits)) / (1 + hits.size))
 
 

@@ -22,8 +22,8 @@ from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.points import point_node
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, share_of
-from rotorgear.analysis.rig.compare import ABOVE_RIG, excitations_at, modes_beside
-from rotorgear.analysis.rig.likeness import UNPAIRED, costs, mac, pairs_by_both
+from rotorgear.analysis.rig.compare import ABOVE_RIG, excitations_at, modes_beside, significance
+from rotorgear.analysis.rig.likeness import mac, pairs_by_both
 from rotorgear.analysis.rig.measured import Measured, read_rig_shapes
 from rotorgear.analysis.rig.misfit import SHAPE_NOISE, Fit, Misfit, approach, first_fit
 from rotorgear.analysis.rig.posterior import DEFAULT_PRIOR, LINE_NOISE, learnt_stiffnesses, spring_shares
@@ -156,7 +156,7 @@ def compare_shapes(
     lines = np.setdiff1d(np.arange(len(rig_hz)), [line for line, _ in pairs])
     left = np.setdiff1d(np.arange(len(modes.hz)), [mode for _, mode in pairs])
     if len(lines) and len(left):
-        others = pairs_by_both(rig_hz[lines], modes.hz[left], spread[left], alike[np.ix_(lines, left)])
+        others, _ = pairs_by_both(rig_hz[lines], modes.hz[left], spread[left], alike[np.ix_(lines, left)])
         pairs += [(int(lines[line]), int(left[mode])) for line, mode in others]
     pairs.sort()
     chance = _chance(modes, rig_hz, alike, spread, tolerance, samples, seed)
@@ -362,10 +362,9 @@ def _chance(
     unit = modes.at_points / np.where(size > 0.0, size, 1.0)
 
     def score(hz: NDArray[np.float64], likeness: NDArray[np.float64]) -> tuple[int, float]:
-        pairs = pairs_by_both(hz, modes.hz, spread, likeness)
-        cost, _ = costs(hz, modes.hz, spread, likeness)
-        good = sum(1 for i, k in pairs if abs(modes.hz[k] / hz[i] - 1.0) <= tolerance and likeness[i, k] >= ALIKE)
-        return good, float(sum(cost[i, k] for i, k in pairs)) + UNPAIRED * (len(hz) - len(pairs))
+        pairs, cost = pairs_by_both(hz, modes.hz, spread, likeness)
+        good = sum(abs(modes.hz[k] / hz[i] - 1.0) <= tolerance and likeness[i, k] >= ALIKE for i, k in pairs)
+        return int(good), cost
 
     many, distance = score(rig_hz, alike)
     scores = []
@@ -373,12 +372,6 @@ def _chance(
         hz = low * (high / low) ** random.random(len(rig_hz))
         shapes = random.standard_normal((len(rig_hz), len(unit))) @ unit
         scores.append(score(hz, modes.likeness(shapes)))
-    counts = np.array([good for good, _ in scores])
-    distances = np.array([value for _, value in scores])
-    return ShapeChance(
-        float(counts.mean()),
-        float((1 + np.count_nonzero(counts >= many)) / (1 + samples)),
-        float((1 + np.count_nonzero(distances <= distance)) / (1 + samples)),
-        samples,
-        seed,
-    )
+    counts, distances = np.array(scores).T
+    chance = (significance(counts >= many), significance(distances <= distance))
+    return ShapeChance(float(counts.mean()), *chance, samples, seed)

@@ -53,7 +53,7 @@ _MAC_SCALE = 0.1
 _FARTHEST = 4.0
 _LEAST_MAC = 0.3
 # No pair that is allowed costs more.
-UNPAIRED = _FARTHEST**2 + _MAC_SCALE**-2
+_UNPAIRED = _FARTHEST**2 + _MAC_SCALE**-2
 
 
 def pairs_of(
@@ -76,7 +76,7 @@ def pairs_of(
     """
     if measured_shapes.size == 0 or not np.isfinite(measured_shapes).any():
         return sorted(assign(measured_hz, mode_hz, tolerance))
-    return pairs_by_both(measured_hz, mode_hz, spread, mac(measured_shapes, mode_shapes))
+    return pairs_by_both(measured_hz, mode_hz, spread, mac(measured_shapes, mode_shapes))[0]
 
 
 def pairs_by_both(
@@ -84,24 +84,18 @@ def pairs_by_both(
     mode_hz: NDArray[np.float64],
     spread: NDArray[np.float64],
     alike: NDArray[np.float64],
-) -> list[tuple[int, int]]:
-    """Return (line, mode), ascending in lines, of least cost; `alike` is their MAC (n, m), NaN where unknown."""
+) -> tuple[list[tuple[int, int]], float]:
+    """Return (line, mode), ascending in lines, of least cost, and what they cost with lines that are not paired.
+
+    `alike` is their MAC (n, m), NaN where unknown.
+    """
     from scipy.optimize import linear_sum_assignment
 
-    cost, allowed = costs(measured_hz, mode_hz, spread, alike)
-    # One pair that is not allowed costs more than all allowed ones together.
-    outside = 1.0 + min(cost.shape) * UNPAIRED
-    rows, columns = linear_sum_assignment(np.where(allowed, cost, outside))
-    return [(int(i), int(k)) for i, k in zip(rows, columns, strict=True) if allowed[i, k]]
-
-
-def costs(
-    measured_hz: NDArray[np.float64],
-    mode_hz: NDArray[np.float64],
-    spread: NDArray[np.float64],
-    alike: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """What each pair costs (n, m), and whether it is allowed."""
     distance = np.abs(np.log(mode_hz[None, :] / measured_hz[:, None])) / spread[None, :]
     cost = distance**2 + (np.nan_to_num(1.0 - alike, nan=0.0) / _MAC_SCALE) ** 2
-    return cost, (distance <= _FARTHEST) & ~(alike < _LEAST_MAC)
+    allowed = (distance <= _FARTHEST) & ~(alike < _LEAST_MAC)
+    # One pair that is not allowed costs more than all allowed ones together.
+    outside = 1.0 + min(cost.shape) * _UNPAIRED
+    rows, columns = linear_sum_assignment(np.where(allowed, cost, outside))
+    pairs = [(int(i), int(k)) for i, k in zip(rows, columns, strict=True) if allowed[i, k]]
+    return pairs, float(sum(cost[i, k] for i, k in pairs)) + _UNPAIRED * (len(measured_hz) - len(pairs))

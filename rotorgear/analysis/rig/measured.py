@@ -187,24 +187,19 @@ def read_rig_frf(path: str | Path, points: str | Path | None = None, model: Mode
     rows = []
     left = 0
     for function in functions:
+        wrong = ""
         if function.numerator not in DERIVATIVES:
-            raise AnalysisError(
-                f"{path}: the response of a function is of type {function.numerator}; expected displacement (8), "
-                "velocity (11) or acceleration (12)"
-            )
-        if function.denominator in DERIVATIVES:
-            raise AnalysisError(
-                f"{path}: a function is a motion over a motion (type {function.denominator}), a transmissibility; expected "
-                "motions over forces (13)"
-            )
-        if function.x_type not in (0, FREQUENCY):
-            raise AnalysisError(
-                f"{path}: a function is over an axis of type {function.x_type}; expected frequency (18)"
-            )
-        if len(function.x) != len(hz) or not np.allclose(function.x, hz, rtol=1e-4):
-            raise AnalysisError(
-                f"{path}: frequency responses have different frequencies; give one file for each set of them"
-            )
+            motions = "displacement (8), velocity (11) or acceleration (12)"
+            wrong = f"the response of a function is of type {function.numerator}; expected {motions}"
+        elif function.denominator in DERIVATIVES:
+            what = f"a motion over a motion (type {function.denominator}), a transmissibility"
+            wrong = f"a function is {what}; expected motions over forces (13)"
+        elif function.x_type not in (0, FREQUENCY):
+            wrong = f"a function is over an axis of type {function.x_type}; expected frequency (18)"
+        elif len(function.x) != len(hz) or not np.allclose(function.x, hz, rtol=1e-4):
+            wrong = "frequency responses have different frequencies; give one file for each set of them"
+        if wrong:
+            raise AnalysisError(f"{path}: {wrong}")
         response, sign = _sensor(function.response, by_freedom)
         reference, other = _sensor(function.reference, by_freedom)
         if response is None or reference is None:

@@ -344,11 +344,9 @@ def most_probable(misfit: Misfit, state: Fit, progress: Progress) -> tuple[Fit, 
             state = other
             posterior = misfit.linear(state)
     apart = state.objective / max(len(state.residual), 1)
-    remedy = (
-        "free fewer numbers, or give smaller priors"
-        if apart < _MISFIT
-        else "look at units, signs, places of sensors and damping by `rotorgear compare`, or free other numbers"
-    )
+    remedy = "free fewer numbers, or give smaller priors"
+    if apart >= _MISFIT:
+        remedy = "look at units, signs, places of sensors and damping by `rotorgear compare`, or free other numbers"
     raise ConvergenceError(
         f"the update did not come to rest within {_MOST_SOLUTIONS} modal solutions, with a misfit of {apart:.2g} times what "
         f"noise and priors allow: {remedy}"

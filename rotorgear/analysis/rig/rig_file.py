@@ -36,20 +36,24 @@ def csv_rows(file: Path, expected: str) -> tuple[str, list[tuple[int, list[str]]
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise ModelError([Problem(file.name, "", expected, reason)], str(file)) from error
-    # A comment becomes an empty line, so that the numbers of lines stay those of the file.
-    lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
+    numbered = enumerate(text.splitlines(), start=1)
+    lines = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
     # The header tells the delimiter: below it, commas may also be in numbers and labels.
-    delimiter = max(",;\t", key=next((line for line in lines if line.strip()), "").count)
+    delimiter = max(",;\t", key=lines[0][1].count if lines else len)
     rows = []
-    for number, line in enumerate(lines, start=1):
+    for number, line in lines:
         # Line by line: no cell goes on over the next one, so a quote that is not closed can't swallow the rest of the file.
         try:
-            cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True), [])
+            cells = [
+                cell.strip()
+                for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True))
+            ]
         except csv.Error:
             closed = "every quote closed in its line, and nothing behind it in its cell"
             raise ModelError([Problem(f"{file.name}:{number}", repr(line), closed)], str(file)) from None
-        rows.append((number, [cell.strip() for cell in cells]))
-    return delimiter, [(number, cells) for number, cells in rows if any(cells)]
+        if any(cells):
+            rows.append((number, cells))
+    return delimiter, rows
 
 
 # Column -> units that its header may carry, the first being that of a plain number.
@@ -123,7 +127,7 @@ def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
                 if found[2] != first:
                     note(name, repr(cell), "one decimal sign in a file", f"line {signs[first]} has '{first}'")
                 cell = f"{found[1]}.{found[3]}"
-            plain = _is_plain(cell)
+            plain = cell[-1].isdigit() or cell[-1] == "."
             share = unit == "%" if plain else cell.endswith("%")
             try:
                 dimension = "ratio" if share or name == "damping" else "frequency"
@@ -171,36 +175,18 @@ def _columns(header: list[str], where: str, file: Path) -> list[tuple[str, str] 
         else:
             columns.append(None)
             if text:
-                valid = [
-                    "frequency",
-                    "frequency_hz",
-                    "label",
-                    "uncertainty",
-                    "uncertainty_hz",
-                    "damping",
-                    "damping_ratio",
-                ]
-                close = nearest(text, valid)
+                close = nearest(text, [*_UNITS, *_FIELDS])
                 expected = "one of the columns frequency, label, uncertainty, damping"
                 problems.append(Problem(f"{where}:{text}", "", expected, f"did you mean '{close}'?" if close else ""))
     names = [column[0] for column in columns if column]
-    problems += [
-        Problem(where, f"{names.count(name)} columns for {name}", "one") for name in _UNITS if names.count(name) > 1
-    ]
+    counts = {name: names.count(name) for name in _UNITS}
+    problems += [Problem(where, f"{count} columns for {name}", "one") for name, count in counts.items() if count > 1]
     if "frequency" not in names:
         hint = "" if problems else f"columns found: {', '.join(header)}"
         problems.append(Problem(where, "", "a column 'frequency' or 'frequency_hz'", hint))
     if problems:
         raise ModelError(problems, str(file))
     return columns
-
-
-def _is_plain(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
 
 
 def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, ...]:

@@ -13,7 +13,7 @@ from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import needed_speed
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
-from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of, told_of
+from rotorgear.analysis.orbits.family import SPEED, SystemFamily, outputs_of, range_of
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of
 from rotorgear.analysis.orbits.verify import run_periods
 from rotorgear.analysis.sweep.sweep import sweep
@@ -290,8 +290,8 @@ def orbits_convergence_study(
         raise AnalysisError("the shafts stand still, where nothing repeats: ask for a speed (--speed)")
     family = SystemFamily(model, [range_of(model, SPEED, [given, _RANGE * given])], excite, None)
     order = family.order
-    told = told_of(family)
-    columns = told.columns
+    outputs = outputs_of(family)
+    columns = outputs.columns
     plant = family.plant(0.0)
     scale = scale_of(plant)
 
@@ -346,7 +346,7 @@ def orbits_convergence_study(
 
     plans = [("harmonics", h, h, INSTANTS * h) for h in harmonics if 2 * h <= finest]
     plans += [("instants", n, HARMONICS, HARMONICS * n) for n in densities if finest >= 2 * HARMONICS]
-    compared = "contacts" if told.contact else "bearings, elements and unbalances"
+    compared = "contacts" if outputs.contact else "bearings, elements and unbalances"
     return Study(
         [
             Setting(f"{h} harmonics, {instants} instants", knob, value, {"harmonics": h, "instants": instants})

@@ -220,23 +220,9 @@ def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
             continue
         # All that a point's motion depends on.
         system = q.system
-        columns = system.columns
-        parts = (
-            system.K,
-            system.D,
-            system.load,
-            system.B,
-            system.rest,
-            columns.kind,
-            columns.mode,
-            columns.stiffness,
-            columns.damping,
-            columns.clearance,
-            columns.per_depth,
-            columns.push,
-            system.own.forces.parameters,
-            np.array([system.w, system.turns]),
-        )
+        matrices = (system.K, system.D, system.load, system.B, system.rest, system.own.forces.parameters)
+        columns = (system.columns.kind, system.columns.mode, system.columns.values)
+        parts = (*matrices, *columns, np.array([system.w, system.turns]))
         data = b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), q.shape])
         own.append(seen.setdefault(hashlib.blake2b(data).digest(), len(seen)))
     table = np.array(own).reshape([len(axis.values) for axis in axes])

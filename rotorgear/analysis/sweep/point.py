@@ -5,6 +5,7 @@ What repeats in a model that turns: orders of all laws, and the period that they
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import gcd, lcm
@@ -56,32 +57,22 @@ def shared_period(orders: list[Fraction]) -> tuple[Fraction, int]:
     return fastest, int(fastest / base)
 
 
-def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
+def common_period(orders: list[Fraction], meshes: Sequence[Fraction] = ()) -> tuple[Fraction, int]:
     """The highest order, and how many of its periods everything that varies has in common.
 
     Raises:
-        AnalysisError: nothing varies, or the common period is too long.
+        AnalysisError: nothing varies, or the common period is too long; where that of the meshes alone is not, what else to
+            leave out.
     """
     fastest, turns = shared_period(orders)
     if turns > MOST_TURNS:
-        raise AnalysisError(
-            f"the meshes repeat together after {turns} periods of the fastest only (at most {MOST_TURNS}); choose "
-            "numbers of teeth with common factors"
-        )
+        why = f"the meshes repeat together after {turns} periods of the fastest only (at most {MOST_TURNS})"
+        remedy = "choose numbers of teeth with common factors"
+        if 0 < len(meshes) < len(orders):
+            alone = f"without unbalances and torque ripples the meshes repeat after {common_period(list(meshes))[1]}"
+            remedy += f"; {alone}: leave these out, as by --over 'unbalances.*.magnitude=0 kg m'"
+        raise AnalysisError(f"{why}; {remedy}")
     return fastest, turns
-
-
-def refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:
-    """AnalysisError where unbalances or torque ripples make the common period too long, and meshes alone don't."""
-    try:
-        common_period(orders)
-    except AnalysisError as error:
-        if not meshes or len(meshes) == len(orders):
-            raise
-        raise AnalysisError(
-            f"{error}; without unbalances and torque ripples the meshes repeat after {common_period(meshes)[1]}: leave these "
-            "out, as by --over 'unbalances.*.magnitude=0 kg m'"
-        ) from None
 
 
 def orders_of(law: LocalLaw, label: str) -> list[Fraction]:
@@ -240,7 +231,7 @@ class PointMaker:
             for is_mesh in (True, False)
         )
         orders = meshes + others
-        refuse_long(meshes, orders)
+        common_period(orders, meshes)
         contact = tuple(part.label for part in built.parts if part.is_mesh)
         # Casings and gear bodies bring static shapes at high frequencies, which few of the contacts' motions need.
         bodies = bool(system.model.casings) or bool(system.nodes.bodies)

@@ -295,7 +295,7 @@ def spread(shape: Sequence[int], sound: Sequence[bool], count: int) -> list[int]
     """Up to `count` sound points that cover the sweep: evenly along one parameter, or a grid over two."""
     if len(shape) == 1:
         own = np.flatnonzero(sound)
-        return [] if not own.size or not count else [int(own[i]) for i in _even(own.size, min(count, own.size))]
+        return [int(own[i]) for i in _even(own.size, min(count, own.size))]
     rows = max(1, min(shape[0], int(np.sqrt(count))))
     columns = min(shape[1], count // rows)
     rows = min(shape[0], count // max(1, columns))

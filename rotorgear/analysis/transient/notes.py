@@ -80,15 +80,15 @@ def intact(result: TransientResult, local: LocalModel) -> Iterator[Note]:
 
 def _along_face(address: str, mesh: Mesh, *, follows: bool) -> Iterator[Note]:
     """What of the tilt of a mesh stays as in the static equilibrium; `follows`: whether its law knows the tilt."""
-    askew = "the teeth are misaligned as in the static equilibrium"
+    as_in_statics = "the teeth are misaligned as in the static equilibrium"
     if not follows:
-        why = f"{askew}, and resist a tilt by the tangent about it, even where they part"
+        why = f"{as_in_statics}, and resist a tilt by the tangent about it, even where they part"
         yield Note(address, "how the load moves along the face in time", why)
     elif mesh.damping or mesh.damping_ratio:
         why = "it is that of the mean state, also where teeth part"
         yield Note(address, "how the damping against a tilt changes with what carries", why)
     if mesh.backlash is not None:
-        yield Note(address, "how the tilt of the coast flanks changes in time", askew)
+        yield Note(address, "how the tilt of the coast flanks changes in time", as_in_statics)
 
 
 def adrift(task: Task) -> Iterator[Note]:
