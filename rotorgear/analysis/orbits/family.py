@@ -1,4 +1,4 @@
-"""The local system of a model over one or two parameters, what of it excites, and the displacements by which its motions are told."""
+"""The local system of a model over one or two parameters, what of it excites, and the displacements that tell its motions."""
 
 from __future__ import annotations
 

@@ -35,8 +35,6 @@ from rotorgear.solvers.sparse.factor import single_thread
 
 # How many portraits, or the values of the parameters next to which points keep theirs.
 WantedPortraits = int | Sequence[float | str | Sequence[float]]
-# The model at a point, from the model and the values there.
-Change = Callable[[Model, tuple[float, ...]], Model]
 # Share of the progress that making the points ready gets.
 _READY = 0.1
 
@@ -47,7 +45,7 @@ def sweep(
     model: Model,
     over: Mapping[str, str | Sequence[float | str]],
     *,
-    change: Change | None = None,
+    change: Callable[[Model, tuple[float, ...]], Model] | None = None,
     direction: str = "each",
     initial_conditions: int = 1,
     discard: int = 300,
@@ -131,16 +129,8 @@ def sweep(
         settings = {"models": "".join(models), "run": f"{request} {[axis.address for axis in axes]} {chosen.tolist()}"}
         kept = stream.begin(settings) if stream else []
         shape = [len(axis.values) for axis in axes]
-        orbits = _run(
-            points,
-            chosen,
-            shape,
-            request,
-            partial(run_blocks, workers=workers, executor=executor),
-            stream,
-            kept,
-            progress,
-        )
+        run = partial(run_blocks, workers=workers, executor=executor)
+        orbits = _run(points, chosen, shape, request, run, stream, kept, progress)
     clock.lap("integration")
     result = gathered(model, axes, points, failure, chosen, request, orbits, reduction, left_out)
     if wanted:
@@ -151,7 +141,11 @@ def sweep(
 
 
 def ready_points(
-    model: Model, axes: Sequence[Axis], change: Change | None, request: Request, progress: Progress
+    model: Model,
+    axes: Sequence[Axis],
+    change: Callable[[Model, tuple[float, ...]], Model] | None,
+    request: Request,
+    progress: Progress,
 ) -> tuple[list[str], list[Point | None], list[str], list[tuple[str, ...]], Reduction | None]:
     """Hashes of the models, points made ready, why a point failed, what is left out of each model, and what was reduced."""
     maker = PointMaker(request.modes, request.elements)
