@@ -94,7 +94,7 @@ class SystemFamily:
         self._plants = Plants()
         self._known: dict[tuple[float, ...], Plant] = {}
         self._systems: dict[tuple[float, ...], LocalSystem] = {}
-        first = self.model_at([0.0] * len(ranges))
+        first = self._model_at([0.0] * len(ranges))
         if not first.operating_speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or follow over it")
         # The axis of a speed that changes nothing but the rotation. The place of a journal goes with it: its heat balance, and
@@ -112,17 +112,17 @@ class SystemFamily:
         self._acting = [
             i
             for i, part in enumerate(self.local.parts)
-            if self._varies(i) or any(column.kind != PRESCRIBED for column in part.law.columns())
+            if (i in self._varied and not part.law.steady)
+            or any(column.kind != PRESCRIBED for column in part.law.columns())
         ]
         self.parts = tuple(self.local.parts[i] for i in self._acting)
 
-    def model_at(self, shares: Sequence[float]) -> Model:
-        """The model at shares of the ranges."""
+    def _model_at(self, shares: Sequence[float]) -> Model:
         values = [one.at(share) for one, share in zip(self.ranges, shares, strict=True)]
         return Model(**changed(self._data, zip(self._places, values, strict=True)))
 
     def _built(self, shares: Sequence[float]) -> LocalModel:
-        local = prepare(self.model_at(shares), None, self._elements).local
+        local = prepare(self._model_at(shares), None, self._elements).local
         ratio = local.system.model.damping.modal_ratio
         return replace(local, local=with_modal_damping(local.local, ratio)) if ratio else local
 
@@ -164,9 +164,6 @@ class SystemFamily:
             return over.at(share) / over.begin if own == self._speed_axis else 1.0
 
         return between(exact, factor)
-
-    def _varies(self, i: int) -> bool:
-        return i in self._varied and not self.local.parts[i].law.steady
 
     def _with_means(self, local: LocalSystem) -> LocalSystem:
         """The system with what does not excite at its mean, constant forces as loads."""

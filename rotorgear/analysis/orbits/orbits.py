@@ -38,7 +38,7 @@ from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, Peri
 _POINTS = 3
 # Beside a fold both solutions of one value lie next to each other: there the value tells no motion, and no error of one.
 _FOLD = 1e-3
-# Of the largest displacement: what moves less has no accuracy of its own.
+# Share of the largest displacement: what moves less has no accuracy of its own.
 _STILL = 1e-6
 
 

@@ -20,7 +20,7 @@ from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.errors import AnalysisError
 from rotorgear.note import Note
 
-# So many frequencies are enough for all resonances of a band; more are left out evenly.
+# Frequencies that are compared at most: enough for all resonances of a band. Of more, evenly spaced ones are kept.
 MOST_FREQUENCIES = 500
 # Noise is never below that of a response of this share of the pair's root mean square.
 _FLOOR = 0.01

@@ -35,10 +35,10 @@ from rotorgear.progress import Progress
 SHAPE_NOISE = 0.02
 # Shapes of modes closer than this in ln f turn into each other at the slightest change: their plane is compared, not each.
 CLOSE = 0.03
-# Where looseness is 1, modes are close up to this much further apart, and ln f has this much more noise.
+# Where looseness is 1, modes this much further apart still count as close, and ln f has this much more noise.
 _LOOSE_CLOSE = 0.15
 _LOOSE_FREQUENCY = 0.1
-# How much the noise is enlarged on the way, as a share of a shape's root mean square.
+# Looseness of each step towards the numbers: what is added to the noise, as a share of a shape's root mean square.
 _LOOSENESS = (0.5, 0.2, 0.07)
 _MOST_SOLUTIONS = 40
 _LOOKS = 2

@@ -24,7 +24,7 @@ from rotorgear.system.assembly import assemble
 from rotorgear.system.damped_range import all_damped, damped_up_to
 from rotorgear.system.system import System
 
-# So far above it reach the modes that carry the responses.
+# The modes that carry the responses reach up to this multiple of the highest measured frequency.
 CARRIED = 2.0
 # Answers to the places are taken at these multiples of the highest frequency, beside the axis: no resonance drowns the rest.
 _SHIFTS = (3.0 + 0.0j, 0.1 + 1.0j, 0.1 + 0.75j, 0.1 + 0.5j, 0.1 + 0.25j, 0.1 + 0.0j)

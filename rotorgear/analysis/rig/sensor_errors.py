@@ -18,10 +18,10 @@ from rotorgear.uff.datasets import AXES
 
 # The channel and the direction of each sensor, (2, s): directions count from 1 to 6, negative where it looks the other way.
 Wiring = NDArray[np.intp]
-# A change has to leave less than this share of the misfit, and to beat chance by so much in the log likelihood.
+# A change has to leave less than this share of the misfit, and to beat chance by this much in the log likelihood.
 _LEFT = 0.88
 _BEATS = 5.0
-# Fewer sensors are all scale and sign.
+# With fewer sensors a shape is hardly more than a scale and a sign.
 _FEWEST = 4
 _MOST_CHANGES = 6
 # Only the worst of many sensors are tried otherwise, and fewer in each other's place.

@@ -31,7 +31,7 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.sensors import PlannedSensor, SensorPlan
 from rotorgear.system.plan import Plan
 
-# So many candidates, and rows go one by one.
+# From this many candidates on, rows are taken away one at a time.
 _ONE_BY_ONE = 200
 # A mode that moves by less than this share of the others along all candidates is not seen there.
 _STILL = 1e-6

@@ -204,13 +204,10 @@ def _result(
     one_sensor = Note(
         "", "shapes at a single sensor have a size and no direction to compare", "the frequencies alone are used"
     )
-    rows = zip(numbers.addresses, p.prior, p.sigma, p.learnt, np.exp(state.x), strict=True)
+    rows = np.column_stack([p.prior, p.sigma, p.learnt, np.exp(state.x)]).tolist()
     return UpdateResult(
         model=model,
-        parameters=tuple(
-            UpdatedParameter(address, float(prior), float(sigma), float(learnt), float(factor))
-            for address, prior, sigma, learnt, factor in rows
-        ),
+        parameters=tuple(UpdatedParameter(a, *row) for a, row in zip(numbers.addresses, rows, strict=True)),
         lines=tuple(lines),
         responses=tuple(_response_rows(campaigns, problem, start, state, p)),
         unmatched=tuple(line for k, line in enumerate(problem.given.lines) if k not in paired),

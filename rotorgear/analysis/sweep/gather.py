@@ -156,7 +156,7 @@ def notes(
     if any(q.drift for q in sound):
         what = "the torques do not balance at some points"
         yield Note("", what, "the shafts drift off the prescribed rotation there")
-    # Laws that push a motion whose speed the drive keeps.
+    # Laws that take power from a motion whose speed the drive keeps.
     takers: set[str] = set()
     for q in sound:
         B = q.system.B

@@ -322,7 +322,7 @@ def portraits_of(
     orbits: dict[tuple[int, int], Orbit],
     progress: Progress,
 ) -> Portraits | None:
-    """Run the chosen points on from where they ended, those that were not thrown at random; None where no point is sound."""
+    """Run the chosen points on from where their first runs ended; None where no point is sound."""
     sound = [not reason for reason in result.failure]
     chosen = (
         spread(result.shape.tolist(), sound, wanted) if isinstance(wanted, int) else [p for p in wanted if sound[p]]

@@ -24,7 +24,7 @@ _OF_HALVES = [STATISTICS.index(what) for what in ("rms force", "transmission err
 
 
 @dataclass(frozen=True)
-class Judged:
+class Quantities:
     """Statistics by which runs are judged: names, values, sizes that errors are relative to, what counting leaves, (s,)."""
 
     name: tuple[str, ...]
@@ -32,7 +32,7 @@ class Judged:
     scale: np.ndarray
     counted: np.ndarray
 
-    def errors(self, other: Judged, factor: float) -> tuple[np.ndarray, float]:
+    def errors(self, other: Quantities, factor: float) -> tuple[np.ndarray, float]:
         """Errors (s,) by a run that is worse by a factor, less 1, or better by as much; the largest relative to its scale."""
         errors = np.hypot(compared(self.value, other.value, self.scale, factor), self.counted)
         return errors, largest_relative(errors, self.scale)
@@ -66,7 +66,7 @@ def of_channels(found: Histories, task: Task) -> Statistics:
     return all_of.chosen(slice(all_of.mean.size - len(task.channels.names), None))
 
 
-def judged(found: Histories, task: Task) -> Judged:
+def quantities_of(found: Histories, task: Task) -> Quantities:
     """The statistics of each contact, and the root mean square of each channel."""
     meshes = of_meshes(found, task)
     labels = [task.local.parts[i].label for i in task.local.meshes]
@@ -77,7 +77,7 @@ def judged(found: Histories, task: Task) -> Judged:
     units = np.array(task.channels.units)
     # A channel that hardly moves is measured on the largest of its kind.
     kind = [np.inf if still else float(rms[units == unit].max()) for unit in units]
-    return Judged(
+    return Quantities(
         (*names, *(f"rms {name}" for name in task.channels.names)),
         np.concatenate([meshes.values.ravel(), rms]),
         np.concatenate([meshes.scales.ravel(), kind]),

@@ -36,7 +36,7 @@ from rotorgear.analysis.transient.request import (
     run_task,
     run_up,
 )
-from rotorgear.analysis.transient.statistics import Judged, judged, of_channels, of_meshes
+from rotorgear.analysis.transient.statistics import Quantities, of_channels, of_meshes, quantities_of
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -163,12 +163,12 @@ def _result(
 ) -> TransientResult:
     system = task.local.system
     local = task.local.local
-    of_run = judged(found, task)
+    of_run = quantities_of(found, task)
     errors = np.full(of_run.value.size, np.nan)
     largest = float("nan")
     if others and all(run.status == "success" for run in (found, *(run for run, _ in others))):
         # Each comparison tells errors of its own kind: of the step, or of the modes that are missing. They add up.
-        pairs = [of_run.errors(judged(run, task), factor) for run, factor in others]
+        pairs = [of_run.errors(quantities_of(run, task), factor) for run, factor in others]
         errors = np.sum([error for error, _ in pairs], axis=0)
         largest = float(sum(worst for _, worst in pairs))
     contacts = of_meshes(found, task)
@@ -354,10 +354,10 @@ def _left(errors: list[float]) -> float:
     return float((known[-1] / known[0]) ** (1.0 / (len(known) - 1))) if len(known) > 1 else _SECOND_ORDER
 
 
-def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Judged | None:
+def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Quantities | None:
     """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
     try:
         found = run_task(task, integrator, grid, progress, text="choosing the step")
     except ConvergenceError:
         return None
-    return judged(found, task) if found.status == "success" else None
+    return quantities_of(found, task) if found.status == "success" else None
