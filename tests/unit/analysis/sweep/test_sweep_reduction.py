@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep import blocks as sweep_blocks
+from rotorgear.analysis.common import pool
 from rotorgear.analysis.sweep.classify import exponents
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
 from rotorgear.analysis.sweep.reduce import Large, Reducer, probes_for, rates
@@ -266,7 +266,7 @@ def test_bearings_with_rolling_elements_and_friction_act_in_a_reduced_system(cha
 
 
 def test_a_long_block_tells_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep_blocks, "_EVERY", 1e-3)
+    monkeypatch.setattr(pool, "_EVERY", 1e-3)
     told: list[tuple[float, str]] = []
     rg.sweep(
         rg.load(ROOT / "models" / "backlash_pair.toml"),
