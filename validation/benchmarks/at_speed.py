@@ -21,7 +21,7 @@ from unittest.mock import patch
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.analysis.sweep import portrait
+from rotorgear.analysis.sweep import sweep
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.maps.map_positions import even_positions
@@ -97,7 +97,7 @@ def resonance(model: rg.Model) -> float:
 def through(model: rg.Model, frequency: np.ndarray) -> Branches:
     """A sweep through mesh frequencies (s,) in Hz, up and down."""
     # Trajectories of all points, where pictures have a few.
-    with patch.object(portrait, "MOST_PORTRAITS", len(frequency)):
+    with patch.object(sweep, "MOST_PORTRAITS", len(frequency)):
         found = rg.sweep(
             model,
             {"operation.speed": (2.0 * np.pi * frequency / TEETH).tolist()},

@@ -16,7 +16,7 @@ from scipy.stats import norm
 from scipy.stats import t as student
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.classify import CHAOTIC, repeats
+from rotorgear.analysis.sweep.classify import CHAOTIC, period_in
 
 STARTS = 8
 # Chaos from one start where another start ends in a motion that repeats: it may fall onto that one after a longer time.
@@ -31,7 +31,7 @@ def kinds(result: rg.SweepResult, point: int) -> list[str]:
 def kinds_so_far(result: rg.SweepResult, point: int) -> list[str]:
     """Response types of all runs of a point, where chaos beside a motion that repeats counts as open."""
     found = kinds(result, point)
-    beside = any(map(repeats, found))
+    beside = any(map(period_in, found))
     return [SO_FAR if kind == CHAOTIC and beside else kind for kind in found]
 
 

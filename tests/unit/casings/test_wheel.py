@@ -349,7 +349,7 @@ def test_mass_that_is_stated_otherwise_than_the_mesh_has_it_is_refused(folder: P
 
 def test_a_sweep_takes_a_small_gearbox_with_an_elastic_body_in_a_basis(folder: Path) -> None:
     from rotorgear.analysis.sweep.point import PointMaker
-    from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
+    from rotorgear.analysis.sweep.reduce import Large, Reducer
 
     text = MODEL.replace('outer_diameter = "30 mm" }', 'outer_diameter = "30 mm", rigid = true }')
     pair(folder)
@@ -357,7 +357,7 @@ def test_a_sweep_takes_a_small_gearbox_with_an_elastic_body_in_a_basis(folder: P
     point = PointMaker()(rg.load(folder / "rigid.toml"))
     assert isinstance(point, Large)
     assert 24 < point.local.n <= 80
-    reducer = Reducer(Wanted())
+    reducer = Reducer()
     reduced, _ = reducer([point], lambda size, error: None)[0]
     assert reduced.n < 0.6 * point.local.n
     summary = reducer.summary
