@@ -65,7 +65,8 @@ def write_entry(path: Path, key: str, values: Mapping[str, Any]) -> None:
     """
     import numpy as np
 
-    arrays = {name: _as_array(value) for name, value in values.items() if value is not None}
+    given = {name: value for name, value in values.items() if value is not None}
+    arrays = {name: np.asarray(value, str if isinstance(value, tuple) else None) for name, value in given.items()}
     labels = {"key": np.array(key), "checksum": np.array(_checksum(arrays))}
     scratch = path.with_name(f".{path.stem}.{uuid.uuid4().hex}")
     store: Any = np.savez  # its stubs take names for options
@@ -79,17 +80,9 @@ def write_entry(path: Path, key: str, values: Mapping[str, Any]) -> None:
             scratch.unlink(missing_ok=True)
 
 
-def _as_array(value: Any) -> np.ndarray:
-    import numpy as np
-
-    return np.array(value, str) if isinstance(value, tuple) else np.asarray(value)
-
-
 def _checksum(values: Mapping[str, np.ndarray]) -> str:
-    import numpy as np
-
     digest = hashlib.sha256()
     for name in sorted(values):
         digest.update(name.encode())
-        digest.update(np.ascontiguousarray(values[name]).tobytes())
+        digest.update(values[name].tobytes())
     return digest.hexdigest()

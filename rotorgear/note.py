@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-# On a screen, a sentence names so many of the parts that it holds for; of more, one of each kind and how many there are.
+# On a screen, a sentence names up to this many parts; of more, one of each kind and how many there are.
 NAMED = 3
 
 

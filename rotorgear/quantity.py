@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import numbers
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, SupportsFloat
@@ -186,7 +187,8 @@ def _factor_by_pint(unit: str, wanted: Dimension) -> float:
     except Exception as error:  # pint raises many kinds: undefined unit, offset unit, bad syntax, too deep
         raise QuantityError(_expected(wanted)) from error
     # "N m" for a rotational stiffness or damping is customary: its radian may be left out.
-    if given != needed and not (given == {key: power for key, power in needed.items() if key != "radian"} and given):
+    without = {key: power for key, power in needed.items() if key != "radian"}
+    if given != needed and not (wanted.name and given and given == without):
         raise QuantityError(_expected(wanted))
     return factor
 
@@ -251,3 +253,9 @@ def nearest(name: str, valid: list[str]) -> str:
     lower = {candidate.lower(): candidate for candidate in reversed(valid)}
     found = difflib.get_close_matches(name.lower(), list(lower), n=1, cutoff=0.55)
     return lower[found[0]] if found else ""
+
+
+def did_you_mean(name: str, valid: Iterable[str], otherwise: str = "") -> str:
+    """The hint of a name that is not valid: the valid one that is closest, or what to say where none is close."""
+    guess = nearest(name, list(valid))
+    return f"did you mean '{guess}'?" if guess else otherwise

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
-from rotorgear.quantity import nearest
+from rotorgear.quantity import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,8 +48,7 @@ def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, posit
         AnalysisError: no such model, a load that the model needs and doesn't get, or teeth that it can't do.
     """
     if name not in MODELS:
-        guess = nearest(name, list(MODELS))
-        hint = f"did you mean '{guess}'?" if guess else "there are " + ", ".join(MODELS)
+        hint = did_you_mean(name, MODELS, "there are " + ", ".join(MODELS))
         raise AnalysisError(f"There is no stiffness model '{name}': {hint}.")
     if name in NEEDS_LOAD and not load:
         raise AnalysisError(

@@ -13,7 +13,7 @@ from typing import Any
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.parts.old_names import current_address
 from rotorgear.model.parts.tables import Tables
-from rotorgear.quantity import nearest
+from rotorgear.quantity import did_you_mean
 
 Place = tuple[str | int, ...]
 
@@ -103,8 +103,7 @@ def _keys(value: Any, part: str, address: str, last: bool) -> list[str | int]:
             return list(value)
         if part in value or last:
             return [part]
-        guess = nearest(part, list(value))
-        hint = f"did you mean '{guess}'?" if guess else "there are " + (", ".join(value) or "none")
+        hint = did_you_mean(part, value, f"there are {', '.join(value) or 'none'}")
         raise _nowhere(address, f"the model has no '{part}' there", hint)
     raise _nowhere(address, "nothing lies below a number or a text")
 

@@ -78,9 +78,7 @@ class Model(Tables):
     def _counts(self) -> str:
         """How many parts of each kind there are."""
         tables = {name: getattr(self, name) for name in type(self).model_fields}
-        return ", ".join(
-            counted(len(value), name) for name, value in tables.items() if isinstance(value, dict) and value
-        )
+        return ", ".join(counted(len(value), key) for key, value in tables.items() if isinstance(value, dict) and value)
 
     @cached_property
     def layout(self) -> Layout:
@@ -133,9 +131,8 @@ def model_hash(model: Model) -> str:
     Canonical: keys in alphabetical order and no blanks, so that it does not matter how the file was written or in which order
     its tables stand; Python writes the shortest digits that give a float back.
     """
-    reads_files = model.casings or any(gear.body.mesh is not None for gear in model.gears.values())
-    if reads_files:
-        return _hash(model)
+    if model.casings or any(gear.body.mesh is not None for gear in model.gears.values()):
+        return _hash(model)  # it reads files, which may change
     # Parts are frozen, but not the tables that hold them: the hash is kept for these parts only.
     found: list[object] = []
     for name in type(model).model_fields:

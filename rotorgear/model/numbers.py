@@ -7,7 +7,7 @@ factor for all of them, 1 as the file has it. A place "start" or "end" of a shaf
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.address import Place, changed, places_of, tables_of, value_at
 from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import Part, si_unit
 from rotorgear.model.parts.problems import shown
-from rotorgear.quantity import DIMENSIONS, QuantityError, nearest, parse_quantity
+from rotorgear.quantity import DIMENSIONS, QuantityError, did_you_mean, parse_quantity
 
 # What is known of a number before a test where nobody says.
 DEFAULT_PRIOR = 0.30
@@ -58,12 +59,9 @@ class Numbers:
         for place, factor in zip(self._places, self.factor, strict=True):
             owner: Any = self.model
             for key in place[:-1]:
-                is_field = isinstance(key, str) and hasattr(type(owner), "model_fields")
-                owner = getattr(owner, str(key)) if is_field else owner[key]
-            schema = {}
-            if not factor and hasattr(type(owner), "model_fields"):
-                schema = type(owner).model_json_schema()["properties"].get(str(place[-1]), {})
-            found.append(next(_units(schema), ""))
+                owner = getattr(owner, str(key)) if isinstance(owner, Part) else owner[key]
+            is_field = isinstance(owner, Part) and not factor
+            found.append(si_unit(type(owner).model_fields[str(place[-1])]) if is_field else "")
         return tuple(found)
 
     def at(self, values: NDArray[np.float64]) -> Model:
@@ -137,12 +135,11 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
         raise ModelError([Problem("free", "", "addresses of numbers, such as 'bearings.*.stiffness'")])
     tables = tables_of(model)
     places = {_address(place): place for pattern in patterns for place in _given_places(tables, pattern)}
-    twice = []
-    for address in places:
-        whole = next((other for other in places if address.startswith((f"{other}.", f"{other}["))), None)
-        if whole:
-            text = f"it is a part of {whole}, which is named too: leave one of them out"
-            twice.append(Problem(address, "", text))
+    twice = [
+        Problem(address, "", f"it is a part of {whole}, which is named too: leave one of them out")
+        for address in places
+        for whole in [other for other in places if address.startswith((f"{other}.", f"{other}["))][:1]
+    ]
     if twice:
         raise ModelError(twice)
     start = []
@@ -184,9 +181,8 @@ def free_numbers(
     for pattern, value in prior.items() if isinstance(prior, Mapping) else ():
         named = numbers.matching(pattern)
         if not named:
-            guess = nearest(pattern, list(numbers.addresses))
             expected = "an address of the free numbers, or a pattern of some"
-            raise ModelError([Problem("prior", pattern, expected, f"did you mean '{guess}'?" if guess else "")])
+            raise ModelError([Problem("prior", pattern, expected, did_you_mean(pattern, numbers.addresses))])
         for j in named:
             given[j] = value
     spreads = []
@@ -230,13 +226,11 @@ def _given_places(tables: dict[str, Any], pattern: str) -> list[Place]:
     """
     places = places_of(tables, pattern)
     owners = [value_at(tables, place[:-1]) for place in places]
-    found = [
-        place for place, owner in zip(places, owners, strict=True) if not isinstance(owner, dict) or place[-1] in owner
-    ]
+    pairs = zip(places, owners, strict=True)
+    found = [place for place, owner in pairs if not isinstance(owner, dict) or place[-1] in owner]
     if not found:
         name = str(places[0][-1])
-        guess = nearest(name, [key for owner in owners for key in owner])
-        hint = f"did you mean '{guess}'?" if guess else ""
+        hint = did_you_mean(name, (key for owner in owners for key in owner))
         raise ModelError([Problem(pattern, f"'{name}'", "a number that the file gives there", hint)])
     return found
 
@@ -248,19 +242,7 @@ def _station(model: Model, tables: Mapping[str, Any], place: Place) -> Any:
     shaft = owner.get("shaft") if isinstance(owner, dict) else None
     if not isinstance(value, str) or value not in ("start", "end") or shaft not in model.shafts:
         return value
-    part = model.shafts[shaft]
-    return part.start if value == "start" else part.start + sum(section.length for section in part.sections)
-
-
-def _units(schema: Any) -> Iterator[str]:
-    """The units in the schema of a field."""
-    if isinstance(schema, dict):
-        if "x-unit" in schema:
-            yield schema["x-unit"]
-        schema = list(schema.values())
-    if isinstance(schema, list):
-        for entry in schema:
-            yield from _units(entry)
+    return model.shafts[shaft].station(value)
 
 
 def _parsed(given: float | str, dimension: str) -> float | None:

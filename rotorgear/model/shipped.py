@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import AnalysisError
-from rotorgear.quantity import nearest
+from rotorgear.quantity import did_you_mean
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -53,8 +53,8 @@ def shipped_model(name: str) -> ShippedModel:
     """
     known = {model.name: model for model in models()}
     if name not in known:
-        guess = nearest(name, list(known))
-        hint = f"did you mean '{guess}'? " if guess else ""
+        guess = did_you_mean(name, known)
+        hint = f"{guess} " if guess else ""
         raise AnalysisError(f"no model '{name}' comes with rotorgear: {hint}`rotorgear models` lists them")
     return known[name]
 

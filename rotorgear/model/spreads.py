@@ -51,10 +51,9 @@ class Spreads:
     def values(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates of the numbers at z (p,)."""
         start = self.numbers.start
+        moved = self.size * z
         log = np.array([kind == "lognormal" for kind in self.distribution])
-        return np.where(
-            log, start * np.exp(np.where(log, self.size * z, 0.0)), start + np.where(log, 0.0, self.size * z)
-        )
+        return np.where(log, start * np.exp(np.where(log, moved, 0.0)), start + np.where(log, 0.0, moved))
 
     def at(self, z: NDArray[np.float64]) -> Model:
         """The model at z (p,).
@@ -96,6 +95,7 @@ def spreads_of(model: Model, given: Mapping[str, Scatter]) -> Spreads:
 
 
 def _spreads(model: Model, given: Mapping[str, Scatter]) -> Spreads:
+    """The numbers, which may all have no scatter."""
     numbers = numbers_of(model, list(given))
     size = np.zeros(len(numbers.addresses))
     kinds = ["normal"] * len(size)
@@ -103,9 +103,21 @@ def _spreads(model: Model, given: Mapping[str, Scatter]) -> Spreads:
         for j in numbers.matching(pattern):
             size[j] = _size(numbers, j, entry)
             kinds[j] = entry.distribution
-    for j, address in enumerate(numbers.addresses):
-        _check(numbers, j, float(size[j]), kinds[j], address)
-    return Spreads(numbers, size, tuple(kinds))
+    spreads = Spreads(numbers, size, tuple(kinds))
+    # A number that is positive may not scatter through 0: a stiffness or diameter below is none.
+    through = np.array(kinds) != "lognormal"
+    through &= (numbers.start > 0.0) & (size * spreads.reach >= numbers.start)
+    for j in np.flatnonzero(through).tolist():
+        address = numbers.addresses[j]
+        if not address.endswith((".at", ".start", "position[0]", "position[1]", _INDEX_ERROR)):
+            hint = "take distribution 'lognormal', or a smaller size"
+            got = f"{100.0 * size[j] / numbers.start[j]:.3g} % {kinds[j]}"
+            raise _refused(address, got, "a spread that keeps the number above 0", hint)
+    return spreads
+
+
+def _refused(address: str, got: str, expected: str, hint: str = "") -> ModelError:
+    return ModelError([Problem(f"scatter of {address}", got, expected, hint)])
 
 
 def scatter_problems(model: Model) -> list[Problem]:
@@ -155,10 +167,10 @@ def _size(numbers: Numbers, j: int, entry: Scatter) -> float:
         assert entry.sigma is not None
         size = numbers.size(j, entry.sigma, "sigma")
     if size < 0.0:
-        raise ModelError([Problem(f"scatter of {address}", f"{size:g}", "a size that is not negative")])
+        raise _refused(address, f"{size:g}", "a size that is not negative")
     if entry.distribution == "lognormal":
         if start == 0.0:
-            raise ModelError([Problem(f"scatter of {address}", "lognormal", "a number other than 0", "take normal")])
+            raise _refused(address, "lognormal", "a number other than 0", "take normal")
         return size / abs(start)
     return size
 
@@ -169,30 +181,17 @@ def _graded(model: Model, address: str, grade: int) -> float:
     name = rest.removesuffix(_INDEX_ERROR)
     if table != "meshes" or not rest.endswith(_INDEX_ERROR):
         hint = "a class of ISO 1328-1 is one of an index_error of a mesh; give sigma or tolerance"
-        raise ModelError(
-            [Problem(f"scatter of {address}", f"grade {grade}", "an address such as meshes.*.index_error", hint)]
-        )
+        raise _refused(address, f"grade {grade}", "an address such as meshes.*.index_error", hint)
     if grade > FLANK_CLASSES:
         hint = "the classes of ISO 1328-1:2013"
-        raise ModelError([Problem(f"scatter of {address}", f"grade {grade}", f"1 to {FLANK_CLASSES}", hint)])
+        raise _refused(address, f"grade {grade}", f"1 to {FLANK_CLASSES}", hint)
     variance = 0.0
     for gear in model.layout.mesh(name).gears:
         g = gear.geometry
         if g is None:
             hint = "give teeth and module, or sigma or tolerance of the index error"
-            raise ModelError([Problem(f"scatter of {address}", f"grade {grade}", "gears with teeth", hint)])
+            raise _refused(address, f"grade {grade}", "gears with teeth", hint)
         own = gear.part.accuracy_grade or grade
         along = math.cos(g.transverse_pressure_angle) * math.cos(g.base_helix_angle)
         variance += (cumulative_pitch_tolerance(g, own) * along) ** 2 / 8.0
     return math.sqrt(variance)
-
-
-def _check(numbers: Numbers, j: int, size: float, kind: str, address: str) -> None:
-    """A number that is positive may not scatter through 0: a stiffness or diameter below is none."""
-    start = float(numbers.start[j])
-    reach = math.sqrt(3.0) if kind == "uniform" else _REACH
-    station = address.endswith((".at", ".start", "position[0]", "position[1]", _INDEX_ERROR))
-    if kind != "lognormal" and start > 0.0 and not station and size * reach >= start:
-        hint = "take distribution 'lognormal', or a smaller size"
-        got = f"{100.0 * size / start:.3g} % {kind}"
-        raise ModelError([Problem(f"scatter of {address}", got, "a spread that keeps the number above 0", hint)])

@@ -122,18 +122,17 @@ def constant_groups(state: State, nodes: Nodes) -> list[ElementGroup]:
     layout = state.layout
     model = layout.model
     found = [group for name in model.shafts for group in _shaft(layout, nodes, name)]
-    for body in layout.bodies:
-        b = body.body
-        name = body.part.removeprefix("gears.")
-        dofs = node_dofs(nodes.at(body.shaft, body.z))
+    for address, place, b in layout.bodies:
+        name = address.removeprefix("gears.")
+        dofs = node_dofs(nodes.at(*place))
         if name in layout.elastic_gears:
             torsion = layout.elastic_gears[name]
             polar = b.polar_inertia * torsion.polar_share
             matrices = elastic_gear(b.mass, polar, b.diametral_inertia, 1.0 / torsion.flexibility)
-            dofs = np.hstack([dofs, nodes.of_gear(name, body.shaft, body.z)[None]])
+            dofs = np.hstack([dofs, nodes.of_gear(name, *place)[None]])
         else:
             matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
-        found.append(ElementGroup(body.part, body.shaft, matrices, dofs, layout.train.ratio(body.shaft)))
+        found.append(ElementGroup(address, place.shaft, matrices, dofs, layout.train.ratio(place.shaft)))
     for name, wheel in layout.elastic_bodies.items():
         place = layout.place(f"gears.{name}")
         own = nodes.of_body(name)
@@ -207,8 +206,8 @@ def relative_motion(layout: Layout, nodes: Nodes, address: str) -> tuple[np.ndar
         return np.concatenate([dofs, node_dofs(nodes.at(*other[0]))[0]]), between(*points)
     seat = layout.seat(address) if table in ("bearings", "nonlinear_elements") else None
     if seat is not None:
-        ground = nodes.of_seat(seat.casing, seat.number)
-        return np.concatenate([ground, dofs]), np.hstack([-rigid_transfer(seat.arm), np.eye(6)])
+        casing, number, arm = seat
+        return np.concatenate([nodes.of_seat(casing, number), dofs]), np.hstack([-rigid_transfer(arm), np.eye(6)])
     pedestal = layout.model.bearings[name].pedestal if table == "bearings" else None
     if pedestal is None and not other:
         return dofs, np.eye(6)
@@ -336,7 +335,7 @@ def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) ->
         return 0.0
     diagonals = []
     for gear in both.gears:
-        bodies = [node.body for node in gear.node_bodies]
+        bodies = [body for _, _, body in gear.node_bodies]
         mass, polar, tilt = (
             sum(getattr(b, key) for b in bodies) / both.helices
             for key in ("mass", "polar_inertia", "diametral_inertia")

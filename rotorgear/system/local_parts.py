@@ -68,7 +68,7 @@ def _joined(system: System, address: str, law: ForceLaw, components: list[int]) 
     """A law between a shaft and what its part stands on, along some of the six relative displacements."""
     film = system.state.films.get(address)
     if film is not None:
-        law = law.kept_at(film.temperature, film.inlet)  # type: ignore[attr-defined]
+        law = law.kept_at(*film)  # type: ignore[attr-defined]
     dofs, relative = relative_motion(system.layout, system.nodes, address)
     return LocalPart(address, address.partition(".")[2], law, columns_at(system, dofs, relative[components]))
 

@@ -94,14 +94,12 @@ def casing_notes(system: System) -> Iterator[str]:
                     f"casings.{name}.seats.{part}: {table}.{part}, which stands elsewhere; casing = '{name}' among its keys "
                     "puts it into this seat"
                 )
-    for table in ("bearings", "nonlinear_elements"):
-        for part in getattr(model, table):
-            seat = system.layout.seat(f"{table}.{part}")
-            if seat is not None and abs(seat.arm[2]) > _APART:
-                yield (
-                    f"{table}.{part}: the flexibility of its seat over the {millimetres(abs(float(seat.arm[2])))} to the "
-                    "point of the seat, which carries it rigidly"
-                )
+    for address, (_, _, arm) in system.layout.seats:
+        if abs(arm[2]) > _APART:
+            yield (
+                f"{address}: the flexibility of its seat over the {millimetres(abs(float(arm[2])))} to the point of the seat, "
+                "which carries it rigidly"
+            )
 
 
 def time_warnings(model: Model, laws: Sequence[LocalLaw], speed: float) -> Iterator[str]:

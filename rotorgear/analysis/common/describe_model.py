@@ -9,26 +9,16 @@ import numpy as np
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.model.checks.names import TABLES
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 
-_COUNTED = (
-    "shafts",
-    "gears",
-    "meshes",
-    "disks",
-    "point_masses",
-    "bearings",
-    "supports",
-    "couplings",
-    "nonlinear_elements",
-    "casings",
-    "unbalances",
-    "points",
-)
+# Tables whose parts are counted, in the order in which they are told.
+_FIRST = ("shafts", "gears", "meshes")
+_COUNTED = (*_FIRST, *(table for table in TABLES if table not in (*_FIRST, "materials", "loads")))
 
 
 @recorded
@@ -43,28 +33,17 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     speed = model.operating_speed
     masses = _masses(system)
     casings = {name: float(system.layout.casing(name).body_mass) for name in model.casings}
-    rpm = None if speed is None else speed * RPM_PER_RAD_S
     ratios = {name: system.train.ratio(name) for name in model.shafts}
-    places = [
-        PlaceRow(f"{table}.{name}", place.shaft, place.z)
-        for table in ("bearings", "supports", "couplings", "disks", "point_masses", "loads", "unbalances", "points")
-        for name in getattr(model, table)
-        for place in system.layout.places(f"{table}.{name}")
-    ]
+    rpm = {name: None if speed is None else ratio * speed * RPM_PER_RAD_S for name, ratio in ratios.items()}
+    tables = ("bearings", "supports", "couplings", "disks", "point_masses", "loads", "unbalances", "points")
+    places = [PlaceRow(part, *place) for part, _ in model.parts_of(*tables) for place in system.layout.places(part)]
     shaft_order = list(model.shafts)
     return ModelDescription(
         title=model.title,
         reference_shaft=model.reference_shaft,
-        speed_rpm=rpm,
+        speed_rpm=None if speed is None else speed * RPM_PER_RAD_S,
         shafts=tuple(
-            ShaftRow(
-                name,
-                ratio,
-                None if speed is None else ratio * speed * RPM_PER_RAD_S,
-                model.shafts[name].length,
-                *masses[name],
-            )
-            for name, ratio in ratios.items()
+            ShaftRow(name, ratio, rpm[name], model.shafts[name].length, *masses[name]) for name, ratio in ratios.items()
         ),
         gears=tuple(
             GearRow(

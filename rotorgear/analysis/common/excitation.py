@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 # Unbalance and misalignment of shafts; the first harmonics of a mesh carry most of its transmission error.
 SHAFT_ORDERS = (1, 2)
 MESH_ORDERS = (1, 2, 3)
+# Kinds of lines, and the parts that they are of.
+_PARTS = {"shaft": "shaft", "mesh": "mesh", "sideband": "mesh"}
 # Harmonics of a law that are looked at, at most.
 _HARMONICS = 10
 
@@ -39,7 +41,7 @@ def excitation_orders(
     Args:
         model: the model. Meshes of gears without numbers of teeth have no line.
         shaft_orders, mesh_orders: multiples of the speed of each shaft, of the frequency of each mesh.
-        sidebands: so many at each side of every mesh order, at the distance of the speed of both shafts of the mesh.
+        sidebands: how many at each side of every mesh order, at the distance of the speed of both shafts of the mesh.
     """
     train = model.layout.train
     found: dict[tuple[str, str, float], list[str]] = {}
@@ -62,9 +64,7 @@ def excitation_orders(
                     add("sideband", f"{order:g}x + {k}x {gear.shaft}", order * once + distance, name)
                     add("sideband", f"{order:g}x - {k}x {gear.shaft}", order * once - distance, name)
     return tuple(
-        ExcitationOrder(
-            f"{'shaft' if kind == 'shaft' else 'mesh'} {', '.join(names)} {label}", kind, tuple(names), order
-        )
+        ExcitationOrder(f"{_PARTS[kind]} {', '.join(names)} {label}", kind, tuple(names), order)
         for (kind, label, order), names in found.items()
     )
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def unlike_teeth_left_out(system: System) -> Iterator[Note]:
     """Yield a fact for each gear whose teeth differ where it is not known which of them are in its meshes at one time."""
-    unknown = system.state.tooth_numbers.unknown
+    _, unknown = system.state.tooth_numbers
     for name, meshes in unlike_gears(system.layout.meshes).items():
         if name in unknown:
             where = " and ".join(f"meshes.{mesh.name}" for mesh in meshes)

@@ -12,6 +12,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.modal import NodeTable
 from rotorgear.system.system import System
@@ -39,19 +40,22 @@ def point_rows(system: System, names: Sequence[str]) -> sp.csr_array:
     Raises:
         AnalysisError: a place that the model has not.
     """
+    transform = system.dofs.transform
     rows = []
     for text in names:
-        name = spelled(system.model, text)
-        if name.startswith("casings."):
-            casing, row = casing_row(system.model, name)
-            rows.append(
-                sp.csr_array(row[None]) @ sp.csr_array(system.dofs.transform[system.nodes.of_casing(casing), :])
-            )
+        casing, where, dof = located(system.model, text)
+        if isinstance(where, Place):
+            rows.append(sp.csr_array(transform[[6 * system.nodes.at(*where) + dof]]))
             continue
-        shaft, z, direction = named_place(system.model, name)
-        dof = 6 * system.nodes.at(shaft, z) + DOF_NAMES.index(direction)
-        rows.append(sp.csr_array(system.dofs.transform[[dof]]))
-    return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array(system.dofs.transform[[]])
+        body = system.layout.casing(casing)
+        row = np.zeros(body.size)
+        if isinstance(where, str):
+            row[body.seat(where).start + dof] = 1.0
+        else:
+            assert body.surface is not None
+            row = np.asarray(body.surface.basis[where, dof])
+        rows.append(sp.csr_array(row[None]) @ sp.csr_array(transform[system.nodes.of_casing(casing), :]))
+    return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array(transform[[]])
 
 
 def moving_rows(system: System, names: Sequence[str]) -> np.ndarray:
@@ -62,7 +66,7 @@ def moving_rows(system: System, names: Sequence[str]) -> np.ndarray:
     """
     R = point_rows(system, names).toarray()
     for text, row in zip(names, R, strict=True):
-        if not row.any() and not spelled(system.model, text).startswith("casings."):
+        if not row.any() and not located(system.model, text)[0]:
             raise AnalysisError(f"'{text}' can't move: a support or the motions of the model hold it")
     return R
 
@@ -73,33 +77,62 @@ def rotates(model: Model, text: str) -> bool:
     Raises:
         AnalysisError: a place that the model has not.
     """
-    there = spelled(model, text)
-    if there.startswith("casings."):
-        return casing_place(model, there)[1] > 2
-    return named_place(model, there)[2] in DOF_NAMES[3:]
+    return located(model, text)[2] > 2
 
 
-def spelled(model: Model, text: str) -> str:
-    """A place as it is; a named point on a casing as its place, 'casings.box(0.0 m; 0.28 m; 0.2 m):y'."""
-    point = model.points.get(text)
-    if point is None or point.on is None or point.on_casing is None:
-        return text
-    assert point.place is not None, "checked: a point on a casing has a place"
-    return f"{point.on}({'; '.join(f'{x!r} m' for x in point.place)}):{point.direction}"
-
-
-def named_place(model: Model, text: str) -> tuple[str, float, str]:
-    """Shaft, z in m and direction from the name of a point, or from 'gears.wheel:x', a part and a direction.
+def point_node(model: Model, nodes: NodeTable, text: str) -> tuple[int, int]:
+    """Number of the node of a result that a place is at or nearest to, and number of the direction in x y z tx ty tz.
 
     Raises:
-        AnalysisError: neither; the sentence lists what there is.
+        AnalysisError: as `located` does; a seat of a casing is no node.
     """
-    if text in model.points:
-        return *model.layout.place(f"points.{text}"), model.points[text].direction
+    casing, where, dof = located(model, text)
+    if isinstance(where, Place):
+        return nodes.nearest(*where), dof
+    if isinstance(where, str):
+        raise AnalysisError(f"'{text}': shapes are known on the surface of a casing; name a place on it, not a seat")
+    return int(nodes.of_casing(casing)[where]), dof
+
+
+def coordinates(model: Model, text: str) -> tuple[np.ndarray, int]:
+    """Coordinates (3,) in m, and number of the direction in x y z tx ty tz, of a place as `frf` takes it.
+
+    Raises:
+        AnalysisError: as `located` does.
+    """
+    casing, where, dof = located(model, text)
+    if isinstance(where, Place):
+        x, y = model.shafts[where.shaft].position or (0.0, 0.0)
+        return np.array([x, y, where.z]), dof
+    body = model.layout.casing(casing)
+    if isinstance(where, str):
+        return np.asarray(body.seat_points[body.seats.index(where)]), dof
+    assert body.surface is not None
+    return np.asarray(body.surface.points[where]), dof
+
+
+def located(model: Model, text: str) -> tuple[str, Place | str | int, int]:
+    """Where a place is, from the name of a point, a part and a direction such as "gears.wheel:x", or a place of a casing.
+
+    Returns:
+        The casing, "" for a place on a shaft; the place on the shaft, the seat, or the number of the point of the surface that
+        is next to the place; and the number of the direction in x y z tilt_x tilt_y torsion.
+
+    Raises:
+        AnalysisError: the model has no such place; the sentence lists what there is.
+    """
+    point = model.points.get(text)
+    if point is not None and point.on_casing is not None:
+        assert point.place is not None, "checked: a point on a casing has a place"
+        text = f"{point.on}({'; '.join(f'{x!r} m' for x in point.place)}):{point.direction}"
+    elif point is not None:
+        return "", model.layout.place(f"points.{text}"), DOF_NAMES.index(point.direction)
+    if text.startswith("casings."):
+        return _on_casing(model, text)
     address, _, direction = text.rpartition(":")
     table, _, part = address.partition(".")
     if table in ON_SHAFTS and part in getattr(model, table) and direction in DOF_NAMES:
-        return *model.layout.place(address), direction
+        return "", model.layout.place(address), DOF_NAMES.index(direction)
     points = f"the points {', '.join(model.points)}" if model.points else "a point (the model has none)"
     raise AnalysisError(
         f"'{text}' is no place: expected {points}, or a part and a direction such as 'bearings.left:x' "
@@ -107,63 +140,12 @@ def named_place(model: Model, text: str) -> tuple[str, float, str]:
     )
 
 
-def point_node(model: Model, nodes: NodeTable, text: str) -> tuple[int, int]:
-    """Number of the node of a result that a place is at or nearest to, and number of the direction in x y z tx ty tz.
+def _on_casing(model: Model, text: str) -> tuple[str, str | int, int]:
+    """Casing, seat or number of the point of the surface, and number of the direction.
 
-    Raises:
-        AnalysisError: as `named_place` and `casing_place` do; a seat of a casing is no node.
+    The place is a seat, 'casings.box.left:x', or 'casings.box(0 mm; 280 mm; 200 mm):y', of which the displacements along x, y
+    and z are known.
     """
-    there = spelled(model, text)
-    if there.startswith("casings."):
-        casing, dof, seat, point = casing_place(model, there)
-        if seat:
-            raise AnalysisError(
-                f"'{text}': shapes are known on the surface of a casing; name a place on it in place of a seat"
-            )
-        return int(nodes.of_casing(casing)[point]), dof
-    shaft, z, direction = named_place(model, text)
-    return nodes.nearest(shaft, z), DOF_NAMES.index(direction)
-
-
-def coordinates(model: Model, text: str) -> tuple[np.ndarray, int]:
-    """Coordinates (3,) in m, and number of the direction in x y z tx ty tz, of a place as `frf` takes it.
-
-    Raises:
-        AnalysisError: as `named_place` and `casing_row` do.
-    """
-    text = spelled(model, text)
-    if text.startswith("casings."):
-        name, dof, seat, point = casing_place(model, text)
-        body = model.layout.casing(name)
-        if seat:
-            return np.asarray(body.seat_points[body.seats.index(seat)]), dof
-        assert body.surface is not None
-        return np.asarray(body.surface.points[point]), dof
-    shaft, z, direction = named_place(model, text)
-    x, y = model.shafts[shaft].position or (0.0, 0.0)
-    return np.array([x, y, z]), DOF_NAMES.index(direction)
-
-
-def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
-    """Casing and row on its coordinates from 'casings.box.left:x', a seat, or 'casings.box(0 mm; 280 mm; 200 mm):y'.
-
-    The latter is the point of its surface that is next to the place; only its displacements along x, y and z are known.
-
-    Raises:
-        AnalysisError: no such casing, seat, direction, or a casing without a surface.
-    """
-    name, dof, seat, point = casing_place(model, text)
-    body = model.layout.casing(name)
-    if not seat:
-        assert body.surface is not None
-        return name, np.asarray(body.surface.basis[point, dof])
-    row = np.zeros(body.size)
-    row[body.seat(seat).start + dof] = 1.0
-    return name, row
-
-
-def casing_place(model: Model, text: str) -> tuple[str, int, str, int]:
-    """Casing, number of the direction, seat ("" for none), and number of the point of the surface (-1 for a seat)."""
     address, _, direction = text.rpartition(":")
     found = re.fullmatch(r"casings\.(?P<name>[\w -]+?)(?:\.(?P<seat>[\w -]+)|\((?P<place>[^()]*)\))", address)
     if found is None or found["name"] not in model.casings or direction not in DOF_NAMES:
@@ -178,7 +160,7 @@ def casing_place(model: Model, text: str) -> tuple[str, int, str, int]:
     if found["seat"] is not None:
         if found["seat"] not in body.seats:
             raise AnalysisError(f"'{text}': casing '{name}' has no such seat; there is: {', '.join(body.seats)}")
-        return name, dof, found["seat"], -1
+        return name, found["seat"], dof
     if body.surface is None or dof > 2:
         why = "its surface is not known" if body.surface is None else "of a surface x, y and z are known"
         raise AnalysisError(f"'{text}': {why}")
@@ -188,4 +170,4 @@ def casing_place(model: Model, text: str) -> tuple[str, int, str, int]:
         raise AnalysisError(f"'{text}': expected {error}, three of them with ; between") from None
     if len(place) != 3:
         raise AnalysisError(f"'{text}': got {len(place)} coordinates, expected x; y; z")
-    return name, dof, "", int(np.argmin(np.sum((body.surface.points - np.array(place)) ** 2, axis=1)))
+    return name, int(np.argmin(np.sum((body.surface.points - np.array(place)) ** 2, axis=1))), dof

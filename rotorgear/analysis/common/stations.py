@@ -72,16 +72,14 @@ def _surfaces(system: System, q: np.ndarray) -> Iterator[tuple[str, np.ndarray, 
 
 def part_nodes(system: System) -> dict[str, int]:
     """Node of every gear, disk, bearing and nonlinear element by address; of a herringbone one "left" and one "right"."""
-    model = system.model
     nodes = system.nodes
     found = {}
     for gear in system.layout.gears:
         sides = (" left", " right") if len(gear.places) == 2 else ("",)
         for place, side in zip(gear.places, sides, strict=True):
             found[f"gears.{gear.name}{side}"] = nodes.at(*place)
-    for table in ("disks", "bearings", "nonlinear_elements"):
-        for name in getattr(model, table):
-            found[f"{table}.{name}"] = nodes.at(*system.layout.place(f"{table}.{name}"))
+    for address, _ in system.model.parts_of("disks", "bearings", "nonlinear_elements"):
+        found[address] = nodes.at(*system.layout.place(address))
     return found
 
 

@@ -52,20 +52,6 @@ class Judged:
 
 
 @dataclass(frozen=True)
-class Cost:
-    """CPU seconds of every timed run, (r,), and the largest memory of a run in bytes, Python's and numpy's."""
-
-    seconds: np.ndarray
-    memory: int
-
-    @property
-    def spread(self) -> float:
-        """Difference of the quartiles over the median; 0 for a single run."""
-        low, middle, high = np.percentile(self.seconds, [25.0, 50.0, 75.0])
-        return float((high - low) / middle) if middle else 0.0
-
-
-@dataclass(frozen=True)
 class Study(Generic[R]):
     """A series of settings of one analysis, and how they are judged.
 
@@ -117,16 +103,16 @@ class Study(Generic[R]):
             progress(number / len(self.settings), setting.method)
             before = found[-1] if found and found[-1].family == setting.family else None
             try:
-                result, cost = measured(lambda: self.run(setting.options), repeat)  # noqa: B023
+                result, seconds, memory = measured(lambda: self.run(setting.options), repeat)  # noqa: B023
             except RotorgearError as error:
                 which = (setting.method, setting.family, setting.number)
                 found.append(Rung(*which, 0, np.nan, np.inf, np.inf, None, notes=(f"not reached: {error}",)))
                 continue
-            found.append(self._rung(setting, self.judge(result), cost, before))
+            found.append(self._rung(setting, self.judge(result), seconds, memory, before))
         progress(1.0, "done")
         return tuple(found)
 
-    def _rung(self, setting: Setting, judged: Judged, cost: Cost, before: Rung | None) -> Rung:
+    def _rung(self, setting: Setting, judged: Judged, seconds: np.ndarray, memory: int, before: Rung | None) -> Rung:
         error = float(np.max(judged.error, initial=0.0))
         estimate = float(np.max(judged.estimate, initial=0.0))
         order = None
@@ -140,7 +126,10 @@ class Study(Generic[R]):
             notes.append("exact: error and estimate are 0" if max(error, estimate) == 0.0 else self.below)
         if setting.family == "accuracy" and not max(error, estimate) <= max(setting.number, self.resolution):
             notes.append("accuracy missed")
-        if cost.spread > _NOISE:
+        # Difference of the quartiles over the median; 0 for a single run.
+        low, middle, high = np.percentile(seconds, [25.0, 50.0, 75.0])
+        spread = float((high - low) / middle) if middle else 0.0
+        if spread > _NOISE:
             notes.append("time is noise")
         # Quantities that have estimates of their own have effectivities of their own.
         told = np.zeros(0, bool)
@@ -152,13 +141,13 @@ class Study(Generic[R]):
             family=setting.family,
             setting=setting.number,
             dofs=judged.dofs,
-            seconds=float(np.median(cost.seconds)),
+            seconds=float(np.median(seconds)),
             error=error,
             estimate=estimate,
             order=order,
-            spread=cost.spread,
-            timed=len(cost.seconds),
-            memory=cost.memory,
+            spread=spread,
+            timed=len(seconds),
+            memory=memory,
             effectivity=estimate / error if resolved else None,
             effectivity_smallest=None if ratio is None else float(ratio.min()),
             effectivity_largest=None if ratio is None else float(ratio.max()),
@@ -166,8 +155,12 @@ class Study(Generic[R]):
         )
 
 
-def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, Cost]:
-    """Run something once for its result and memory, then for its time; with `repeat` 0 the first run has to do for both."""
+def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, np.ndarray, int]:
+    """Run something once for its result and memory, then for its time; with `repeat` 0 the first run has to do for both.
+
+    Returns:
+        The result, CPU seconds of every timed run (r,), and the largest memory of a run in bytes, Python's and numpy's.
+    """
     watched = tracemalloc.is_tracing()
     with single_thread(0):
         if not watched:
@@ -189,4 +182,4 @@ def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, Cost]:
             seconds.append(time.process_time() - start)
             if seconds[-1] > _LONG:
                 break
-    return result, Cost(np.array(seconds or [first]), memory)
+    return result, np.array(seconds or [first]), memory

@@ -18,16 +18,13 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.sensitivity.derivatives import systems_beside
 from rotorgear.analysis.sensitivity.forms import (
-    GYROSCOPIC,
-    MASS,
-    STIFFNESS,
+    Floats,
     FormModes,
     FormNames,
     complex_forms,
     coupling,
     forms_of,
     modes_of,
-    participations,
     with_shapes,
 )
 from rotorgear.model.model import Model
@@ -67,27 +64,21 @@ class ModesAtSpeed:
 
     system: System
     speed: float
-    V: NDArray[np.float64]
-    forms: NDArray[np.float64]
+    V: Floats
+    forms: Floats
     modes: FormModes
-    taken: NDArray[np.float64]
-    line_hz: NDArray[np.float64]
-    sigma: NDArray[np.float64] | None = None
+    taken: Floats
+    line_hz: Floats
+    sigma: Floats | None = None
 
     @property
-    def hz(self) -> NDArray[np.float64]:
+    def hz(self) -> Floats:
         """Natural frequencies in Hz (m,)."""
         return np.asarray(self.modes.omega / (2.0 * np.pi))
 
 
 def state_of(
-    system: System,
-    speed: float,
-    lines: tuple[ExcitationOrder, ...],
-    below_hz: float,
-    *,
-    margin: float,
-    least: float,
+    system: System, speed: float, lines: tuple[ExcitationOrder, ...], below_hz: float, margin: float, least: float
 ) -> ModesAtSpeed:
     """Return all modes of a linear system up to a frequency, and what excites them.
 
@@ -102,10 +93,10 @@ def state_of(
     hz = np.array([line.frequency_hz(speed) for line in lines])
     names = FormNames.of(system.model, speed)
 
-    def over(V: NDArray[np.float64]) -> ModesAtSpeed:
+    def over(V: Floats) -> ModesAtSpeed:
         forms = forms_of(system, speed, V)
         modes = modes_of(forms, count, softest, V.shape[1])
-        return ModesAtSpeed(system, speed, V, forms, modes, participations(names, lines, forms, modes), hz)
+        return ModesAtSpeed(system, speed, V, forms, modes, names.participations(lines, forms, modes), hz)
 
     rough = over(found.vectors)
     if not speed:
@@ -142,7 +133,7 @@ def total_mass(system: System) -> float:
     return total
 
 
-def spaces_of(hz: NDArray[np.float64]) -> list[tuple[int, ...]]:
+def spaces_of(hz: Floats) -> list[tuple[int, ...]]:
     """Modes by number, those that are close together."""
     spaces: list[list[int]] = []
     for k, f in enumerate(hz):
@@ -177,16 +168,11 @@ def with_deviations(state: ModesAtSpeed, model: Model, margin: float, least: flo
         shapes = np.asarray(state.V @ state.modes.q[:, modes], dtype=complex)
         X = np.hstack([shapes.real, shapes.imag])
         for step, address in zip(_STEP * np.eye(len(spreads)), spreads.numbers.addresses, strict=True):
-            above, below = systems_beside(
-                (spreads.at(step), spreads.at(-step)),
-                state.system,
-                state.speed,
-                f"[scatter] of {address}",
-                beside=state.system.state,
-            )
+            models = (spreads.at(step), spreads.at(-step))
+            what = f"[scatter] of {address}"
+            above, below = systems_beside(models, state.system, state.speed, what, beside=state.system.state)
             change = (forms_of(above, state.speed, X) - forms_of(below, state.speed, X))[:3] / (2.0 * _STEP)
-            K, M, G = (complex_forms(change)[form] for form in (STIFFNESS, MASS, GYROSCOPIC))
-            H = coupling(K, M, G, state.modes.omega[modes])
+            H = coupling(complex_forms(change), state.modes.omega[modes])
             H = 0.5 * (H + H.conj().T)
             for space in own:
                 at = [modes.index(k) for k in space]

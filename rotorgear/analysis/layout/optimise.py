@@ -9,17 +9,18 @@ change or the least mass is taken, or the one that keeps it by the most standard
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, share_of, speed_in_si
 from rotorgear.analysis.layout.modes_at_speed import MARGINS, ModesAtSpeed, kept_deviations, total_mass
-from rotorgear.analysis.layout.problem import Problem, bounds_of
+from rotorgear.analysis.layout.problem import Problem, bounds_of, last_kept
+from rotorgear.analysis.sensitivity.forms import Floats
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import numbers_of
@@ -32,7 +33,7 @@ from rotorgear.system.plan import Plan
 OBJECTIVES = ("change", "mass", "scatter")
 # Order of the elements where none is asked for; the table's own mesh is one order higher, and its margins are compared.
 _ORDER = 4
-# The penalty asks for so much more than the margin, since it is flat at its own edge.
+# The penalty asks for this multiple of the margin, since it is flat at its own edge.
 _MORE = 1.01
 # Modes that are looked at reach this far beyond the highest line and its margin.
 _BEYOND = 1.1
@@ -43,32 +44,19 @@ _WEIGHT = 30.0
 # Standard deviations by which the margin is to be kept: one more step after each that was reached, up to a limit.
 _DEVIATIONS = 0.5
 _MOST_DEVIATIONS = 6.0
-# A number this near to a bound, as a share of their distance, is at it.
+# A number nearer to a bound than this share of the distance of both bounds is at it.
 _AT_BOUND = 1e-4
 _ROUNDING = 1e-5
-# A margin that changes by more than this share of the one asked for on the finer mesh is said to be unresolved; those beyond so
-# many of it judge no layout.
+# A margin that changes by more than this share of the one asked for on the finer mesh is said to be unresolved; margins beyond
+# this multiple of the one asked for are not compared.
 _UNRESOLVED = 0.1
 _NEAR = 2.0
 # Modes that take part by less than this are in no list.
 _NOTHING = 1e-5
 
 
-class _ReachedError(Exception):
-    """The margin is kept: the search may end here."""
-
-    def __init__(self, t: NDArray[np.float64]) -> None:
-        super().__init__()
-        self.t = t
-
-
-@dataclass(frozen=True)
-class _End:
-    """Where a start led: t (p,), penalty, and whether the margin is kept."""
-
-    t: NDArray[np.float64]
-    penalty: float
-    reached: bool
+# Where a search led: t (p,) and the penalty there, 0 where the margin is kept.
+_End = tuple[Floats, float]
 
 
 @recorded
@@ -148,119 +136,104 @@ def optimise(
             ends.append(_descended(problem, t))
 
         def cost(end: _End) -> float:
-            if not end.reached:
-                return end.penalty
+            t, penalty = end
+            if penalty:
+                return penalty
             if objective == "mass":
-                return total_mass(problem.states(end.t)[0].system)
-            return float(np.sum((end.t - problem.start) ** 2))
+                return total_mass(problem.states(t)[0].system)
+            return float(np.sum((t - problem.start) ** 2))
 
-        best = min(ends, key=lambda end: (not end.reached, cost(end)))
-        if best.reached:
+        best = min(ends, key=lambda end: (end[1] > 0.0, cost(end)))
+        if not best[1]:
             improve = {"mass": _lightened, "scatter": _steadied, "change": _nearer}[objective]
-            best = improve(problem, best, progress)
-        result = _result(problem, best, objective)
-    reached = sum(end.reached for end in ends)
+            best = (improve(problem, best[0], progress), 0.0)
+        result = _result(problem, *best, objective)
+    reached = sum(not penalty for _, penalty in ends)
     progress(1.0, "done")
     left = ("damping: frequencies are those of the undamped rotating system", *notes)
     return replace(result, searches=searches, searches_reached=reached, left_out=left)
 
 
-def _descended(problem: Problem, t: NDArray[np.float64]) -> _End:
-    """Down the penalty until the margin is kept or nothing gets better."""
+def _minimised(fun: Callable[[Floats], tuple[float, Floats]], t: Floats, tolerance: float) -> None:
+    """Go down a function with its slopes from t, by sequential quadratic programming; the function sees where it leads."""
     from scipy.optimize import minimize
 
-    best = _End(t, np.inf, False)
+    options = {"maxiter": _ITERATIONS, "ftol": tolerance}
+    minimize(fun, t, jac=True, method="SLSQP", bounds=[(0.0, 1.0)] * len(t), options=options)
 
-    def fun(point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+
+def _descended(problem: Problem, t: Floats) -> _End:
+    """Down the penalty until the margin is kept or nothing gets better."""
+    best: _End = (t, np.inf)
+
+    def fun(point: Floats) -> tuple[float, Floats]:
         nonlocal best
         inside = np.clip(point, 0.0, 1.0)
         states = problem.states(inside)
         value = problem.penalty(states)
         if problem.margins_kept(states):
-            raise _ReachedError(inside)
-        if value < best.penalty:
-            best = _End(inside, value, False)
+            best = (inside, 0.0)
+            raise StopIteration
+        if 0.0 < value < best[1]:
+            best = (inside, value)
         return value, problem.slopes(inside, states)
 
-    try:
-        minimize(
-            fun,
-            t,
-            jac=True,
-            method="SLSQP",
-            bounds=[(0.0, 1.0)] * len(t),
-            options={"maxiter": _ITERATIONS, "ftol": 1e-7},
-        )
-    except _ReachedError as reached:
-        return _End(reached.t, 0.0, True)
+    with suppress(StopIteration):
+        _minimised(fun, t, 1e-7)
     return best
 
 
-def _nearer(problem: Problem, end: _End, progress: Progress) -> _End:
+def _nearer(problem: Problem, end: Floats, progress: Progress) -> Floats:
     """Back towards the file as far as the margin is kept."""
     progress(0.8, "least change")
-    good = 1.0
-    bad = 0.0
-    for _ in range(_BISECTIONS):
-        share = 0.5 * (good + bad)
-        t = problem.start + share * (end.t - problem.start)
-        if problem.margins_kept(problem.states(t)):
-            good = share
-        else:
-            bad = share
-    return _End(problem.start + good * (end.t - problem.start), 0.0, True)
+    start = problem.start
+
+    def kept(share: float) -> bool:
+        return problem.margins_kept(problem.states(start + share * (end - start)))
+
+    return start + last_kept(1.0, 0.0, kept, _BISECTIONS) * (end - start)
 
 
-def _lightened(problem: Problem, end: _End, progress: Progress) -> _End:
+def _lightened(problem: Problem, end: Floats, progress: Progress) -> Floats:
     """The lightest layout near one that keeps the margin, with the penalty beside the mass."""
-    from scipy.optimize import minimize
-
     scale, _ = problem.mass(problem.start)
     best = end
-    lightest = total_mass(problem.states(end.t)[0].system)
+    lightest = total_mass(problem.states(end)[0].system)
 
-    def fun(point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    def fun(point: Floats) -> tuple[float, Floats]:
         nonlocal best, lightest
         inside = np.clip(point, 0.0, 1.0)
         states = problem.states(inside)
         mass, slope = problem.mass(inside)
         if mass < lightest and problem.margins_kept(states):
-            best = _End(inside, 0.0, True)
+            best = inside
             lightest = mass
         total = mass / scale + _WEIGHT * problem.penalty(states)
         return total, slope / scale + _WEIGHT * problem.slopes(inside, states)
 
     progress(0.8, "mass")
-    minimize(
-        fun,
-        end.t,
-        jac=True,
-        method="SLSQP",
-        bounds=[(0.0, 1.0)] * len(end.t),
-        options={"maxiter": _ITERATIONS, "ftol": 1e-8},
-    )
+    _minimised(fun, end, 1e-8)
     return best
 
 
-def _steadied(problem: Problem, end: _End, progress: Progress) -> _End:
+def _steadied(problem: Problem, end: Floats, progress: Progress) -> Floats:
     """A layout that keeps the margin and as many standard deviations more as can be reached from one that keeps it.
 
     Slopes of the penalty hold the deviations; whether the margin is kept is asked with those of each layout.
     """
-    best = end
-    kept = kept_deviations(_scattering(problem).states(end.t), problem.asked, problem.least)
+    kept = kept_deviations(_scattering(problem).states(end), problem.asked, problem.least)
     wanted = _DEVIATIONS * (np.floor(max(kept, 0.0) / _DEVIATIONS) + 1.0) if np.isfinite(kept) else np.inf
     while wanted <= _MOST_DEVIATIONS:
         progress(0.8 + 0.15 * wanted / _MOST_DEVIATIONS, f"{wanted:g} standard deviations")
         wider = _scattering(problem, float(wanted))
-        found = _descended(wider, best.t)
+        t, penalty = _descended(wider, end)
         problem.solutions += wider.solutions
         problem.gradients += wider.gradients
-        if not found.reached:
+        if penalty:
             break
-        best = found
+        end = t
         wanted += _DEVIATIONS
-    return best
+    return end
 
 
 def _scattering(problem: Problem, deviations: float = 0.0) -> Problem:
@@ -268,7 +241,7 @@ def _scattering(problem: Problem, deviations: float = 0.0) -> Problem:
     return replace(problem, deviations=deviations, solutions=0, gradients=0)
 
 
-def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
+def _result(problem: Problem, end: Floats, penalty: float, objective: str) -> OptimiseResult:
     numbers = problem.numbers
     scatters = bool(numbers.model.scatter)
     # The layout is judged on a finer mesh and on maps of its own.
@@ -276,44 +249,27 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
     plan = Plan(2 * plan.elements, plan.order) if plan.order == 1 else Plan(plan.elements, plan.order + 1)
     finer = replace(_scattering(problem) if scatters else problem, plan=plan, own_maps=True, solutions=0, gradients=0)
     before = finer.states(problem.start)
-    after = finer.states(end.t)
-    pull = np.zeros(len(end.t)) if end.reached else problem.slopes(end.t, problem.states(end.t))
+    after = finer.states(end)
+    pull = problem.slopes(end, problem.states(end)) if penalty else np.zeros(len(end))
     # What moved by rounding alone stays as the file has it, word or number.
-    t = np.where(np.abs(end.t - problem.start) < _ROUNDING, problem.start, end.t)
+    t = np.where(np.abs(end - problem.start) < _ROUNDING, problem.start, end)
     values = np.where(t == problem.start, numbers.start, problem.values(t))
-    rows = []
-    for j, address in enumerate(numbers.addresses):
-        bound = "low" if t[j] < _AT_BOUND else "high" if t[j] > 1.0 - _AT_BOUND else ""
-        rows.append(
-            LayoutNumber(
-                address,
-                numbers.unit[j],
-                float(numbers.start[j]),
-                float(values[j]),
-                float(problem.low[j]),
-                float(problem.high[j]),
-                bound,
-                float(pull[j]),
-            )
-        )
-    change, where = _change_of_mesh(problem, ((problem.start, before), (end.t, after)))
+    bounds = ["low" if x < _AT_BOUND else "high" if x > 1.0 - _AT_BOUND else "" for x in t]
+    columns = (column.tolist() for column in (numbers.start, values, problem.low, problem.high))
+    rows = zip(numbers.addresses, numbers.unit, *columns, bounds, pull.tolist(), strict=True)
+    names = [line.name for line in problem.lines]
+    change, where = _change_of_mesh(problem, ((problem.start, before), (end, after)))
     coarse = (
         f"the margin of {where} changes by {100.0 * change:.2g} % of the excitation on the mesh of the table, one finer than "
         "that of the search: ask for more elements",
     )
     return OptimiseResult(
         model=numbers.model,
-        numbers=tuple(rows),
+        numbers=tuple(LayoutNumber(*row) for row in rows),
         lines=tuple(
-            LayoutMargin(
-                line.name,
-                one.speed,
-                float(one.line_hz[k]),
-                *_nearest(one, k, problem),
-                *_nearest(other, k, problem),
-            )
-            for one, other in zip(before, after, strict=True)
-            for k, line in enumerate(problem.lines)
+            LayoutMargin(name, old.speed, float(old.line_hz[k]), *_nearest(old, k, problem), *_nearest(new, k, problem))
+            for old, new in zip(before, after, strict=True)
+            for k, name in enumerate(names)
         ),
         modes_before=tuple(_near_rows(problem, before)),
         modes_after=tuple(_near_rows(problem, after)),
@@ -336,18 +292,15 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
     )
 
 
-def _change_of_mesh(
-    problem: Problem, layouts: Iterable[tuple[NDArray[np.float64], list[ModesAtSpeed]]]
-) -> tuple[float, str]:
+def _change_of_mesh(problem: Problem, layouts: Iterable[tuple[Floats, list[ModesAtSpeed]]]) -> tuple[float, str]:
     """Largest change of a margin from the mesh of the search to a finer one, on which states are known, and its excitation."""
     largest = (0.0, "")
     for t, states in layouts:
         for coarse, fine in zip(problem.states(t), states, strict=True):
             for k, line in enumerate(problem.lines):
                 # Without a mode that counts the margin is as good as the whole excitation.
-                one, other = (
-                    float(np.nan_to_num(abs(_nearest(state, k, problem)[1]), nan=1.0)) for state in (coarse, fine)
-                )
+                sizes = np.abs([_nearest(state, k, problem)[1] for state in (coarse, fine)])
+                one, other = np.nan_to_num(sizes, nan=1.0).tolist()
                 if min(one, other) < _NEAR * problem.asked:
                     largest = max(largest, (abs(one - other), line.name))
     return largest

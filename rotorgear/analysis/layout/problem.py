@@ -6,35 +6,35 @@ within the bounds, the bound is drawn in until the model takes it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, state_of, total_mass, with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.sensitivity.derivatives import systems_beside
+from rotorgear.analysis.sensitivity.forms import Floats
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import Numbers
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.shaft import Shaft
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 
 DEFAULT_BOUNDS = "-20 %:20 %"
-# A place moves by so much of its shaft where nothing is said.
+# A place moves by this share of its shaft where no bounds are given.
 _OF_SHAFT = 0.1
 # It keeps this share of the shaft's length from its neighbours.
 _APART = 0.01
 _BISECTIONS = 8
 
 
-def bounds_of(
-    numbers: Numbers, given: Mapping[str, str]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[str, ...]]:
+def bounds_of(numbers: Numbers, given: Mapping[str, str]) -> tuple[Floats, Floats, tuple[str, ...]]:
     """Return lower and upper bounds (p,) and sentences on those that were drawn in.
 
     Args:
@@ -67,17 +67,14 @@ def bounds_of(
                 ends.append(numbers.start[j] + (-size if end.startswith("-") else size) if share else size)
             low[j], high[j] = ends
         else:
-            reach = _OF_SHAFT * _length(numbers.model, address)
+            reach = _OF_SHAFT * _shaft(numbers.model, address)[1].length
             low[j] = numbers.start[j] - reach
             high[j] = numbers.start[j] + reach
+        both = f"bounds of {address}: {low[j]:g} to {high[j]:g}"
         if low[j] >= high[j]:
-            raise AnalysisError(
-                f"bounds of {address}: {low[j]:g} to {high[j]:g} leave no room; give the lower one first"
-            )
+            raise AnalysisError(f"{both} leave no room; give the lower one first")
         if not low[j] <= numbers.start[j] <= high[j]:
-            raise AnalysisError(
-                f"bounds of {address}: {low[j]:g} to {high[j]:g} do not hold its value {numbers.start[j]:g}"
-            )
+            raise AnalysisError(f"{both} do not hold its value {numbers.start[j]:g}")
         if place:
             first, last = _room(numbers.model, address, float(numbers.start[j]))
             # Rounding of sums of lengths must not shut out the place where the file has it.
@@ -85,78 +82,67 @@ def bounds_of(
             high[j] = max(min(high[j], last), numbers.start[j])
             if low[j] == high[j]:
                 raise AnalysisError(f"{address}: there is no room beside it; leave it out, or move what is there")
-        for side, bound in ((-1, low), (1, high)):
+        for side, bound in (("lower", low), ("upper", high)):
             taken = _taken(numbers, j, float(bound[j]))
             if taken != bound[j]:
-                name = "lower" if side < 0 else "upper"
-                notes.append(
-                    f"{address}: its {name} bound is {taken:.6g} and not {bound[j]:.6g}, which the model refuses"
-                )
+                refused = f"not {bound[j]:.6g}, which the model refuses"
+                notes.append(f"{address}: its {side} bound is {taken:.6g} and {refused}")
                 bound[j] = taken
     return low, high, tuple(notes)
 
 
-def _length(model: Model, address: str) -> float:
-    shaft = _shaft(model, address)
-    return float(sum(section.length for section in model.shafts[shaft].sections))
-
-
-def _shaft(model: Model, address: str) -> str:
+def _shaft(model: Model, address: str) -> tuple[str, Shaft]:
+    """Name and part of the shaft that a part stands on, by the address of its place."""
     table, name, _ = address.split(".")
-    return str(getattr(model, table)[name].shaft)
+    shaft = getattr(model, table)[name].shaft
+    return shaft, model.shafts[shaft]
 
 
 def _room(model: Model, address: str, here: float) -> tuple[float, float]:
     """Where a part may be without a jump over its neighbours or off its shaft."""
-    shaft = _shaft(model, address)
-    part = model.shafts[shaft]
-    first = float(part.start)
-    last = first + _length(model, address)
-    apart = _APART * (last - first)
+    shaft, part = _shaft(model, address)
+    low = part.start
+    high = part.end
+    apart = _APART * (high - low)
     own = address.removesuffix(".at")
-    low = first
-    high = last
-    for table in ("gears", "disks", "bearings"):
-        for name, other in getattr(model, table).items():
-            if f"{table}.{name}" == own or other.shaft != shaft:
-                continue
-            at = getattr(other, "at", 0.0)
-            z = first if at == "start" else last if at == "end" else float(at)
-            half = 0.5 * (getattr(other, "width", None) or 0.0)
-            if getattr(other, "kind", "") == "herringbone":
-                half = 2.0 * half + 0.5 * (getattr(other, "gap", None) or 0.0)
-            if z - half <= here <= z + half:
-                continue  # it is there already, as a disk on a bearing's place
-            if z < here:
-                low = max(low, min(z + half + apart, here))
-            else:
-                high = min(high, max(z - half - apart, here))
+    for other_address, other in model.parts_of("gears", "disks", "bearings"):
+        if other_address == own or other.shaft != shaft:
+            continue
+        z = model.layout.at(shaft, other.at).z
+        half = 0.5 * (other.total_width if isinstance(other, Gear) else getattr(other, "width", None) or 0.0)
+        if z - half <= here <= z + half:
+            continue  # it is there already, as a disk on a bearing's place
+        if z < here:
+            low = max(low, min(z + half + apart, here))
+        else:
+            high = min(high, max(z - half - apart, here))
     return low, high
+
+
+def last_kept(good: float, bad: float, kept: Callable[[float], bool], times: int) -> float:
+    """By bisection, the last value from a good one towards a bad one for which something is kept."""
+    for _ in range(times):
+        middle = 0.5 * (good + bad)
+        if kept(middle):
+            good = middle
+        else:
+            bad = middle
+    return good
 
 
 def _taken(numbers: Numbers, j: int, bound: float) -> float:
     """The bound, or the last value towards it that the model takes."""
 
-    def refuses(value: float) -> bool:
+    def taken(value: float) -> bool:
         values = numbers.start.copy()
         values[j] = value
         try:
             numbers.at(values)
         except ModelError:
-            return True
-        return False
+            return False
+        return True
 
-    if not refuses(bound):
-        return bound
-    good = float(numbers.start[j])
-    bad = bound
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (good + bad)
-        if refuses(middle):
-            bad = middle
-        else:
-            good = middle
-    return good
+    return bound if taken(bound) else last_kept(float(numbers.start[j]), bound, taken, _BISECTIONS)
 
 
 # Half width of the differences of matrices, as a share of the bounds: their error is its square.
@@ -188,8 +174,8 @@ class Problem:
     """
 
     numbers: Numbers
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
+    low: Floats
+    high: Floats
     speeds: tuple[float, ...]
     lines: tuple[ExcitationOrder, ...]
     plan: Plan
@@ -199,39 +185,33 @@ class Problem:
     least: float
     deviations: float | None = None
     own_maps: bool = False
-    solutions: int = field(default=0)
-    gradients: int = field(default=0)
+    solutions: int = 0
+    gradients: int = 0
 
-    def values(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+    def values(self, t: Floats) -> Floats:
         """The numbers at t (p,)."""
         return self.low + np.clip(t, 0.0, 1.0) * (self.high - self.low)
 
     @property
-    def start(self) -> NDArray[np.float64]:
+    def start(self) -> Floats:
         """t of the file (p,)."""
         return np.asarray((self.numbers.start - self.low) / (self.high - self.low))
 
-    def states(self, t: NDArray[np.float64]) -> list[ModesAtSpeed]:
+    def states(self, t: Floats) -> list[ModesAtSpeed]:
         """The modes at every speed."""
         model = self.numbers.at(self.values(t))
         beside = None if self.own_maps else state_at(self.numbers.model, [self.speeds[0]])
         self.solutions += len(self.speeds)
         found = [
-            state_of(
-                linear_system(model, [speed], self.plan, beside=beside),
-                speed,
-                self.lines,
-                self.below_hz,
-                margin=self.margin,
-                least=self.least,
-            )
+            state_of(system, speed, self.lines, self.below_hz, self.margin, self.least)
             for speed in self.speeds
+            for system in [linear_system(model, [speed], self.plan, beside=beside)]
         ]
         if self.deviations is None:
             return found
         return [with_deviations(state, model, self.asked, self.least) for state in found]
 
-    def _wide(self, state: ModesAtSpeed, margin: float) -> NDArray[np.float64]:
+    def _wide(self, state: ModesAtSpeed, margin: float) -> Floats:
         """A margin with the deviations of each mode beside each line, (l, m)."""
         if state.sigma is None or not self.deviations:
             return np.full(state.taken.shape, margin)
@@ -239,9 +219,9 @@ class Problem:
 
     def penalty(self, states: list[ModesAtSpeed]) -> float:
         """J of all speeds."""
-        return sum(penalty(near_modes(state, self._wide(state, self.margin), self.least)) for state in states)
+        return sum(penalty(state, self._wide(state, self.margin), self.least) for state in states)
 
-    def slopes(self, t: NDArray[np.float64], states: list[ModesAtSpeed]) -> NDArray[np.float64]:
+    def slopes(self, t: Floats, states: list[ModesAtSpeed]) -> Floats:
         """dJ/dt (p,)."""
         self.gradients += 1
         # Differences need room on both sides: a bound may be where the model ends.
@@ -255,15 +235,15 @@ class Problem:
             def beside(j: int, state: ModesAtSpeed = state) -> tuple[System, System, float]:
                 return self._beside(t, j, state)
 
-            near = near_modes(state, self._wide(state, self.margin), self.least)
+            near = list(near_modes(state, self._wide(state, self.margin), self.least))
             total += penalty_slopes(state, near, self.lines, beside, len(t))
         return total
 
-    def mass(self, t: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    def mass(self, t: Floats) -> tuple[float, Floats]:
         """Mass of the rotors in kg and its derivatives (p,)."""
 
-        def at(point: NDArray[np.float64]) -> float:
-            return total_mass(self._at_rest(self.low + point * (self.high - self.low)))
+        def at(point: Floats) -> float:
+            return total_mass(self._at_rest(point))
 
         # Masses are polynomials of low degree: wide central differences are as good as exact.
         steps = 1e-3 * np.eye(len(t))
@@ -271,42 +251,31 @@ class Problem:
 
     def margins_kept(self, states: list[ModesAtSpeed]) -> bool:
         """Whether no mode that counts is within the margin that was asked for, deviations included."""
-        return all(
-            not np.any(
-                (np.abs(state.hz / state.line_hz[:, None] - 1.0) < _EDGE * self._wide(state, self.asked))
-                & (state.taken >= self.least)
-            )
-            for state in states
-        )
+        for state in states:
+            near = np.abs(state.hz / state.line_hz[:, None] - 1.0) < _EDGE * self._wide(state, self.asked)
+            if np.any(near & (state.taken >= self.least)):
+                return False
+        return True
 
-    def _beside(self, t: NDArray[np.float64], j: int, state: ModesAtSpeed) -> tuple[System, System, float]:
+    def _beside(self, t: Floats, j: int, state: ModesAtSpeed) -> tuple[System, System, float]:
         step = _STEP * np.eye(len(t))[j]
-        above, below = systems_beside(
-            [self.numbers.at(self.low + at * (self.high - self.low)) for at in (t + step, t - step)],
-            state.system,
-            state.speed,
-            self.numbers.addresses[j],
-            beside=state.system.state,
-        )
+        models = [self.numbers.at(self.low + at * (self.high - self.low)) for at in (t + step, t - step)]
+        known = state.system
+        above, below = systems_beside(models, known, state.speed, self.numbers.addresses[j], beside=known.state)
         return above, below, 2.0 * _STEP
 
-    def _apart(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _apart(self, t: Floats) -> Floats:
         """t with places moved a hair from others that they coincide with."""
-        places = [j for j, name in enumerate(self.numbers.addresses) if name.endswith((".at", ".start", ".length"))]
         moved = t.copy()
-        for j in places:
-            step = np.zeros(len(t))
-            step[j] = _STEP
-            sizes = {self._size(moved + side * step) for side in (-1.0, 0.0, 1.0)}
-            if len(sizes) > 1:
-                moved[j] += _HAIR if t[j] < 0.5 else -_HAIR
+        for j, step in enumerate(_STEP * np.eye(len(t))):
+            if self.numbers.addresses[j].endswith((".at", ".start", ".length")):
+                # The number of dofs changes where places part or come together.
+                sizes = {self._at_rest(np.clip(moved + side * step, 0.0, 1.0)).n for side in (-1.0, 0.0, 1.0)}
+                if len(sizes) > 1:
+                    moved[j] += _HAIR if t[j] < 0.5 else -_HAIR
         return moved
 
-    def _size(self, t: NDArray[np.float64]) -> int:
-        """Number of dofs at t: it changes where places part or come together."""
-        return self._at_rest(self.values(t)).n
-
-    def _at_rest(self, values: NDArray[np.float64]) -> System:
-        """The system at some values (p,), for what no equilibrium changes: masses and places."""
-        model = self.numbers.at(values)
+    def _at_rest(self, t: Floats) -> System:
+        """The system at t (p,), for what no equilibrium changes: masses and places."""
+        model = self.numbers.at(self.low + t * (self.high - self.low))
         return flow_system(model, self.plan, direction=direction_of(self.speeds[0]))

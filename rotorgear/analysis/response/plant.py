@@ -116,12 +116,9 @@ class SeatLoads:
         self._system = system
         self._rows: tuple[sp.csr_array, sp.csr_array] | None = None
         standing: dict[str, list[str]] = {}
-        for table in ("bearings", "nonlinear_elements"):
-            for part in getattr(system.model, table):
-                seat = system.layout.seat(f"{table}.{part}")
-                if seat is not None:
-                    name = f"{seat.casing}.{system.layout.casing(seat.casing).seats[seat.number]}"
-                    standing.setdefault(name, []).append(f"{table}.{part}")
+        for address, (casing, number, _) in system.layout.seats:
+            name = f"{casing}.{system.layout.casing(casing).seats[number]}"
+            standing.setdefault(name, []).append(address)
         self._standing = standing
 
     @property

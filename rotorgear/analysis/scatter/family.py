@@ -13,7 +13,7 @@ whole system by inverse iteration."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -21,7 +21,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.sensitivity.forms import GYROSCOPIC, MASS, SAME, STIFFNESS, FormModes, forms_of, with_shapes
+from rotorgear.analysis.sensitivity.forms import SAME, Floats, FormModes, forms_of, with_shapes
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -43,7 +43,7 @@ _NOTHING = 1e-13
 _KEPT = 96
 
 
-def sampled_system(spreads: Spreads, z: NDArray[np.float64], speed: float | None, plan: Plan) -> System:
+def sampled_system(spreads: Spreads, z: Floats, speed: float | None, plan: Plan) -> System:
     """The linear system of the model at z (p,) about its equilibrium, with the face maps of the nominal one."""
     model = sample_at(spreads, tuple(map(float, z)))
     return linear_system(model, [speed], plan, beside=state_at(spreads.numbers.model, [speed]))
@@ -55,20 +55,9 @@ def sample_at(spreads: Spreads, z: tuple[float, ...]) -> Model:
     return spreads.at(np.array(z))
 
 
-@dataclass(frozen=True)
-class Term:
-    """What the numbers add to one form: a sum of k Chebyshev polynomials, each of one number over its reach.
-
-    Attributes:
-        form: number of the form.
-        number, degree: of each polynomial (k,).
-        coefficients: of each polynomial (k, r r).
-    """
-
-    form: int
-    number: NDArray[np.intp]
-    degree: NDArray[np.intp]
-    coefficients: NDArray[np.float64]
+# What the numbers add to one form: a sum of k Chebyshev polynomials, each of one number over its reach: number and degree (k,),
+# and coefficients (k, r r) of each.
+Term = tuple[NDArray[np.intp], NDArray[np.intp], Floats]
 
 
 @dataclass(frozen=True)
@@ -81,17 +70,17 @@ class Family:
         plan: the mesh.
         V: the basis over the free dofs (n, r).
         nominal: forms at z = 0 (a, r, r).
-        terms: what the numbers add to each form that changes; None where every sample is assembled.
+        terms: form -> what the numbers add to it, where they change it; None where every sample is assembled.
     """
 
     spreads: Spreads
     speed: float | None
     plan: Plan
-    V: NDArray[np.float64]
-    nominal: NDArray[np.float64]
-    terms: tuple[Term, ...] | None
+    V: Floats
+    nominal: Floats
+    terms: dict[int, Term] | None
 
-    def system(self, z: NDArray[np.float64]) -> System:
+    def system(self, z: Floats) -> System:
         """The whole system at z (p,).
 
         Raises:
@@ -99,34 +88,31 @@ class Family:
         """
         system = sampled_system(self.spreads, z, self.speed, self.plan)
         if system.n != self.V.shape[0]:
-            names = ", ".join(
-                name for name in self.spreads.numbers.addresses if name.endswith((".at", ".start", ".length"))
-            )
+            moved = [name for name in self.spreads.numbers.addresses if name.endswith((".at", ".start", ".length"))]
+            names = ", ".join(moved)
             raise AnalysisError(
                 f"the scatter of {names or 'these numbers'} moves a place past another one that it coincides with, so that the "
                 "shafts are cut otherwise: move one of them by more than the scatter, or leave it out"
             )
         return system
 
-    def assembled(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    def assembled(self, z: Floats) -> Floats:
         """The forms at z from the whole system."""
         return forms_of(self.system(z), self.speed or 0.0, self.V)
 
-    def at(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, z: Floats) -> Floats:
         """The forms at z (p,), each (r, r)."""
         if self.terms is None:
             return self.assembled(z)
         angle = np.arccos(np.clip(z / self.spreads.reach, -1.0, 1.0))
         T = np.cos(np.multiply.outer(angle, np.arange(_POINTS)))
         found = self.nominal.copy()
-        for term in self.terms:
-            found[term.form] += (T[term.number, term.degree] @ term.coefficients).reshape(found[term.form].shape)
+        for form, (number, degree, coefficients) in self.terms.items():
+            found[form] += (T[number, degree] @ coefficients).reshape(found[form].shape)
         return found
 
 
-def family_of(
-    spreads: Spreads, speed: float | None, plan: Plan, V: NDArray[np.float64], progress: Progress = silent
-) -> Family:
+def family_of(spreads: Spreads, speed: float | None, plan: Plan, V: Floats, progress: Progress = silent) -> Family:
     """Return the family over a basis V (n, r)."""
     nominal = forms_of(linear_system(spreads.numbers.model, [speed], plan), speed or 0.0, V)
     bare = Family(spreads, speed, plan, V, nominal, None)
@@ -143,20 +129,18 @@ def family_of(
         linear = all(len(coefficients) < _FEW for coefficients in few.values())
         changes.append(few if linear else _interpolated(bare, j, _POINTS))
     # The sums of all numbers, form by form.
-    terms = []
+    terms = {}
     for form in sorted({form for change in changes for form in change}):
         parts = [(j, change[form]) for j, change in enumerate(changes) if form in change]
         number = np.concatenate([np.full(len(c), j) for j, c in parts])
         degree = np.concatenate([np.arange(len(c)) for _, c in parts])
         coefficients = np.concatenate([c.reshape(len(c), -1) for _, c in parts])
-        terms.append(Term(form, number, degree, coefficients))
-    whole = Family(spreads, speed, plan, V, nominal, tuple(terms))
-    if all(_error(whole.at(z), bare.assembled(z)) < _SUM_ERROR for z in trials):
-        return whole
-    return bare
+        terms[form] = (number, degree, coefficients)
+    whole = replace(bare, terms=terms)
+    return whole if all(_error(whole.at(z), bare.assembled(z)) < _SUM_ERROR for z in trials) else bare
 
 
-def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.float64]]:
+def _interpolated(bare: Family, j: int, points: int) -> dict[int, Floats]:
     """What number j adds to the forms that it changes: form -> coefficients (k, r, r), k as many as are no rounding."""
     k = np.arange(points)
     angles = np.pi * (k + 0.5) / points
@@ -183,18 +167,13 @@ def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.flo
     return found
 
 
-def _error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> float:
+def _error(found: Floats, exact: Floats) -> float:
     """Largest error of K, M and W G in units of the energies of the shapes."""
-    k = np.sqrt(np.maximum(np.diag(exact[STIFFNESS]), 1e-300))
-    m = np.sqrt(np.maximum(np.diag(exact[MASS]), 1e-300))
-    difference = np.abs(found - exact)
+    k, m = (np.sqrt(np.maximum(np.diag(form), 1e-300)) for form in exact[:2])
     # A free motion has no strain energy of its own to be measured by.
     k = np.maximum(k, 1e-6 * float(k.max()))
-    return max(
-        float((difference[STIFFNESS] / np.outer(k, k)).max()),
-        float((difference[MASS] / np.outer(m, m)).max()),
-        float((difference[GYROSCOPIC] / np.outer(k, m)).max()),
-    )
+    sizes = [np.outer(k, k), np.outer(m, m), np.outer(k, m)]
+    return float((np.abs(found - exact)[:3] / sizes).max())
 
 
 # A change of one standard deviation is looked at on both sides.
@@ -208,40 +187,30 @@ _OF_A_BODY = 6
 _CONVERGED = 1e-11
 
 
-def nominal_modes(
-    system: System, speed: float | None, count: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+def nominal_modes(system: System, speed: float | None, count: int) -> tuple[Floats, Floats, int]:
     """w^2 (m,), shapes (n, m) of modal mass 1 of the undamped system that does not rotate, and how many are rigid.
 
     They are `count`, or more where bodies beside each other have more free motions than one.
     """
     strain = system.strain_factor(speed or 0.0)
+    K = system.stiffness(speed or 0.0)
     asked = count
-    found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
-    while not found.complete and len(found.eigenvalues) - found.rigid_count < count - _OF_A_BODY:
+    while True:
+        found = lowest_modes(system.mass, K, count=asked, strain=strain)
+        if found.complete or len(found.eigenvalues) - found.rigid_count >= count - _OF_A_BODY:
+            return found.eigenvalues, found.vectors, found.rigid_count
         asked = 2 * asked
-        found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
-    return found.eigenvalues, found.vectors, found.rigid_count
 
 
-def basis_of(
-    spreads: Spreads,
-    speed: float | None,
-    plan: Plan,
-    system: System,
-    values: NDArray[np.float64],
-    X: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def basis_of(spreads: Spreads, speed: float | None, plan: Plan, system: System, values: Floats, X: Floats) -> Floats:
     """The basis (n, r) with nominal modes w^2 (m,), X (n, m) first, orthonormal in M."""
+    stiffness = system.stiffness(speed or 0.0)
     forces = []
-    for j in range(len(spreads)):
-        z = np.zeros(len(spreads))
-        z[j] = _SIDE
-        above = sampled_system(spreads, z, speed, plan)
-        below = sampled_system(spreads, -z, speed, plan)
-        for other, sign in ((above, 1.0), (below, -1.0)):
+    for z in _SIDE * np.eye(len(spreads)):
+        for sign in (1.0, -1.0):
+            other = sampled_system(spreads, sign * z, speed, plan)
             if other.n == system.n:
-                K = other.stiffness(speed or 0.0) - system.stiffness(speed or 0.0)
+                K = other.stiffness(speed or 0.0) - stiffness
                 M = other.mass - system.mass
                 forces.append(sign * (K @ X - (M @ X) * values))
     if speed:
@@ -249,7 +218,7 @@ def basis_of(
     if not forces:
         return X
     shift = float(np.median(values[values > 0.0])) if np.any(values > 0.0) else 1.0
-    shifted = sp.csc_array(system.stiffness(speed or 0.0) + shift * system.mass)
+    shifted = sp.csc_array(stiffness + shift * system.mass)
     from scipy.sparse.linalg import splu
 
     answers = splu(shifted).solve(np.hstack(forces) / np.tile(values + shift, len(forces)))
@@ -266,9 +235,7 @@ def basis_of(
     return with_shapes(system.mass, X, answers @ (turned[:, kept] / np.sqrt(energy[kept])))
 
 
-def whole_modes(
-    family: Family, z: NDArray[np.float64], modes: FormModes
-) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+def whole_modes(family: Family, z: Floats, modes: FormModes) -> tuple[Floats, NDArray[np.complex128]]:
     """Frequencies (m,) and shapes (n, m) of the whole system at z that the modes of the basis lead to."""
     system = family.system(z)
     speed = family.speed or 0.0
@@ -276,11 +243,8 @@ def whole_modes(
     M = system.mass
     W = speed * system.gyroscopic
     X = family.V @ modes.q
-    omega = np.array(modes.omega)
-    shapes = np.array(X, dtype=complex)
-    for i in range(len(omega)):
-        omega[i], shapes[:, i] = _inverse_iteration(K, M, W, float(omega[i]), shapes[:, i])
-    return omega, shapes
+    found = [_inverse_iteration(K, M, W, float(w), q) for w, q in zip(modes.omega, X.T.astype(complex), strict=True)]
+    return np.array([w for w, _ in found]), np.column_stack([q for _, q in found])
 
 
 def _inverse_iteration(

@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.samples import Study, frequency_slopes, nearest_margin, share_slopes, shares_at
-from rotorgear.analysis.sensitivity.forms import participations
-from rotorgear.results.scatter import (
-    HIGH,
-    LOW,
-    FrequencyBand,
-    GroupBand,
-    MarginBand,
-    ScatteredNumber,
-    ScatterResult,
-    ShareBand,
-)
+from rotorgear.analysis.sensitivity.forms import Floats
+from rotorgear.results import scatter as results
 from rotorgear.solvers.sampling import SobolIndices, sobol_indices
 
-Values = dict[str, NDArray[np.float64]]
+Values = dict[str, Floats]
 
 
 def gathered(
-    study: Study, Z: NDArray[np.float64], values: Values, samples: int, seed: int, least_margin: float
-) -> ScatterResult:
-    """Return the result, without what the verb alone knows.
+    study: Study, Z: Floats, values: Values, samples: int, seed: int, least_margin: float, **known: Any
+) -> results.ScatterResult:
+    """Return the result.
 
     Args:
         study: what every sample was asked.
@@ -34,6 +26,7 @@ def gathered(
         samples: how many points are of the bands.
         seed: of the bootstrap.
         least_margin: for the share of samples below it.
+        known: fields of the result that the verb alone knows.
     """
     spreads = study.family.spreads
     of_bands = {name: value[:samples] for name, value in values.items()}
@@ -49,27 +42,20 @@ def gathered(
     if len(ranked):
         ranks = sobol_indices(ranked, len(spreads), seed)
     how = "each sample assembled" if study.family.terms is None else "forms summed over the numbers"
-    rows = zip(
-        spreads.numbers.addresses,
-        spreads.numbers.start,
-        spreads.numbers.unit,
-        spreads.size,
-        spreads.distribution,
-        strict=True,
-    )
-    numbers = tuple(
-        ScatteredNumber(address, float(value), unit, float(size), kind) for address, value, unit, size, kind in rows
-    )
-    return ScatterResult(
+    columns = (spreads.numbers.start.tolist(), spreads.numbers.unit, spreads.size.tolist(), spreads.distribution)
+    rows = zip(spreads.numbers.addresses, *columns, strict=True)
+    # Standard deviation of each quantity to first order, and the number that makes most of it, with its share.
+    pairs = zip(slopes, shares, strict=True)
+    spread = [(float(np.sqrt(np.sum(row**2))), *_leading(share, spreads.numbers.addresses)) for row, share in pairs]
+    return results.ScatterResult(
         model=spreads.numbers.model,
         speed=study.family.speed,
-        numbers=numbers,
-        bands=_bands(study, of_bands, slopes, shares, numbers),
+        numbers=tuple(results.ScatteredNumber(*row) for row in rows),
+        bands=_bands(study, of_bands, spread[: study.count]),
         groups=_group_bands(study, of_bands),
         margins=_margin_bands(study, of_bands, least_margin),
-        shares=_share_bands(study, of_bands, slopes[study.count :], shares[study.count :], numbers),
+        shares=_share_bands(study, of_bands, spread[study.count :]),
         least_margin=least_margin,
-        sampling="",
         z=Z[:samples],
         sample_hz=of_bands["followed_hz"],
         sample_margin=of_bands["margin"],
@@ -80,51 +66,44 @@ def gathered(
         sobol_first_error=ranks.first_error,
         sobol_total_error=ranks.total_error,
         basis_size=study.family.V.shape[1],
-        frequency_basis_error=0.0,
-        checked_samples=0,
         failed=int(np.sum(np.all(np.isnan(of_bands["hz"]), axis=1))),
         dofs=study.family.V.shape[0],
         method=f"modes in a basis of nominal modes and their derivatives, {how}",
+        **known,
     )
 
 
-def _leading(shares: NDArray[np.float64], numbers: tuple[ScatteredNumber, ...]) -> tuple[str, float]:
+def _leading(shares: Floats, addresses: tuple[str, ...]) -> tuple[str, float]:
     # Of parts that are alike the first in the file leads, not the one that rounding prefers.
     j = int(np.argmax(shares >= (1.0 - 1e-6) * np.max(shares)))
-    return (numbers[j].address, float(shares[j])) if shares[j] > 0.0 else ("", 0.0)
+    return (addresses[j], float(shares[j])) if shares[j] > 0.0 else ("", 0.0)
 
 
-def _bands(
-    study: Study,
-    values: Values,
-    slopes: NDArray[np.float64],
-    shares: NDArray[np.float64],
-    numbers: tuple[ScatteredNumber, ...],
-) -> tuple[FrequencyBand, ...]:
+def _bands(study: Study, values: Values, spread: list[tuple[float, str, float]]) -> tuple[results.FrequencyBand, ...]:
     rows = []
-    for i in range(study.count):
+    for i, (first, leading, leading_share) in enumerate(spread):
         hz = values["followed_hz"][:, i]
         there = hz[np.isfinite(hz)]
-        spread = float(np.std(np.log(there), ddof=1)) if len(there) > 1 else float("nan")
-        low, high = np.quantile(there, [LOW, HIGH]) if len(there) else (np.nan, np.nan)
+        low, high = np.quantile(there, [results.LOW, results.HIGH]) if len(there) else (np.nan, np.nan)
         rows.append(
-            FrequencyBand(
+            results.FrequencyBand(
                 i + 1,
                 float(study.nominal.omega[i] / (2.0 * np.pi)),
                 next(k for k, group in enumerate(study.groups, 1) if i in group),
-                float(np.sqrt(np.sum(slopes[i] ** 2))),
-                spread,
+                first,
+                float(np.std(np.log(there), ddof=1)) if len(there) > 1 else float("nan"),
                 float(there.mean()) if len(there) else float("nan"),
                 float(low),
                 float(high),
                 len(there) / len(hz),
-                *_leading(shares[i], numbers),
+                leading,
+                leading_share,
             )
         )
     return tuple(rows)
 
 
-def _group_bands(study: Study, values: Values) -> tuple[GroupBand, ...]:
+def _group_bands(study: Study, values: Values) -> tuple[results.GroupBand, ...]:
     found = []
     for number, group in enumerate(study.groups, 1):
         own = [i for i in group if i < study.count]
@@ -133,42 +112,34 @@ def _group_bands(study: Study, values: Values) -> tuple[GroupBand, ...]:
         hz = values["hz"][:, own]
         there = hz[np.isfinite(hz).all(axis=1)]
         if len(there):
-            low = float(np.quantile(there.min(axis=1), LOW))
-            high = float(np.quantile(there.max(axis=1), HIGH))
-            found.append(GroupBand(number, tuple(i + 1 for i in own), low, high))
+            low = float(np.quantile(there.min(axis=1), results.LOW))
+            high = float(np.quantile(there.max(axis=1), results.HIGH))
+            found.append(results.GroupBand(number, tuple(i + 1 for i in own), low, high))
     return tuple(found)
 
 
-def _margin_bands(study: Study, values: Values, least: float) -> tuple[MarginBand, ...]:
-    taken = participations(study.names, study.lines, study.family.nominal, study.nominal)
+def _margin_bands(study: Study, values: Values, least: float) -> tuple[results.MarginBand, ...]:
+    taken = study.names.participations(study.lines, study.family.nominal, study.nominal)
     found = []
     for k, (line, hz) in enumerate(zip(study.lines, study.hz, strict=True)):
         nominal = nearest_margin(study.nominal.omega / (2.0 * np.pi), taken[k] >= study.share, float(hz))
         size = np.abs(values["margin"][:, k])
         there = size[np.isfinite(size)]
-        low, median = np.quantile(there, [LOW, 0.5]) if len(there) else (np.nan, np.nan)
+        low, median = np.quantile(there, [results.LOW, 0.5]) if len(there) else (np.nan, np.nan)
         below = float(np.mean(there < least)) if len(there) else 0.0
-        found.append(MarginBand(line.name, float(hz), nominal, float(low), float(median), below))
+        found.append(results.MarginBand(line.name, float(hz), nominal, float(low), float(median), below))
     return tuple(found)
 
 
-def _share_bands(
-    study: Study,
-    values: Values,
-    slopes: NDArray[np.float64],
-    shares: NDArray[np.float64],
-    numbers: tuple[ScatteredNumber, ...],
-) -> tuple[ShareBand, ...]:
+def _share_bands(study: Study, values: Values, spread: list[tuple[float, str, float]]) -> tuple[results.ShareBand, ...]:
     if not study.shared:
         return ()
     nominal = shares_at(study, np.zeros(len(study.family.spreads)))
     found = []
-    for k, (gear, mesh) in enumerate(study.shared):
+    for k, ((gear, mesh), (first, leading, share)) in enumerate(zip(study.shared, spread, strict=True)):
         seen = values["shares"][:, k]
         there = seen[np.isfinite(seen)]
-        low, high = np.quantile(there, [LOW, HIGH])
-        first = float(np.sqrt(np.sum(slopes[k] ** 2)))
-        spread = float(np.std(there, ddof=1))
-        leading = _leading(shares[k], numbers)
-        found.append(ShareBand(gear, mesh, float(nominal[k]), first, spread, float(low), float(high), *leading))
+        low, high = np.quantile(there, [results.LOW, results.HIGH])
+        sampled = (float(np.std(there, ddof=1)), float(low), float(high))
+        found.append(results.ShareBand(gear, mesh, float(nominal[k]), first, *sampled, leading, share))
     return tuple(found)

@@ -9,24 +9,14 @@ the frequencies that belong to the nominal shapes. They pass through a veering s
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.family import Family, sample_at
-from rotorgear.analysis.sensitivity.forms import (
-    GYROSCOPIC,
-    MASS,
-    STIFFNESS,
-    FormModes,
-    FormNames,
-    Shapes,
-    coupling,
-    modes_of,
-    overlaps,
-    participations,
-)
+from rotorgear.analysis.sensitivity.forms import Floats, FormModes, FormNames, Shapes, coupling, modes_of, overlaps
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.analysis.static.static import solved
@@ -56,10 +46,8 @@ class Study:
         wide, least: of `modes_of`.
         nominal: the nominal modes, m and some spare ones.
         groups: modes that are compared as one space, each a tuple of numbers from 0; every nominal mode is in one.
-        lines: excitations, and
-        hz: their frequencies (l,).
+        lines: excitations.
         share: least participation that counts.
-        names: which form is whose.
         shared: (gear, mesh) of the s load shares; empty without statics.
     """
 
@@ -70,32 +58,33 @@ class Study:
     nominal: FormModes
     groups: tuple[tuple[int, ...], ...]
     lines: tuple[ExcitationOrder, ...]
-    hz: NDArray[np.float64]
     share: float
-    names: FormNames
     shared: tuple[tuple[str, str], ...]
 
+    @cached_property
+    def names(self) -> FormNames:
+        """Which form is whose."""
+        return FormNames.of(self.family.spreads.numbers.model, self.family.speed)
 
-def run_samples(study: Study, Z: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    @cached_property
+    def hz(self) -> Floats:
+        """Frequencies of the excitations (l,)."""
+        return np.array([line.frequency_hz(self.family.speed or 0.0) for line in self.lines])
+
+
+def run_samples(study: Study, Z: Floats) -> dict[str, Floats]:
     """Values of each sample z of a block Z (b, p): see `_sample`; NaN where a sample has no modes."""
     rows = [_sample(study, z) for z in Z]
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def _sample(study: Study, z: Floats) -> dict[str, Floats]:
     """followed_hz (m,): the frequency of each nominal shape; hz (m,): of the mode assigned to it; margin (l,); shares (s,)."""
     m = study.count
-    nothing = {
-        "followed_hz": np.full(m, np.nan),
-        "hz": np.full(m, np.nan),
-        "margin": np.full(len(study.hz), np.nan),
-        "shares": np.full(len(study.shared), np.nan),
-    }
     try:
         forms = study.family.at(z)
-        modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
         # Frequencies of the nominal shapes and of the modes assigned to them, and how much of each shape its group holds.
-        common, at = _assigned(study, modes)
+        modes, common, at = _assigned(study, forms)
         own = modes.omega[at]
         followed = own.copy()
         held = np.zeros(len(at))
@@ -106,35 +95,31 @@ def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float6
             if len(rows) > 1:
                 W = la.polar(inside)[0]
                 followed[rows] = np.real(np.sum(np.abs(W) ** 2 * own[rows], axis=1))
-        taken = participations(study.names, study.lines, forms, modes)
+        taken = study.names.participations(study.lines, forms, modes)
         shares = shares_at(study, z)
     except (RotorgearError, np.linalg.LinAlgError):
         # A sample beyond what the model can be: counted and said, not hidden.
-        return nothing
-    margin = np.array(
-        [
-            nearest_margin(modes.omega / (2.0 * np.pi), row >= study.share, f)
-            for row, f in zip(taken, study.hz, strict=True)
-        ]
-    ).reshape(len(study.hz))
+        sizes = {"followed_hz": m, "hz": m, "margin": len(study.hz), "shares": len(study.shared)}
+        return {name: np.full(size, np.nan) for name, size in sizes.items()}
     two_pi = 2.0 * np.pi
+    hz = modes.omega / two_pi
+    margin = [nearest_margin(hz, row >= study.share, f) for row, f in zip(taken, study.hz, strict=True)]
     return {
         "followed_hz": np.where(held >= LEAST_HELD, followed / two_pi, np.nan)[:m],
         "hz": (own / two_pi)[:m],
-        "margin": margin,
+        "margin": np.array(margin, dtype=float),
         "shares": shares,
     }
 
 
-def groups_of(study: Study, Z: NDArray[np.float64]) -> tuple[tuple[int, ...], ...]:
+def groups_of(study: Study, Z: Floats) -> tuple[tuple[int, ...], ...]:
     """Nominal modes that turn into each other at some of the samples Z (b, p), as groups; every mode is in one."""
     tied = np.zeros((len(study.nominal.omega),) * 2, dtype=bool)
     for z in Z:
         try:
-            modes = modes_of(study.family.at(z), len(study.nominal.omega) + SPARE, study.least, study.wide)
+            _, common, at = _assigned(study, study.family.at(z))
         except (RotorgearError, np.linalg.LinAlgError):
             continue  # counted where the sample itself is run
-        common, at = _assigned(study, modes)
         tied |= np.abs(common[:, at]) ** 2 > _TURNED
     groups: list[set[int]] = []
     for a, row in enumerate(tied):
@@ -144,15 +129,17 @@ def groups_of(study: Study, Z: NDArray[np.float64]) -> tuple[tuple[int, ...], ..
     return tuple(sorted(tuple(sorted(group)) for group in groups))
 
 
-def _assigned(study: Study, modes: FormModes) -> tuple[Shapes, NDArray[np.intp]]:
-    """Overlaps of nominal and sampled modes (k, k'), and the sampled mode of each nominal one."""
+def _assigned(study: Study, forms: Floats) -> tuple[FormModes, Shapes, NDArray[np.intp]]:
+    """Modes of a sample, overlaps of nominal and sampled modes (k, k'), and the sampled mode of each nominal one."""
     from scipy.optimize import linear_sum_assignment
 
-    common = overlaps(study.family.nominal[STIFFNESS], study.family.nominal[MASS], study.nominal, modes)
-    return common, linear_sum_assignment(-(np.abs(common) ** 2))[1]
+    modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
+    K, M = study.family.nominal[:2]
+    common = overlaps(K, M, study.nominal, modes)
+    return modes, common, linear_sum_assignment(-(np.abs(common) ** 2))[1]
 
 
-def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: float) -> float:
+def nearest_margin(hz: Floats, able: NDArray[np.bool_], line_hz: float) -> float:
     """f / f_line - 1 of the nearest mode that takes part; NaN without one."""
     if not able.any():
         return float("nan")
@@ -160,7 +147,7 @@ def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: fl
     return float(ratio[np.argmin(np.abs(ratio))])
 
 
-def shares_at(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
+def shares_at(study: Study, z: Floats) -> Floats:
     """Load shares of the model at z (p,), with the face maps of the nominal one, (s,); NaN of one that it has not."""
     if not study.shared:
         return np.zeros(0)
@@ -171,7 +158,7 @@ def shares_at(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([found.get(key, np.nan) for key in study.shared])
 
 
-def frequency_slopes(study: Study) -> NDArray[np.float64]:
+def frequency_slopes(study: Study) -> Floats:
     """d ln w / dz at the nominal model, (m, p), of the wanted modes."""
     family = study.family
     omega = study.nominal.omega
@@ -179,12 +166,12 @@ def frequency_slopes(study: Study) -> NDArray[np.float64]:
     slopes = []
     for z in _STEP * np.eye(len(family.spreads)):
         change = (family.at(z)[:3] - family.at(-z)[:3]) / (2.0 * _STEP)
-        K, M, G = (Q.conj().T @ change[form] @ Q for form in (STIFFNESS, MASS, GYROSCOPIC))
-        slopes.append(np.real(np.diagonal(coupling(K, M, G, omega))) / omega)
+        change = np.array([Q.conj().T @ form @ Q for form in change])
+        slopes.append(np.real(np.diagonal(coupling(change, omega))) / omega)
     return np.array(slopes).T[: study.count]
 
 
-def share_slopes(study: Study) -> NDArray[np.float64]:
+def share_slopes(study: Study) -> Floats:
     """d share / dz at the nominal model, (s, p), by statics on both sides."""
     spreads = study.family.spreads
     found = np.zeros((len(study.shared), len(spreads)))

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.excitation import excitation_orders
@@ -29,7 +28,7 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.scatter.family import basis_of, family_of, nominal_modes, whole_modes
 from rotorgear.analysis.scatter.gather import gathered
 from rotorgear.analysis.scatter.samples import SPARE, Study, groups_of, run_samples
-from rotorgear.analysis.sensitivity.forms import FormNames, modes_of, with_shapes
+from rotorgear.analysis.sensitivity.forms import Floats, modes_of, with_shapes
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.analysis.static.static import solved
@@ -135,10 +134,11 @@ def scatter(
         if not elements:
             # All these modes are to be within the accuracy, beside all rigid ones where these are more than the spare ones.
             asked = modes + SPARE
-            found = modal(model, modes=asked, speed=at, accuracy=accuracy)
-            while len(found.rigid) == asked and np.count_nonzero(~found.rigid) < modes:
-                asked = 2 * asked
+            while True:
                 found = modal(model, modes=asked, speed=at, accuracy=accuracy)
+                if len(found.rigid) < asked or np.count_nonzero(~found.rigid) >= modes:
+                    break
+                asked = 2 * asked
             plan = Plan(cut=cut_of(found.discretisation))
         count = len(spreads)
         Z = spreads.coordinates(unit_points(sampling, samples, count, seed))
@@ -158,16 +158,16 @@ def scatter(
         blocks = list(stream.begin(settings)) if stream else []
         starts = range(0, len(Z), _BLOCK)
         tasks = ((study, Z[k : k + _BLOCK]) for k in starts[len(blocks) :])
+        running = part_of(progress, 0.3, 1.0)
         for block in in_order(run_samples, tasks, workers, executor):
             if stream:
                 stream.write(block)
             blocks.append(block)
-            part_of(progress, 0.3, 1.0)(
-                len(blocks) / len(starts), f"{min(len(blocks) * _BLOCK, len(Z))} of {len(Z)} samples"
-            )
+            running(len(blocks) / len(starts), f"{min(len(blocks) * _BLOCK, len(Z))} of {len(Z)} samples")
         values = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
         laps["samples"] = clock.perf_counter() - begun - laps["basis"]
-        result = gathered(study, Z, values, samples, seed, least_margin)
+        known = {"sampling": sampling, "checked_samples": checked, "frequency_basis_error": error}
+        result = gathered(study, Z, values, samples, seed, least_margin, **known)
     laps["total"] = clock.perf_counter() - begun
     notes = (
         "damping: natural frequencies are those of the undamped rotating system",
@@ -179,15 +179,7 @@ def scatter(
         ),
     )
     progress(1.0, "done")
-    return replace(
-        result,
-        sampling=sampling,
-        left_out=notes,
-        seconds=laps,
-        model=model,
-        checked_samples=checked,
-        frequency_basis_error=error,
-    )
+    return replace(result, left_out=notes, seconds=laps)
 
 
 def _given(
@@ -211,10 +203,8 @@ def _given(
         found = {name: entry if isinstance(entry, Scatter) else Scatter(**entry) for name, entry in free.items()}
     else:
         parts = free.split(",") if isinstance(free, str) else free
-        size = (
-            {"tolerance": tolerance} if tolerance is not None else {"sigma": DEFAULT_SIGMA if sigma is None else sigma}
-        )
-        entry = Scatter(**size, distribution=distribution)
+        sigma = DEFAULT_SIGMA if sigma is None and tolerance is None else sigma
+        entry = Scatter(sigma=sigma, tolerance=tolerance, distribution=distribution)
         found = {part.strip(): entry for part in parts if part.strip()}
     if sharing:
         found = {**graded_errors(model), **found}
@@ -233,7 +223,7 @@ def _study(
     modes: int,
     participation: float,
     sharing: bool,
-    Z: NDArray[np.float64],
+    Z: Floats,
     progress: Progress,
 ) -> tuple[Study, float, int, tuple[str, ...]]:
     """What the samples are asked, the error of its basis, at how many samples it was judged, notes on what is out of reach."""
@@ -265,27 +255,13 @@ def _study(
     nominal = modes_of(family.nominal, modes + SPARE, least, wide)
     lines: tuple[ExcitationOrder, ...] = excitation_orders(model) if speed else ()
     top = float(nominal.omega[min(modes, len(nominal.omega)) - 1]) / (2.0 * np.pi)
-    hz = np.array([line.frequency_hz(speed or 0.0) for line in lines])
-    inside = hz <= top if len(lines) else np.zeros(0, dtype=bool)
-    beyond = [line.name for line, near in zip(lines, inside, strict=True) if not near]
+    chosen = tuple(line for line in lines if line.frequency_hz(speed or 0.0) <= top)
+    beyond = [line.name for line in lines if line not in chosen]
     notes = (f"excitations above the highest mode ({top:.4g} Hz; --modes): {', '.join(beyond)}",) if beyond else ()
     shared: tuple[tuple[str, str], ...] = ()
     if sharing:
         shared = tuple(load_shares(solved(model, Plan(1), speed, silent).equilibrium))
         if not shared:
             notes = (*notes, "load sharing: no gear of the model shares its load among meshes")
-    chosen = tuple(line for line, near in zip(lines, inside, strict=True) if near)
-    study = Study(
-        family,
-        min(modes, len(nominal.omega)),
-        wide,
-        least,
-        nominal,
-        (),
-        chosen,
-        hz[inside],
-        participation,
-        FormNames.of(family.spreads.numbers.model, speed),
-        shared,
-    )
+    study = Study(family, min(modes, len(nominal.omega)), wide, least, nominal, (), chosen, participation, shared)
     return replace(study, groups=groups_of(study, Z[:_PILOTS])), error, len(judges), notes

@@ -31,7 +31,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.sensitivity.forms import Shapes
+from rotorgear.analysis.sensitivity.forms import Floats, Shapes
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.state import SPRING_TABLES, State
@@ -60,8 +60,8 @@ class Change:
         forces: Q' X (n, m); None where shapes were not asked for.
     """
 
-    form: NDArray[np.float64]
-    kinetic: NDArray[np.float64]
+    form: Floats
+    kinetic: Floats
     forces: Shapes | None
 
 
@@ -89,7 +89,7 @@ def systems_beside(
     return above, below
 
 
-def beside(numbers: FreeNumbers, x: NDArray[np.float64], j: int, system: System, speed: float) -> tuple[System, System]:
+def beside(numbers: FreeNumbers, x: Floats, j: int, system: System, speed: float) -> tuple[System, System]:
     """The systems a `STEP` above and below x (p,) in free number j, as in `systems_beside`."""
     step = STEP * np.eye(len(x))[j]
     return systems_beside((numbers.at(x + step), numbers.at(x - step)), system, speed, numbers.addresses[j])
@@ -111,10 +111,10 @@ def springs_of(model: Model, system: System) -> dict[str, list[ElementGroup]]:
 
 def changes_of(
     numbers: FreeNumbers,
-    x: NDArray[np.float64],
+    x: Floats,
     system: System,
     speed: float,
-    eigenvalues: NDArray[np.float64],
+    eigenvalues: Floats,
     X: Shapes,
     *,
     shapes: bool = False,
@@ -146,9 +146,7 @@ def changes_of(
     return found
 
 
-def frequency_slopes(
-    system: System, speed: float, changes: list[Change], eigenvalues: NDArray[np.float64], X: Shapes
-) -> NDArray[np.float64]:
+def frequency_slopes(system: System, speed: float, changes: list[Change], eigenvalues: Floats, X: Shapes) -> Floats:
     """Return d ln f / dx (m, p) of modes with w^2 (m,) and shapes X (n, m), of modal mass 1 at standstill."""
     omega = np.sqrt(eigenvalues)
     size = 2.0 * eigenvalues
@@ -159,12 +157,7 @@ def frequency_slopes(
 
 
 def shape_slopes(
-    system: System,
-    speed: float,
-    changes: list[Change],
-    eigenvalues: NDArray[np.float64],
-    vectors: Shapes,
-    chosen: NDArray[np.intp],
+    system: System, speed: float, changes: list[Change], eigenvalues: Floats, vectors: Shapes, chosen: NDArray[np.intp]
 ) -> Shapes:
     """Return d phi / dx (n, k, p) of k chosen ones of the modes `vectors` (n, m) with w^2 (m,).
 
@@ -181,9 +174,7 @@ def shape_slopes(
     return found
 
 
-def bordered(
-    system: System, speed: float, eigenvalue: float, modes: Shapes, forces: Shapes, along: NDArray[np.float64]
-) -> Shapes:
+def bordered(system: System, speed: float, eigenvalue: float, modes: Shapes, forces: Shapes, along: Floats) -> Shapes:
     """phi' (n, p) by Nelson's system: Q phi' = -`forces` (n, p) outside `modes` (n, c), and C^H phi' = `along` (c, p)."""
     from scipy.sparse.linalg import splu
 
@@ -203,9 +194,7 @@ def bordered(
     return np.asarray(scale[:, None] * splu(sp.csc_array(S @ A @ S)).solve(right))[: len(modes)]
 
 
-def changed_forces(
-    above: System, below: System, width: float, speed: float, eigenvalues: NDArray[np.float64], X: Shapes
-) -> Shapes:
+def changed_forces(above: System, below: System, width: float, speed: float, eigenvalues: Floats, X: Shapes) -> Shapes:
     """Q' X (n, m) at w^2 (m,) from the systems at both ends of a width."""
     K = (above.stiffness(speed) @ X - below.stiffness(speed) @ X) / width
     M = (above.mass @ X - below.mass @ X) / width
@@ -215,7 +204,7 @@ def changed_forces(
     return np.asarray(K + 1j * np.sqrt(eigenvalues) * speed * G - eigenvalues * M)
 
 
-def _energies(groups: list[ElementGroup], q: Shapes) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _energies(groups: list[ElementGroup], q: Shapes) -> tuple[Floats, Floats]:
     """phi^H K phi and phi^H M phi, (m,) each, of some groups, summed element by element from strains, for all dofs q (a, m)."""
     strain = np.zeros(q.shape[1])
     kinetic = np.zeros(q.shape[1])

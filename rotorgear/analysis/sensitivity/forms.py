@@ -27,14 +27,12 @@ from rotorgear.solvers.eigen.reduced_pencil import largest_pairs
 from rotorgear.solvers.sparse.entries import times
 from rotorgear.system.system import System
 
+Floats: TypeAlias = NDArray[np.float64]
 # Shapes of modes in columns, complex where the system rotates.
-Shapes: TypeAlias = NDArray[np.complex128] | NDArray[np.float64]
+Shapes: TypeAlias = NDArray[np.complex128] | Floats
 
 # What is left of a shape beside others below this share is rounding.
 SAME = 1e-7
-STIFFNESS = 0
-MASS = 1
-GYROSCOPIC = 2
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,36 @@ class FormNames:
         """M J of its bending, skew, J (x, y) = (y, -x): i q^H M J q is the area swept about +z."""
         return self.kinetic(shaft) + 2
 
+    def participations(self, lines: tuple[ExcitationOrder, ...], forms: Floats, modes: FormModes) -> Floats:
+        """Share of what a line shakes in each mode, (l, m).
 
-def forms_of(system: System, speed: float, V: NDArray[np.float64]) -> NDArray[np.float64]:
+        Meshes in the strain energy; shafts in the kinetic energy, of their first order (unbalance) the forward whirl of bending:
+        q^H (M + i sign(W) M J) q / 2, half of it where nothing turns.
+        """
+        found = np.zeros((len(lines), len(modes.omega)))
+        sizes: dict[bool, Floats] = {}
+        for row, line in enumerate(lines):
+            part, whole = self.exciting(line, forms)
+            # Kinetic energies of all shaft orders, strain energies of all mesh orders are the same.
+            of_shafts = line.kind == "shaft"
+            if of_shafts not in sizes:
+                sizes[of_shafts] = diagonal(whole, modes.q)
+            found[row] = diagonal(part, modes.q) / sizes[of_shafts]
+        return found
+
+    def exciting(self, line: ExcitationOrder, forms: Shapes) -> tuple[Shapes, Shapes]:
+        """Hermitian forms (r, r) of what a line shakes and of the whole: their ratio in a mode is its participation."""
+        K, M = forms[:2]
+        if line.kind != "shaft":
+            return np.sum([forms[self.mesh(part)] for part in line.parts], axis=0), K
+        if not line.name.endswith(" 1x"):
+            return np.sum([forms[self.kinetic(part)] for part in line.parts], axis=0), M
+        bending = np.sum([forms[self.bending(part)] for part in line.parts], axis=0)
+        swept = np.sum([self.senses[part] * forms[self.swept(part)] for part in line.parts], axis=0)
+        return 0.5 * (bending + 1j * swept), M
+
+
+def forms_of(system: System, speed: float, V: Floats) -> Floats:
     """Return all forms (a, r, r) over shapes V (n, r) of the free dofs at a reference speed in rad/s."""
     names = FormNames.of(system.model, speed)
     q = np.asarray(system.dofs.expand(V))
@@ -89,21 +115,22 @@ def forms_of(system: System, speed: float, V: NDArray[np.float64]) -> NDArray[np
         turned[x] = q[x + 1]
         turned[x + 1] = -q[x]
     found = np.zeros((len(names), V.shape[1], V.shape[1]))
+    stiffness, mass, gyroscopic = found[:3]
     for group in system.groups_at(speed):
         m = group.matrices
         local = q[group.dofs]  # (e, d, r)
         if m.strain is not None and m.modulus is not None:
             strains = m.strain @ local
             K = _summed(strains, m.modulus @ strains)
-            found[STIFFNESS] += K
+            stiffness += K
             table, _, name = group.part.partition(".")
             if table == "meshes":
                 found[names.mesh(name)] += K
         if m.gyroscopic is not None and group.spin and speed:
-            found[GYROSCOPIC] += speed * group.spin * _summed(local, m.gyroscopic @ local)
+            gyroscopic += speed * group.spin * _summed(local, m.gyroscopic @ local)
         if m.mass is not None:
             M = _summed(local, m.mass @ local)
-            found[MASS] += M
+            mass += M
             if group.shaft in names.shafts:
                 found[names.kinetic(group.shaft)] += M
                 bends = np.array([motion == "bending" for motion in group.dof_motions])
@@ -114,7 +141,7 @@ def forms_of(system: System, speed: float, V: NDArray[np.float64]) -> NDArray[np
     return found
 
 
-def _summed(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+def _summed(left: Floats, right: Floats) -> Floats:
     """Sum over elements e of left_e^T right_e, (e, d, r) each."""
     r = left.shape[-1]
     return np.asarray(left.reshape(-1, r).T @ right.reshape(-1, r))
@@ -129,11 +156,11 @@ class FormModes:
         q: shapes (r, m), complex where the system rotates; q^H (K + w^2 M) q / 2 = w^2, so that modal mass is 1 at standstill.
     """
 
-    omega: NDArray[np.float64]
+    omega: Floats
     q: Shapes
 
 
-def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) -> FormModes:
+def modes_of(forms: Floats, count: int, least: float, wide: int) -> FormModes:
     """Return `count` elastic modes.
 
     Args:
@@ -142,10 +169,8 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
         least: frequency in rad/s below which a motion is rigid.
         wide: number of modes of K and M, which carry those of a rotating system.
     """
-    K = forms[STIFFNESS]
-    M = forms[MASS]
+    K, M, G = forms[:3]
     r = len(K)
-    rotates = bool(np.any(forms[GYROSCOPIC]))
     # All modes of so small a problem by divide and conquer cost half of what the lowest cost one by one.
     values, T = la.eigh(0.5 * (K + K.T), 0.5 * (M + M.T), driver="gvd", check_finite=False)
     last = min(r, wide)
@@ -154,10 +179,10 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
     elastic = values > least**2
     values = values[elastic]
     T = T[:, elastic]
-    if not rotates:
+    if not G.any():
         return FormModes(np.sqrt(values[:count]), T[:, :count])
     root = np.sqrt(values)
-    g = T.T @ forms[GYROSCOPIC] @ T
+    g = T.T @ G @ T
     g = 0.5 * (g - g.T)
     # The matrix is i A with a real skew A = [0  -L^(1/2); L^(1/2)  g], whose inverse B = [b g b  b; -b  0], b = L^(-1/2), needs
     # no solution.
@@ -170,73 +195,31 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
     return FormModes(omega, times(T, a))
 
 
-def overlaps(K: NDArray[np.float64], M: NDArray[np.float64], first: FormModes, second: FormModes) -> Shapes:
+def overlaps(K: Floats, M: Floats, first: FormModes, second: FormModes) -> Shapes:
     """Products of modes in the energy of K and M, (m, m'): 1 in size where they are the same mode, each of length 1."""
+
+    def energy(modes: FormModes, Kq: Shapes, wMq: Shapes) -> Floats:
+        return np.asarray(0.5 * np.sum(np.real(modes.q.conj() * (Kq + wMq * modes.omega)), axis=0))
+
     K_second = times(K, second.q)
     M_second = times(M, second.q) * second.omega
-    one = _energy(first, times(K, first.q), times(M, first.q) * first.omega)
-    other = _energy(second, K_second, M_second)
+    one = energy(first, times(K, first.q), times(M, first.q) * first.omega)
     conjugate = first.q.conj().T
     common: Shapes = np.matmul(conjugate, K_second) + first.omega[:, None] * np.matmul(conjugate, M_second)
-    common /= 2.0 * np.sqrt(np.outer(one, other))
+    common /= 2.0 * np.sqrt(np.outer(one, energy(second, K_second, M_second)))
     return common
 
 
-def _energy(modes: FormModes, Kq: Shapes, wMq: Shapes) -> NDArray[np.float64]:
-    """q^H (K + w^2 M) q / 2 of each mode (m,)."""
-    return np.asarray(0.5 * np.sum(np.real(modes.q.conj() * (Kq + wMq * modes.omega)), axis=0))
-
-
-def participations(
-    names: FormNames,
-    lines: tuple[ExcitationOrder, ...],
-    forms: NDArray[np.float64],
-    modes: FormModes,
-) -> NDArray[np.float64]:
-    """Share of what a line shakes in each mode, (l, m).
-
-    Meshes in the strain energy; shafts in the kinetic energy, of their first order (unbalance) the forward whirl of bending:
-    q^H (M + i sign(W) M J) q / 2, half of it where nothing turns.
-    """
-    found = np.zeros((len(lines), len(modes.omega)))
-    sizes: dict[bool, NDArray[np.float64]] = {}
-    for row, line in enumerate(lines):
-        part, whole = exciting_forms(names, line, forms)
-        # Kinetic energies of all shaft orders, strain energies of all mesh orders are the same.
-        of_shafts = line.kind == "shaft"
-        if of_shafts not in sizes:
-            sizes[of_shafts] = diagonal(whole, modes.q)
-        found[row] = diagonal(part, modes.q) / sizes[of_shafts]
-    return found
-
-
-def exciting_forms(
-    names: FormNames,
-    line: ExcitationOrder,
-    forms: Shapes,
-) -> tuple[Shapes, Shapes]:
-    """Hermitian forms (r, r) of what a line shakes and of the whole: their ratio in a mode is its participation."""
-    if line.kind != "shaft":
-        return np.sum([forms[names.mesh(part)] for part in line.parts], axis=0), forms[STIFFNESS]
-    if not line.name.endswith(" 1x"):
-        return np.sum([forms[names.kinetic(part)] for part in line.parts], axis=0), forms[MASS]
-    bending = np.sum([forms[names.bending(part)] for part in line.parts], axis=0)
-    swept = np.sum([names.senses[part] * forms[names.swept(part)] for part in line.parts], axis=0)
-    return 0.5 * (bending + 1j * swept), forms[MASS]
-
-
-def diagonal(form: Shapes, Q: Shapes) -> NDArray[np.float64]:
+def diagonal(form: Shapes, Q: Shapes) -> Floats:
     """q^H A q of the columns of Q (r, m), A Hermitian."""
     product = form @ Q if np.iscomplexobj(form) else times(np.real(form), Q)
     return np.real(np.sum(Q.conj() * product, axis=0))
 
 
-def with_shapes(
-    M: sp.csc_array, V: NDArray[np.float64], more: NDArray[np.float64], same: float = SAME
-) -> NDArray[np.float64]:
+def with_shapes(M: sp.csc_array, V: Floats, more: Floats, same: float = SAME) -> Floats:
     """V (n, r) with further shapes, all orthonormal in M; of which V has all but a share `same` fall away."""
 
-    def sizes(X: NDArray[np.float64]) -> NDArray[np.float64]:
+    def sizes(X: Floats) -> Floats:
         return np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0))
 
     before = sizes(more)
@@ -253,18 +236,19 @@ def with_shapes(
     return np.hstack([V, more - V @ (V.T @ (M @ more))])
 
 
-def complex_forms(forms: NDArray[np.float64]) -> NDArray[np.complex128]:
+def complex_forms(forms: Floats) -> NDArray[np.complex128]:
     """Forms (a, k, k) among complex shapes from those over their real parts, then their imaginary ones (a, 2 k, 2 k)."""
     k = forms.shape[1] // 2
     C = np.vstack([np.eye(k), 1j * np.eye(k)])
     return np.asarray(C.conj().T @ forms @ C)
 
 
-def coupling(K: Shapes, M: Shapes, G: Shapes, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Change of some frequencies (k,) as a matrix among their modes (k, k), in rad/s, from changes of K, M and W G over them.
+def coupling(change: Shapes, omega: Floats) -> NDArray[np.complex128]:
+    """Change of some frequencies (k,) as a matrix among their modes (k, k), in rad/s, from changes of K, M and W G over these.
 
     H_ab = phi_a^H (K' - w_a w_b M' + i (w_a + w_b) / 2 (W G)') phi_b / (2 sqrt(w_a w_b)): slopes of frequencies on its diagonal,
     and the slopes of modes that meet are its eigenvalues among them.
     """
+    K, M, G = change
     product = np.outer(omega, omega)
     return np.asarray((K - product * M + 0.5j * np.add.outer(omega, omega) * G) / (2.0 * np.sqrt(product)))

@@ -16,7 +16,7 @@ from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.registry import law_of
-from rotorgear.model.layout.state import FilmState, State
+from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import NonlinearElement
@@ -131,7 +131,7 @@ def state_in_time(model: Model, speed: float, direction: int | None = None) -> S
     return along_faces(model, [speed], replace(model.torque_flow(direction), films=settled_films(model, speed)))
 
 
-def settled_films(model: Model, speed: float) -> dict[str, FilmState]:
+def settled_films(model: Model, speed: float) -> dict[str, tuple[float | None, float | None]]:
     """The films of a model as they are in the equilibrium at a speed, by address: at one temperature and with one inlet.
 
     Motions in time are too fast to warm a film; and where oil flows in is a place of the bearing, which does not turn with the
@@ -158,7 +158,7 @@ def settled_films(model: Model, speed: float) -> dict[str, FilmState]:
     equilibrium, _ = over_cycle(equilibrate(system, speed), speed)
     laws: dict[str, Any] = {state.part.part: state.part.law.settled(state.d) for state in equilibrium.laws}
     return {
-        address: FilmState(laws[address].temperature if heats else None, laws[address].inlet if follows else None)
+        address: (laws[address].temperature if heats else None, laws[address].inlet if follows else None)
         for address, (heats, follows) in films.items()
     }
 

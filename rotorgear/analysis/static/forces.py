@@ -55,12 +55,10 @@ def _in_seats(equilibrium: Equilibrated) -> Iterator[tuple[BearingSeat, np.ndarr
     """The seat of each bearing and nonlinear element that is in one, and force and moment (6,) on its shaft."""
     system = equilibrium.system
     forces = bearing_forces(equilibrium)
-    for table in ("bearings", "nonlinear_elements"):
-        for part in getattr(system.model, table):
-            seat = system.layout.seat(f"{table}.{part}")
-            on_shaft = forces.get(part if table == "bearings" else f"nonlinear_elements.{part}")
-            if seat is not None and on_shaft is not None:
-                yield seat, on_shaft
+    for address, seat in system.layout.seats:
+        on_shaft = forces.get(address.removeprefix("bearings."))
+        if on_shaft is not None:
+            yield seat, on_shaft
 
 
 def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
@@ -80,9 +78,9 @@ def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
                 continue
             weight = body.body_mass * np.array(gravity)
             total += np.concatenate([weight, np.cross(body.centre, weight)])
-        for seat, on_shaft in seated:
-            if seat.casing == name:
-                place = body.seat_points[seat.number] + seat.arm
+        for (casing, number, arm), on_shaft in seated:
+            if casing == name:
+                place = body.seat_points[number] + arm
                 total -= np.concatenate([on_shaft[:3], on_shaft[3:] + np.cross(place, on_shaft[:3])])
         found[name] = -total
     return found
@@ -108,9 +106,9 @@ def seat_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force, and moment about its point, of what stands in a seat on the casing: "box.left" -> (6,)."""
     system = equilibrium.system
     found: dict[str, np.ndarray] = {}
-    for seat, on_shaft in _in_seats(equilibrium):
-        name = f"{seat.casing}.{system.layout.casing(seat.casing).seats[seat.number]}"
-        moment = on_shaft[3:] + np.cross(seat.arm, on_shaft[:3])
+    for (casing, number, arm), on_shaft in _in_seats(equilibrium):
+        name = f"{casing}.{system.layout.casing(casing).seats[number]}"
+        moment = on_shaft[3:] + np.cross(arm, on_shaft[:3])
         found[name] = found.get(name, np.zeros(6)) - np.concatenate([on_shaft[:3], moment])
     return found
 

@@ -141,7 +141,7 @@ def _result(found: AlongFaces, speed: float | None, estimate: float) -> StaticRe
     parameters, units, derivatives, underivable = sensitivities(equilibrium)
     shares, share_change = share_rows(equilibrium, derivatives)
     approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
-    loops = system.layout.assembly.loops
+    together = system.layout.assembly
     # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
     count = equilibrium.motions.shape[1]
     free = f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
@@ -175,7 +175,10 @@ def _result(found: AlongFaces, speed: float | None, estimate: float) -> StaticRe
         force_derivative=derivatives,
         share_derivative=share_change,
         mesh_phase=phases_in_pitches(system.state),
-        assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
+        assembly=tuple(
+            LoopAssembly(mesh, closing, math.degrees(together.clocking.get(closing, 0.0)), rest)
+            for mesh, closing, rest in together.loops
+        ),
         torque={item.name: item.torque for item in system.state.applied},
         load_force={load.address: load.constant for load in system.layout.external_loads},
         point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, nodes, moved).items()},
@@ -247,9 +250,9 @@ def _warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[Note]:
     what = "closes a loop that can't be put together with the clockings given"
     why = "leave out the clocking of one of its gears and it closes the loop"
     notes += [
-        Note(f"meshes.{loop.mesh}", what, why, f"{loop.rest:+.4f} pitches are missing")
-        for loop in layout.assembly.loops
-        if not loop.gear and abs(loop.rest) > 1e-6
+        Note(f"meshes.{mesh}", what, why, f"{rest:+.4f} pitches are missing")
+        for mesh, closing, rest in layout.assembly.loops
+        if not closing and abs(rest) > 1e-6
     ]
     for name, face in zip(lines.names, found.faces, strict=True):
         notes += [Note(f"meshes.{name}", note) for note in face.warnings] if face is not None else []

@@ -10,6 +10,7 @@ from rotorgear.model.checks.sizes import six_by_six
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.casing import Seat
 from rotorgear.model.parts.fields import MOTIONS
+from rotorgear.model.parts.gear import BLANK
 from rotorgear.model.parts.problems import missing, not_default, shown, told
 from rotorgear.model.parts.tables import Tables
 
@@ -19,7 +20,6 @@ _MATERIAL = ("youngs_modulus", "poisson_ratio", "density")
 _PLACE = ("axis", "center", "from", "to", "radius")
 # Keys of a gear body.
 _OF_MESHES = ("unit", "material", "seat", "rim", "connection", "modes_to", "damping_ratio", "mass_tolerance")
-_OF_SIZES = ("rim_thickness", "web_thickness", "web_position", "hub_diameter", "hub_width")
 _UNIT = "files of meshes carry no unit of length; say unit = 'mm' or 'm'"
 
 
@@ -41,25 +41,22 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
                     what = "the name of a seat in the file of matrices"
                     yield Problem(f"{address}.seats.{bearing}", "a place", what)
             continue
-        if casing.interface:
-            hint = "the seats of a mesh stand under seats"
-            yield Problem(f"{address}.interface", "without matrices", "matrices beside it", hint)
-        if not casing.mesh:
-            yield missing(f"{address}.mesh", "the file of the mesh, such as 'box.msh'")
-        elif casing.unit is None:
-            yield missing(f"{address}.unit", _UNIT)
         given = [key for key in _MATERIAL if getattr(casing, key) is not None]
-        if casing.material is not None and given:
-            what = "one of the two ways to say what the casing is of"
-            yield Problem(address, f"material and {', '.join(given)}", what)
-        elif casing.material is None and not given and casing.mesh:
-            yield Problem(f"{address}.material", "", "missing", f"required, or {', '.join(_MATERIAL)}")
-        elif given:
-            for key in _MATERIAL:
-                if key not in given:
-                    yield Problem(f"{address}.{key}", "", "missing", f"required beside {', '.join(given)}")
-            if casing.poisson_ratio is not None and casing.poisson_ratio >= 0.5:
-                yield Problem(f"{address}.poisson_ratio", f"{casing.poisson_ratio:.4g}", "one from 0 to below 0.5")
+        these = ", ".join(given)
+        named = casing.material is not None
+        lacking = [key for key in _MATERIAL if key not in given] if given and not named else []
+        nu = casing.poisson_ratio or 0.0
+        under = "the seats of a mesh stand under seats"
+        yield from told(
+            address,
+            ("interface", casing.interface, "without matrices", "matrices beside it", under),
+            ("mesh", not casing.mesh, "", "missing", "required: the file of the mesh, such as 'box.msh'"),
+            ("unit", casing.mesh and casing.unit is None, "", "missing", f"required: {_UNIT}"),
+            ("", named and given, f"material and {these}", "one of the two ways to say what the casing is of"),
+            ("material", casing.mesh and not (named or given), "", "missing", f"required, or {', '.join(_MATERIAL)}"),
+            *((key, True, "", "missing", f"required beside {these}") for key in lacking),
+            ("poisson_ratio", not named and nu >= 0.5, f"{nu:.4g}", "one from 0 to below 0.5"),
+        )
         for set_name, mount in casing.mounts.items():
             yield from six_by_six(f"{address}.mounts.{set_name}", mount, None)
             yield from six_by_six(f"{address}.mounts.{set_name}", None, mount.damping)
@@ -71,12 +68,12 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
                 yield unknown(f"{address}.seats.{bearing}", bearing, seated, "a bearing")
             yield from _seat(f"{address}.seats.{bearing}", seat)
     # What stands in a casing has a seat there, and stands on nothing else.
-    for table in tables:
-        for name, part in getattr(model, table).items():
-            owner = model.casings.get(part.casing or "")
-            if owner is not None and owner.matrices is None and name not in owner.seats:
-                hint = f"add it: casings.{part.casing}.seats.{name} = 'name of a face set'"
-                yield Problem(f"{table}.{name}.casing", shown(part.casing), "a casing with a seat of this name", hint)
+    for address, part in model.parts_of(*tables):
+        owner = model.casings.get(part.casing or "")
+        name = address.partition(".")[2]
+        if owner is not None and owner.matrices is None and name not in owner.seats:
+            hint = f"add it: casings.{part.casing}.seats.{name} = 'name of a face set'"
+            yield Problem(f"{address}.casing", shown(part.casing), "a casing with a seat of this name", hint)
     for name, holder in model.bearings.items():
         if holder.casing is not None and holder.pedestal is not None:
             hint = "leave the pedestal out: the casing brings the flexibility of the seat"
@@ -134,7 +131,7 @@ def gear_bodies(model: Tables) -> Iterator[Problem]:
         place = "an elastic body sits on its shaft at one place: say nodes = 1"
         yield from told(
             address,
-            *((key, True, *beside) for key in not_default(body, _OF_SIZES)),
+            *((key, True, *beside) for key in not_default(body, BLANK)),
             ("mesh", gear.integral, "of a gear that is cut on its shaft", "integral = false", cut),
             ("mesh", gear.node_count == 2, "of a herringbone gear with two nodes", "one node", place),
         )

@@ -9,29 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from rotorgear.errors import Problem
+from rotorgear.model.checks import names, sizes
 from rotorgear.model.checks.casings import casings, gear_bodies
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
 from rotorgear.model.checks.loads import loads, loads_that_stand_still, operating_point, train_problems
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
-from rotorgear.model.checks.names import (
-    PartName,
-    duplicate_names,
-    part_of,
-    points,
-    sound,
-    unknown_materials,
-    unknown_names,
-    without,
-)
-from rotorgear.model.checks.sizes import (
-    coupled_points,
-    materials,
-    matrices,
-    motions,
-    nonlinear_elements,
-    sections,
-    stations,
-)
+from rotorgear.model.checks.names import PartName
 from rotorgear.model.layout.layout import Layout
 
 
@@ -49,33 +32,33 @@ def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Probl
         found.append(Problem("shafts", "", "missing", "a model has at least one shaft, such as [shafts.input]"))
         dropped.add(("shafts", ""))
     # First the checks that look at one part and at names only, so that they need no other part to be in order.
-    rest = sound(model, dropped)
+    rest = names.sound(model, dropped)
     found += [
-        *motions(model),
-        *duplicate_names(model, dropped),
-        *unknown_names(model, dropped),
-        *unknown_materials(model, dropped),
-        *materials(rest),
-        *sections(rest),
+        *sizes.motions(model),
+        *names.duplicate_names(model, dropped),
+        *names.unknown_names(model, dropped),
+        *names.unknown_materials(model, dropped),
+        *sizes.materials(rest),
+        *sizes.sections(rest),
         *gear_problems(rest),
         *gear_bodies(rest),
-        *matrices(rest),
+        *sizes.matrices(rest),
         *casings(rest, dropped),
-        *nonlinear_elements(rest),
+        *sizes.nonlinear_elements(rest),
         *mesh_settings(rest),
-        *points(rest),
+        *names.points(rest),
         *loads(rest),
         *operating_point(rest, dropped),
     ]
     stages: tuple[Callable[[Layout], Iterable[Problem]], ...] = (
-        lambda rest: [*stations(rest.model), *coupled_points(rest.model)],
+        lambda rest: [*sizes.stations(rest.model), *sizes.coupled_points(rest.model)],
         mesh_problems,
         lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped), *loads_that_stand_still(rest)],
         massless_gears,
     )
     for stage in stages:
         # A material that is not there does not keep its part from being checked: `without` puts in the default.
-        dropped |= {part_of(problem.address) for problem in found if not problem.address.endswith(".material")}
+        dropped |= {names.part_of(problem.address) for problem in found if not problem.address.endswith(".material")}
         # The layout of a sound model is the one that its analyses go on with.
-        found += stage(Layout(without(model, dropped)) if found or dropped else layout)
+        found += stage(Layout(names.without(model, dropped)) if found or dropped else layout)
     return found

@@ -69,15 +69,11 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
         ways = "teeth, normal_module and width, or base_radius with mass and moments of inertia"
         yield Problem(address, "neither teeth nor a base radius", ways)
         return
-    found = [
-        missing(f"{address}.{key}", Gear.model_fields[key].description or "a value")
-        for key in ("teeth", "normal_module", "width")
-        if getattr(gear, key) is None
-    ]
-    found += [
-        Problem(f"{address}.{key}", degrees(getattr(gear, key)), _NOTHING, "it follows from the teeth")
-        for key in not_default(gear, ("base_helix_angle", "transverse_pressure_angle"))
-    ]
+    absent = [key for key in ("teeth", "normal_module", "width") if getattr(gear, key) is None]
+    found = [missing(f"{address}.{key}", Gear.model_fields[key].description or "a value") for key in absent]
+    for key in not_default(gear, ("base_helix_angle", "transverse_pressure_angle")):
+        angle = degrees(getattr(gear, key))
+        found.append(Problem(f"{address}.{key}", angle, _NOTHING, "it follows from the teeth"))
     found += _helix(address, gear, "helix_angle")
     found += pressure_angle_problems(f"{address}.normal_pressure_angle", gear.normal_pressure_angle)
     yield from found
@@ -126,16 +122,11 @@ def _teeth(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem
     allowance = gear.allowance
     thinner = "allowances make a tooth thinner, for the backlash"
     below = "a length not above the upper allowance"
+    upper = millimetres(allowance.upper)
     lower = millimetres(allowance.lower)
     yield from told(
         address,
-        (
-            "upper_thickness_allowance",
-            allowance.upper > 0.0,
-            millimetres(allowance.upper),
-            "0 or a negative length",
-            thinner,
-        ),
+        ("upper_thickness_allowance", allowance.upper > 0.0, upper, "0 or a negative length", thinner),
         ("lower_thickness_allowance", allowance.lower > allowance.upper, lower, below, thinner),
     )
     # The relief starts on the involute, below the tip.
@@ -253,12 +244,12 @@ def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterato
     found: list[Problem] = []
     if inertia_is_given(part):
         needs = {
-            "mass": ("bending", "axial"),
-            "polar_inertia": ("torsion", "bending"),
-            "diametral_inertia": ("bending",),
+            "mass": {"bending", "axial"},
+            "polar_inertia": {"torsion", "bending"},
+            "diametral_inertia": {"bending"},
         }
         for key, motions in needs.items():
-            if getattr(part, key) is None and any(model.has(motion) for motion in motions):
+            if getattr(part, key) is None and motions & set(model.motions):
                 found.append(missing(f"{address}.{key}", "a value beside the other inertias, 0 if it has none"))
         if isinstance(part, Disk):
             why = "a disk has sizes or given inertias, not both"

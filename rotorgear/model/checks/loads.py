@@ -14,11 +14,8 @@ from rotorgear.model.parts.problems import not_default, told
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import LARGEST
 
-_OF_TORQUES = (
-    *("kind", "torque", "power", "speed_power", "ripple", "ripple_order"),
-    *("step_to", "step_at", "step_duration"),
-)
-_OF_FORCES = ("gear", "point", "order", "order_of", "frequency", "phase")
+_TORQUES = ("kind", "torque", "power", "speed_power", "ripple", "ripple_order", "step_to", "step_at", "step_duration")
+_FORCES = ("gear", "point", "order", "order_of", "frequency", "phase")
 # Without one of these the train is not known as a whole, and a balance of torques would only repeat an earlier mistake.
 _OF_THE_TRAIN = {"shafts", "gears", "meshes", "couplings", "operation", "loads"}
 
@@ -34,7 +31,7 @@ def loads(model: Tables) -> Iterator[Problem]:
                 f"loads.{name}",
                 ("kind", load.kind is None, "", "missing", ways),
                 ("shaft", lone, "", "missing", "the shaft that the torque acts on"),
-                *((key, True, "", *beside) for key in not_default(load, _OF_FORCES)),
+                *((key, True, "", *beside) for key in not_default(load, _FORCES)),
             )
         else:
             point = model.points.get(load.point or "")
@@ -42,12 +39,13 @@ def loads(model: Tables) -> Iterator[Problem]:
 
 
 def _force(address: str, load: Load, *, on_casing: bool) -> Iterator[Problem]:
-    of_torques = not_default(load, _OF_TORQUES)[:1]
-    either = f"a torque of the train ({', '.join(_OF_TORQUES)}), or a force and moment at a place, not both"
+    of_torques = not_default(load, _TORQUES)[:1]
+    either = f"a torque of the train ({', '.join(_TORQUES)}), or a force and moment at a place, not both"
     places = [key for key in ("shaft", "gear", "point") if getattr(load, key) is not None]
     place = places[0] if len(places) == 1 else ""
     ways = [key for key in ("order", "frequency", "history") if getattr(load, key) is not None]
-    history = load.history is not None
+    beside = place not in ("", "shaft") and load.at is not None
+    both = load.history is not None and (load.force is not None or load.moment is not None)
     columns = "one of them; the columns of the history are the forces"
     phase = load.phase and load.order is None and load.frequency is None
     lone = load.order_of is not None and load.order is None and not load.over_angle
@@ -56,19 +54,9 @@ def _force(address: str, load: Load, *, on_casing: bool) -> Iterator[Problem]:
         *((key, True, "", either, "give two loads") for key in of_torques),
         ("", not place, " and ".join(places) or "no place", "one of shaft (with at), gear, point"),
         ("at", place == "shaft" and load.at is None, "", "missing", "required beside shaft: z on that shaft"),
-        (
-            "at",
-            place not in ("", "shaft") and load.at is not None,
-            f"at beside {place}",
-            f"a {place} alone, which says where it is",
-        ),
+        ("at", beside, f"at beside {place}", f"a {place} alone, which says where it is"),
         ("point", on_casing, f"'{load.point}', on a casing", "a point on a shaft", "frf takes it as an input"),
-        (
-            "",
-            history and (load.force is not None or load.moment is not None),
-            "a history beside force or moment",
-            columns,
-        ),
+        ("", both, "a history beside force or moment", columns),
         ("", len(ways) > 1, " and ".join(ways), "one of them, or none for a constant load"),
         ("phase", phase, "a phase", "beside an order or a frequency only", "a constant load has none"),
         ("order_of", lone, "a shaft", "beside an order, or a history over angle"),
@@ -90,18 +78,16 @@ def loads_that_stand_still(layout: Layout) -> Iterator[Problem]:
 def operating_point(model: Tables, broken: Collection[PartName]) -> Iterator[Problem]:
     """Power or torque, not both; a power has a speed; what goes in comes out."""
     operation = model.operation
-    given: dict[str, Operation | Load] = {f"loads.{name}": load for name, load in model.loads.items()}
-    speed_known = ("operation", "") in broken
-    speed = None
+    speed = model.operating_speed
+    given: dict[str, Operation | Load] = dict(model.parts_of("loads"))
     if operation:
         given["operation"] = operation
-        speed = operation.speed
-        speed_known = speed_known or bool(speed and abs(speed) > 1.0 / LARGEST)
         loads_known = not any(table == "loads" for table, _ in broken)
         loaded = operation.power is not None or operation.torque is not None
         if loaded and operation.output_shaft is None and not model.loads and loads_known:
             why = "required beside power or torque: the shaft that takes it"
             yield Problem("operation.output_shaft", "", "missing", why)
+    speed_known = ("operation", "") in broken or bool(speed and abs(speed) > 1.0 / LARGEST)
     value = "a power at standstill" if speed is not None else "a power without a speed"
     for address, part in given.items():
         both = part.torque is not None and part.power is not None

@@ -168,9 +168,8 @@ def _on_shafts(address: str, mesh: MeshLayout) -> Iterator[Problem]:
             low, high = mesh.face(helix) or (shaft.start, shaft.end)
             if low < shaft.start - slack or high > shaft.end + slack:
                 text = f"a face from {millimetres(low)} to {millimetres(high)} on shaft '{gear.shaft}'"
-                run = (
-                    f"a shaft under the whole face; it runs from {millimetres(shaft.start)} to {millimetres(shaft.end)}"
-                )
+                run = f"it runs from {millimetres(shaft.start)} to {millimetres(shaft.end)}"
+                run = f"a shaft under the whole face; {run}"
                 yield Problem(f"gears.{gear.name}.integral", text, run, f"{address} has tilt = true")
                 return
 
@@ -215,11 +214,8 @@ def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]
         wanted = bases / math.cos(angle) if angle else 0.0
         slack = LUMPED_TOLERANCE * wanted
     if given <= bases or (wanted and abs(given - wanted) > slack):
-        text = (
-            f"a centre distance of {millimetres(wanted)}"
-            if wanted
-            else f"more than both base radii, {millimetres(bases)}"
-        )
+        least = f"more than both base radii, {millimetres(bases)}"
+        text = f"a centre distance of {millimetres(wanted)}" if wanted else least
         hint = "check the positions of the shafts, the teeth, the module and the profile shifts"
         yield Problem(address, f"axes {millimetres(given)} apart", text, "" if mesh.pinion.part.lumped else hint)
 

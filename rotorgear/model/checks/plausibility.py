@@ -14,13 +14,13 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from rotorgear.model.checks.names import TABLES
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.bearings.geometry import UNIT, Judged
 from rotorgear.model.parts.fields import unit_of
 from rotorgear.model.parts.gear import DEPTHS
-from rotorgear.model.parts.load import Load, LoadHistory
-from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.load import LoadHistory
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
 from rotorgear.quantity import GRAVITY, RPM_PER_RAD_S
@@ -30,7 +30,7 @@ _SOLID = (1.4e3, 2.3e4)
 _DENSITIES = {"g/cm^3": 1e3, "kg/mm^3": 1e9, "t/mm^3": 1e12}
 # Usual stiffness of a bearing.
 _SPRING = "1e6 to 1e10 N/m"
-# A file of so many rows is sampled; a gap of so many of their spacings is one of missing rows.
+# A file with this many spacings or more is sampled; one wider than this many of the usual ones means that rows are missing.
 _MANY = 20
 _GAP = 10.0
 # Two turns: more is no angle of a drawing, nor a phase that one would write.
@@ -62,7 +62,7 @@ def _mass_of(layout: Layout, shaft: str) -> float:
         outer, bore, outer_end, bore_end = section.mass_diameters()
         area = 0.125 * math.pi * (outer**2 + outer_end**2 - bore**2 - bore_end**2)
         total += layout.model.material_of(shaft, section).density * section.length * area
-    return total + sum(body.body.mass for body in layout.bodies if body.shaft == shaft)
+    return total + sum(body.mass for _, place, body in layout.bodies if place.shaft == shaft)
 
 
 def _thickest(sections: Iterable[Section]) -> float:
@@ -81,10 +81,8 @@ def _materials(layout: Layout) -> Iterator[Judged]:
         E = material.youngs_modulus
         key = "youngs_modulus"
         got = f"{E:.6g} N/m^2"
-        slips: str | tuple[str, str] = (
-            f"{'MPa' if E > 5e3 else 'GPa'} meant?",
-            f"{UNIT[:-1]}, and that of the density?",
-        )
+        low = "MPa meant?" if E > 5e3 else "GPa meant?"
+        slips: str | tuple[str, str] = (low, "is its unit right, and that of the density?")
         if material.density < 50.0:
             known = [unit for unit, factor in _DENSITIES.items() if _SOLID[0] <= factor * material.density <= _SOLID[1]]
             if not known:  # without mass on purpose
@@ -235,13 +233,13 @@ def _couplings(layout: Layout) -> Iterator[Judged]:
 
 def _bodies(layout: Layout) -> Iterator[Judged]:
     """Radii of gyration of bodies, and eccentricities of unbalances."""
-    for body in layout.bodies:
-        mass = body.body.mass
-        polar = body.body.polar_inertia
+    for address, _, body in layout.bodies:
+        mass = body.mass
+        polar = body.polar_inertia
         if mass and polar:
             radius = math.sqrt(polar / mass)
             got = f"{polar:.4g} kg m^2 on {mass:.4g} kg, a radius of gyration of {radius:.3g} m"
-            yield f"{body.part}.polar_inertia", radius, (1e-3, 10.0), got, "{:g} to {:g} m", "kg mm^2 or g meant?"
+            yield f"{address}.polar_inertia", radius, (1e-3, 10.0), got, "{:g} to {:g} m", "kg mm^2 or g meant?"
     for name, unbalance in layout.model.unbalances.items():
         mass = _mass_of(layout, unbalance.shaft)
         if mass:
@@ -278,10 +276,8 @@ def _operation(layout: Layout) -> Iterator[Judged]:
         if load.history is not None:
             sections = model.shafts[load.shaft].sections if load.shaft is not None else ()
             yield from _history(f"loads.{name}.history", load.history, _thinnest(sections))
-    for table in type(model).model_fields:
-        parts = getattr(model, table)
-        for name, part in parts.items() if isinstance(parts, dict) else ():
-            yield from _angles(f"{table}.{name}", part)
+    for address, part in model.parts_of(*TABLES):
+        yield from _angles(address, part)
 
 
 def _speeds(layout: Layout) -> Iterator[Judged]:
@@ -337,12 +333,10 @@ def _first_bending(layout: Layout, name: str) -> float | None:
 def _loads(layout: Layout) -> Iterator[Judged]:
     """Torques, powers and forces against the strength of their shafts."""
     model = layout.model
-    given: dict[str, tuple[Operation | Load, str]] = {
-        f"loads.{name}": (load, load.shaft) for name, load in model.loads.items() if load.shaft is not None
-    }
+    given = [(address, load, load.shaft) for address, load in model.parts_of("loads") if load.shaft is not None]
     if model.operation:
-        given["operation"] = (model.operation, model.operation.input_shaft)
-    for address, (part, shaft) in given.items():
+        given.append(("operation", model.operation, model.operation.input_shaft))
+    for address, part, shaft in given:
         thinnest = _thinnest(model.shafts[shaft].sections)
         ripple = getattr(part, "ripple", 0.0)
         yield f"{address}.ripple", ripple, (0.0, 3.0), f"{ripple:.4g}", "0 to 1", "percent meant?"
@@ -357,14 +351,8 @@ def _loads(layout: Layout) -> Iterator[Judged]:
             thick = f"in a shaft of {1e3 * thinnest:.3g} mm"
             got = f"{torque:.4g} N m, a shear stress of {1e-6 * stress:.3g} MPa {thick}"
             slips = ("kN m or kW meant?", "N mm or W meant?")
-            yield (
-                f"{address}.{'torque' if part.torque else 'power'}",
-                stress,
-                (3e4, 1.5e9),
-                got,
-                "0.03 to 1500 MPa",
-                slips,
-            )
+            key = "torque" if part.torque else "power"
+            yield f"{address}.{key}", stress, (3e4, 1.5e9), got, "0.03 to 1500 MPa", slips
 
 
 def _along(address: str, force: float, thickness: float) -> Judged:

@@ -7,19 +7,19 @@ from itertools import islice, pairwise
 
 from rotorgear.errors import AnalysisError, Problem
 from rotorgear.model.checks.names import ON_SHAFTS, unknown
-from rotorgear.model.parts.problems import missing, shown, told
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.problems import shown, told
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
     Bearing,
     DampingMatrix,
-    NonlinearElement,
     StiffnessMatrix,
     TableRow,
     element_law,
     law_parameters,
 )
 from rotorgear.model.parts.tables import Tables
-from rotorgear.quantity import RPM_PER_RAD_S, millimetres, nearest
+from rotorgear.quantity import RPM_PER_RAD_S, did_you_mean, millimetres, nearest
 
 
 def motions(model: Tables) -> Iterator[Problem]:
@@ -32,18 +32,13 @@ def materials(model: Tables) -> Iterator[Problem]:
     """A material has one of nu and G beside E, and nu is one of a stable material."""
     for name, material in model.materials.items():
         given = (material.poisson_ratio is not None, material.shear_modulus is not None)
+        both = "poisson_ratio and shear_modulus"
         nu = f"a Poisson's ratio of {material.nu:.4g}"
         follows = "it follows from nu = E/2G - 1" if material.shear_modulus else ""
         yield from told(
             f"materials.{name}",
             ("", not any(given), "neither poisson_ratio nor shear_modulus", "one of them"),
-            (
-                "",
-                all(given),
-                "poisson_ratio and shear_modulus",
-                "one of them",
-                "the other follows from E = 2 G (1 + nu)",
-            ),
+            ("", all(given), both, "one of them", "the other follows from E = 2 G (1 + nu)"),
             ("", sum(given) == 1 and not -1.0 < material.nu < 0.5, nu, "one between -1 and 0.5", follows),
         )
 
@@ -159,56 +154,50 @@ def six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: Damping
 
 def nonlinear_elements(model: Tables) -> Iterator[Problem]:
     """Every element names a law, gives its parameters, and acts on as many displacements as the law has."""
-    for name, element in model.nonlinear_elements.items():
-        yield from _element(f"nonlinear_elements.{name}", element)
-
-
-def _element(address: str, element: NonlinearElement) -> Iterator[Problem]:
+    if not model.nonlinear_elements:
+        return
     # Laws are compiled: they are loaded for models that name one only.
     from rotorgear.forces.registry import law_of, names
 
-    if element.law not in names():
-        yield unknown(f"{address}.law", element.law, list(names()), "a force law")
-        return
-    law = law_of(element.law)
-    declared = law.declared()
-    wrong = [name for name in element.parameters if name not in declared]
-    _, refused = law_parameters(law, element.parameters)
-    absent = [
-        name
-        for name in law.required()
-        if name not in element.parameters and name != law.shaft_ratio and nearest(name, wrong) == ""
-    ]
-    for name in wrong:
-        guess = nearest(name, list(declared))
-        hint = f"did you mean '{guess}'?" if guess else "valid here: " + ", ".join(declared)
-        yield Problem(f"{address}.parameters.{name}", "", f"unknown parameter of {element.law}", hint)
-    for name, expected in refused.items():
-        yield Problem(f"{address}.parameters.{name}", shown(element.parameters[name]), expected, declared[name].meaning)
-    yield from (missing(f"{address}.parameters.{name}", declared[name].meaning) for name in absent)
-    if wrong or refused or absent:
-        return
-    try:
-        made = element_law(element, 1.0)
-    except AnalysisError as error:
-        yield Problem(f"{address}.parameters", str(error), "parameters that go together")
-        return
-    count = f"{made.components} direction{'s'[: made.components != 1]}"
-    other = made.components != len(element.directions)
-    lone = element.to_at is not None and element.to_shaft is None
-    yield from told(
-        address,
-        ("directions", other, shown(list(element.directions)), f"{count}, as {element.law} has"),
-        ("to_at", lone, "without to_shaft", "the name of the second shaft beside it"),
-    )
+    for name, element in model.nonlinear_elements.items():
+        address = f"nonlinear_elements.{name}"
+        if element.law not in names():
+            yield unknown(f"{address}.law", element.law, list(names()), "a force law")
+            continue
+        law = law_of(element.law)
+        declared = law.declared()
+        _, refused = law_parameters(law, element.parameters)
+        wrong = [key for key in element.parameters if key not in declared]
+        given = {*element.parameters, law.shaft_ratio}
+        absent = [key for key in law.required() if key not in given and not nearest(key, wrong)]
+        unknown_key = f"unknown parameter of {element.law}"
+        valid = f"valid here: {', '.join(declared)}"
+        found = [("", unknown_key, key, did_you_mean(key, declared, valid)) for key in wrong]
+        found += [(shown(element.parameters[key]), text, key, declared[key].meaning) for key, text in refused.items()]
+        found += [("", "missing", key, f"required: {declared[key].meaning}") for key in absent]
+        yield from (Problem(f"{address}.parameters.{key}", got, wanted, hint) for got, wanted, key, hint in found)
+        if found:
+            continue
+        try:
+            made = element_law(element, 1.0)
+        except AnalysisError as error:
+            yield Problem(f"{address}.parameters", str(error), "parameters that go together")
+            continue
+        count = f"{made.components} direction{'s'[: made.components != 1]}"
+        other = made.components != len(element.directions)
+        lone = element.to_at is not None and element.to_shaft is None
+        yield from told(
+            address,
+            ("directions", other, shown(list(element.directions)), f"{count}, as {element.law} has"),
+            ("to_at", lone, "without to_shaft", "the name of the second shaft beside it"),
+        )
 
 
 def stations(model: Tables) -> Iterator[Problem]:
     """Every part stands on its shaft."""
-    for table in ON_SHAFTS:
-        for name, part in getattr(model, table).items():
-            offset = part.helix_offset if table == "gears" and part.node_count == 2 else 0.0
-            yield from _station(model, f"{table}.{name}.at", part.shaft, part.at, offset)
+    for address, part in model.parts_of(*ON_SHAFTS):
+        offset = part.helix_offset if isinstance(part, Gear) and part.node_count == 2 else 0.0
+        yield from _station(model, f"{address}.at", part.shaft, part.at, offset)
     for name, coupling in model.couplings.items():
         yield from _station(model, f"couplings.{name}.from_at", coupling.from_shaft, coupling.from_at)
         yield from _station(model, f"couplings.{name}.to_at", coupling.to_shaft, coupling.to_at)
@@ -216,10 +205,9 @@ def stations(model: Tables) -> Iterator[Problem]:
         if element.to_shaft is not None:
             at = element.at if element.to_at is None else element.to_at
             yield from _station(model, f"nonlinear_elements.{name}.to_at", element.to_shaft, at)
-    for table in ("loads", "unbalances", "points"):
-        for name, part in getattr(model, table).items():
-            if part.shaft is not None and part.at is not None:
-                yield from _station(model, f"{table}.{name}.at", part.shaft, part.at)
+    for address, part in model.parts_of("loads", "unbalances", "points"):
+        if part.shaft is not None and part.at is not None:
+            yield from _station(model, f"{address}.at", part.shaft, part.at)
 
 
 def _station(model: Tables, address: str, shaft: str, at: float | str, offset: float = 0.0) -> Iterator[Problem]:
@@ -231,12 +219,11 @@ def _station(model: Tables, address: str, shaft: str, at: float | str, offset: f
     run = f"shaft '{shaft}', which runs from {millimetres(part.start)} to {millimetres(part.end)}"
     if not part.sections:
         run = f"shaft '{shaft}', which has no sections and is one point at {millimetres(part.start)}"
-    value = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
-    yield from told(
-        address,
-        ("", offset, value, f"both helices on {run}", "nodes = 1 puts the whole gear at one place"),
-        ("", not offset, millimetres(z), f"a place on {run}"),
-    )
+    if not offset:
+        yield Problem(address, millimetres(z), f"a place on {run}")
+    else:
+        got = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
+        yield Problem(address, got, f"both helices on {run}", "nodes = 1 puts the whole gear at one place")
 
 
 def coupled_points(model: Tables) -> Iterator[Problem]:

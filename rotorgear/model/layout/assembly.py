@@ -6,7 +6,7 @@ With theta the direction of a tooth's middle, the pitch point lies at
 
 pitches from a tooth of pinion and gear. A tooth of one stands in a space of the other when a_p + a_g + 1/2 is whole. That
 fixes the gears one after the other, starting at the reference shaft; the last mesh of a loop asks for a clocking of its
-gear on the shaft, or leaves a rest. Parker and Lin, J. Mech. Design 126 (2004) 525, for planets.
+gear on the shaft, or some part of a pitch is missing. Parker and Lin, J. Mech. Design 126 (2004) 525, for planets.
 
 Then it is known, too, which teeth of a gear are in its meshes at one time. With phi = z s (theta - psi') the mesh phase of a
 gear that is not folded back into one turn, theta being the angle of its tooth 0 and psi' where the flank of that tooth touches
@@ -32,22 +32,6 @@ from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.layout.train import Train
 
 
-@dataclass(frozen=True)
-class Loop:
-    """How a loop closes at its last mesh.
-
-    Attributes:
-        mesh: the mesh that closes the loop; gear: the gear whose place on its shaft was left to close it, "" where none was.
-        clocking: angle of that gear on its shaft in rad, between plus and minus half its pitch.
-        rest: what is missing with the clockings of the file (0 for the gear that closes it), in pitches, -1/2 to 1/2.
-    """
-
-    mesh: str
-    gear: str
-    clocking: float
-    rest: float
-
-
 @dataclass
 class Assembly:
     """Angles (rad) when the mark of the reference shaft is at +x.
@@ -55,12 +39,13 @@ class Assembly:
     Attributes:
         shaft: direction of the mark of each shaft that meshes and couplings reach.
         clocking: gear -> angle of a tooth's middle from the mark of its shaft, where it is not 0.
-        loops: how each loop closes.
+        loops: the mesh that closes each loop; the gear whose place on its shaft was left to close it, "" where none was; and what
+            is missing with the clockings of the file, in pitches, -1/2 to 1/2.
     """
 
     shaft: dict[str, float]
     clocking: dict[str, float]
-    loops: list[Loop] = field(default_factory=list)
+    loops: list[tuple[str, str, float]] = field(default_factory=list)
 
     def angle(self, gear: GearLayout) -> float:
         """theta, direction of a tooth's middle."""
@@ -99,16 +84,14 @@ def put_together(
         mesh = min(open_ones or ready, key=lambda mesh: min(train.depth[gear.shaft] for gear in mesh.gears))
         waiting.remove(mesh)
         if reached[mesh.name] == 2:
-            # The clocking of a gear that is free yet closes the loop; without one a rest is left.
+            # The clocking of a gear that is free yet closes the loop; without one a part of a pitch is missing.
             rest = _wrapped(sum(_pitches(done, mesh, gear) for gear in mesh.gears) + 0.5, 1.0)
             rest = 0.0 if abs(rest) < 1e-9 else rest
-            loop = Loop(mesh.name, "", 0.0, rest)
-            for gear in mesh.gears:
-                if not loop.gear and gear.name not in fixed and gear.name not in done.clocking:
-                    pitch = 2.0 * math.pi / (gear.part.teeth or 1)
-                    done.clocking[gear.name] = _wrapped(pitch * rest, pitch)
-                    loop = Loop(mesh.name, gear.name, done.clocking[gear.name], rest)
-            done.loops.append(loop)
+            free = [gear for gear in mesh.gears if gear.name not in fixed and gear.name not in done.clocking]
+            for gear in free[:1]:
+                pitch = 2.0 * math.pi / (gear.part.teeth or 1)
+                done.clocking[gear.name] = _wrapped(pitch * rest, pitch)
+            done.loops.append((mesh.name, free[0].name if free else "", rest))
         else:
             wanted, known = mesh.gears if mesh.gear.shaft in done.shaft else (mesh.gear, mesh.pinion)
             fit = _pitches(done, mesh, known) % 1.0 + 0.5
@@ -131,64 +114,49 @@ def _wrapped(value: float, period: float) -> float:
     return value - period * round(value / period)
 
 
-@dataclass(frozen=True)
-class ToothNumbers:
-    """Where maps of loaded teeth begin.
-
-    Attributes:
-        ahead: mesh -> base pitches by which its map is ahead when the reference mark is at +x; 0 where none is named.
-        unknown: gears whose teeth differ and whose meshes can't all begin with the teeth that stand there.
-    """
-
-    ahead: Mapping[str, int]
-    unknown: tuple[str, ...]
-
-
 def tooth_numbers(
     assembly: Assembly,
     train: Train,
     meshes: Iterable[MeshLayout],
     direction: int,
     pressed: Mapping[str, tuple[int, bool]],
-) -> ToothNumbers:
-    """Find them.
+) -> tuple[dict[str, int], list[str]]:
+    """Find where maps of loaded teeth begin.
 
     Args:
         assembly: angles of the gears. train: senses of their shafts.
         meshes: those of the model.
         direction: +1 or -1, sense in which the reference shaft turns.
         pressed: mesh -> which flanks carry: the sense of the torque on the pinion about +z, and whether the pinion drives.
+
+    Returns:
+        Mesh -> base pitches by which its map is ahead when the reference mark is at +x, 0 where none is named; and the gears
+        whose teeth differ and whose meshes can't all begin with the teeth that stand there.
     """
     wanted: dict[str, list[tuple[GearLayout, int]]] = {}
     unknown = []
     for name, shared in unlike_gears(meshes).items():
-        numbers = {mesh.name: _tooth(assembly, train, direction, mesh, name, pressed[mesh.name][0]) for mesh in shared}
+        numbers = [_tooth(assembly, train, direction, mesh, name, pressed[mesh.name][0]) for mesh in shared]
         # Where the gear drives in one mesh and the pinion in another, the map of one runs against the order of the teeth.
         senses = {pressed[mesh.name][1] for mesh in shared}
-        if len(senses) > 1 or None in numbers.values():
+        known = [number for number in numbers if number is not None]
+        if len(senses) > 1 or len(known) < len(numbers):
             unknown.append(name)
             continue
-        first = numbers[shared[0].name]
-        for mesh in shared:
-            number = numbers[mesh.name]
-            assert number is not None
-            assert first is not None
-            wanted.setdefault(mesh.name, []).append(
-                (mesh.pinion if mesh.pinion.name == name else mesh.gear, number - first)
-            )
+        for mesh, number in zip(shared, known, strict=True):
+            gear = mesh.pinion if mesh.pinion.name == name else mesh.gear
+            wanted.setdefault(mesh.name, []).append((gear, number - known[0]))
     ahead = {}
     for mesh_name, gears in wanted.items():
         # The smallest number with the wanted rests by all numbers of teeth, if there is one.
         rests = [(number, gear.part.teeth or 1) for gear, number in gears]
-        rest, divisor = rests[0]
         period = math.lcm(*(teeth for _, teeth in rests))
-        fits = (n for n in range(rest % divisor, period, divisor) if all((n - r) % z == 0 for r, z in rests))
-        found = next(fits, None)
+        found = next((n for n in range(period) if all((n - rest) % teeth == 0 for rest, teeth in rests)), None)
         if found is None:
             unknown += [gear.name for gear, _ in gears]
         else:
             ahead[mesh_name] = found
-    return ToothNumbers(ahead, tuple(dict.fromkeys(unknown)))
+    return ahead, unknown
 
 
 def unlike_gears(meshes: Iterable[MeshLayout]) -> dict[str, list[MeshLayout]]:
@@ -202,22 +170,18 @@ def unlike_gears(meshes: Iterable[MeshLayout]) -> dict[str, list[MeshLayout]]:
     return {name: shared for name, shared in found.items() if len(shared) > 1}
 
 
-def _tooth(
-    assembly: Assembly, train: Train, direction: int, mesh: MeshLayout, name: str, torque_sense: int
-) -> int | None:
+def _tooth(assembly: Assembly, train: Train, direction: int, mesh: MeshLayout, name: str, pressed: int) -> int | None:
     """Number of the tooth of a gear that stands at the pitch point of a mesh; None where the file gives the phase instead."""
     is_pinion = mesh.pinion.name == name
-    gear = mesh.pinion if is_pinion else mesh.gear
     if mesh.part.phase is not None or not {mesh.pinion.shaft, mesh.gear.shaft} <= assembly.shaft.keys():
         return None
 
     def turns(gear: GearLayout, towards: float, half: float) -> float:
-        sense = direction * train.sense(gear.shaft)
         pitches = (gear.part.teeth or 0) * (assembly.angle(gear) - towards) / (2.0 * math.pi)
-        return sense * (pitches + torque_sense * half)
+        return direction * train.sense(gear.shaft) * (pitches + pressed * half)
 
     half = mesh.half_tooth * (mesh.pinion.part.teeth or 0) / (2.0 * math.pi)
     phase = turns(mesh.pinion, mesh.psi, half) % 1.0
     if is_pinion:
-        return round(turns(gear, mesh.psi, half) - phase)
-    return round(turns(gear, mesh.psi + math.pi, 0.5 - half) - phase)
+        return round(turns(mesh.pinion, mesh.psi, half) - phase)
+    return round(turns(mesh.gear, mesh.psi + math.pi, 0.5 - half) - phase)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +20,7 @@ from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import LIBRARY, Material, Place
 from rotorgear.model.parts.tables import Tables
 from rotorgear.progress import listener
-from rotorgear.quantity import millimetres, nearest
+from rotorgear.quantity import did_you_mean, millimetres
 
 if TYPE_CHECKING:
     from rotorgear.casings.patches import Cylinder
@@ -32,18 +31,13 @@ if TYPE_CHECKING:
 _OFF_AXIS = 5e-3
 
 
-@dataclass(frozen=True)
-class BearingSeat:
-    """The seat of a bearing or nonlinear element.
+# Settings that casings and gear bodies have by one name.
+_SAME = ("connection", "modes_to", "damping_ratio", "mass_tolerance")
 
-    Attributes:
-        casing: name of its casing; number: of the seat, counted from 0.
-        arm: (3,) from the reference point of the seat to the bearing, in m; the seat carries it rigidly.
-    """
 
-    casing: str
-    number: int
-    arm: np.ndarray
+# The seat of a bearing or nonlinear element: its casing, its number there, and the arm (3,) in m to the part from the reference
+# point of the seat, which carries it rigidly.
+BearingSeat = tuple[str, int, np.ndarray]
 
 
 def reduced(model: Tables, name: str) -> ReducedBody:
@@ -86,13 +80,10 @@ def casing_settings(model: Tables, name: str) -> CasingSettings:
             for place, mount in casing.mounts.items()
         ),
         seats=tuple((bearing, _place(seat)) for bearing, seat in casing.seats.items()),
-        connection=casing.connection,
         joins=tuple(JoinSettings(*one.faces, one.stiffness) for one in casing.joins),
-        modes_to=casing.modes_to,
-        damping_ratio=casing.damping_ratio,
         mass=casing.mass,
-        mass_tolerance=casing.mass_tolerance,
         splits=casing.splits,
+        **{key: getattr(casing, key) for key in _SAME},
     )
 
 
@@ -111,12 +102,9 @@ def wheel_settings(name: str, gear: Gear, material: Material) -> CasingSettings:
         unit=UNIT_LENGTHS[body.unit],
         material=Elastic(material.youngs_modulus, material.nu, material.density),
         seats=(("seat", _place(body.seat)), ("rim", _place(body.rim))),
-        connection=body.connection,
-        modes_to=body.modes_to,
-        damping_ratio=body.damping_ratio,
         mass=gear.mass,
-        mass_tolerance=body.mass_tolerance,
         table="gears",
+        **{key: getattr(body, key) for key in _SAME},
     )
 
 
@@ -167,8 +155,7 @@ def find_seat(model: Tables, address: str, place: Place, body_of: Callable[[str]
     if model.casings[casing].matrices is not None and said is not None and said.set is not None:
         wanted = said.set  # a file of matrices has names of its own
     if wanted not in body.seats:
-        guess = nearest(wanted, list(body.seats))
-        hint = f"did you mean '{guess}'?" if guess else f"there is: {', '.join(body.seats) or 'none'}"
+        hint = did_you_mean(wanted, body.seats, f"there is: {', '.join(body.seats) or 'none'}")
         raise AnalysisError(
             f"{address}.casing: casing '{casing}' has no seat '{wanted}': {hint} "
             f"(casings.{casing}.seats says which seat a bearing stands in)"
@@ -183,4 +170,4 @@ def find_seat(model: Tables, address: str, place: Place, body_of: Callable[[str]
             f"{millimetres(off)}: give the shaft the position {millimetres(float(body.seat_points[number][0]))}, "
             f"{millimetres(float(body.seat_points[number][1]))}, or name another seat"
         )
-    return BearingSeat(casing, number, arm)
+    return casing, number, arm

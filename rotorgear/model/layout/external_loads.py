@@ -56,10 +56,8 @@ class ExternalLoad:
         return held
 
 
-def external_loads(
-    model: Tables, train: Train, places_of: Callable[[str], tuple[Place, ...]]
-) -> tuple[ExternalLoad, ...]:
-    """All forces and moments of a model; `places_of` tells the places of a load by its address."""
+def external_loads(model: Tables, train: Train, places: Callable[[str], tuple[Place, ...]]) -> tuple[ExternalLoad, ...]:
+    """All forces and moments of a model; `places` tells the places of a load by its address."""
     fixed = [support.shaft for support in model.supports.values() if {"torsion", "all"} & set(support.fixed)]
     held = {train.group[shaft] for shaft in fixed}
     found = []
@@ -67,8 +65,8 @@ def external_loads(
         if load.is_torque:
             continue
         address = f"loads.{name}"
-        places = places_of(address)
-        shaft = places[0].shaft
+        there = places(address)
+        shaft = there[0].shaft
         counted = load.order_of or shaft
         ratio = train.ratio(counted)
         given = np.array([*(load.force or (0.0,) * 3), *(load.moment or (0.0,) * 3)])
@@ -77,7 +75,7 @@ def external_loads(
         found.append(
             ExternalLoad(
                 address=address,
-                places=places,
+                places=there,
                 constant=load.history.mean if load.history else nothing if varies else given,
                 amplitude=given if varies else nothing,
                 order=(load.order or 0.0) * ratio,

@@ -7,13 +7,13 @@ broken file allow.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, hollow_cylinder, solid_blank
+from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.model.parts.gear import Flank, Gear
+from rotorgear.model.parts.gear import BLANK, DEPTHS, Flank, Gear
 from rotorgear.model.parts.shaft import Disk, Place
 from rotorgear.model.parts.tables import Tables
 
@@ -131,11 +131,7 @@ class GearLayout:
             gear.width,
             self.material.density,
             root_diameter=self.geometry.root_diameter,
-            rim_thickness=gear.body.rim_thickness,
-            web_thickness=gear.body.web_thickness,
-            web_position=gear.body.web_position,
-            hub_diameter=gear.body.hub_diameter,
-            hub_width=gear.body.hub_width,
+            **{key: getattr(gear.body, key) for key in BLANK},
         )
         if self.helices == 1:
             return helix
@@ -158,13 +154,13 @@ class GearLayout:
         return replace(helix, flexibility=scale * helix.flexibility)
 
     @property
-    def node_bodies(self) -> tuple[NodeBody, ...]:
-        """The body at each node. Two halves at +-offset have the mass and inertias of the whole when tied rigidly."""
+    def node_bodies(self) -> tuple[tuple[str, Place, RigidBody], ...]:
+        """Address, place and body at each node. Two halves that are tied rigidly have the mass and inertias of the whole."""
         body = self.body
         if len(self.places) == 2:
             tilt = 0.5 * (body.diametral_inertia - body.mass * self.part.helix_offset**2)
             body = RigidBody(0.5 * body.mass, 0.5 * body.polar_inertia, tilt)
-        return tuple(NodeBody(f"gears.{self.name}", *place, body) for place in self.places)
+        return tuple((f"gears.{self.name}", place, body) for place in self.places)
 
     @cached_property
     def flank(self) -> FlankModification:
@@ -211,15 +207,9 @@ class GearLayout:
         return FlankModification(
             tip_relief=self.part.tip_relief,
             tip_relief_length=tip - roll(self.part.tip_relief_diameter),
-            root_relief=given.root_relief,
+            **{key: getattr(given, key) for key in DEPTHS},
             root_relief_length=roll(given.root_relief_diameter) - outline.form_roll_length,
-            crowning=given.crowning,
-            end_relief=given.end_relief,
             end_relief_length=given.end_relief_length,
-            helix_slope=given.helix_slope,
-            profile_crowning=given.profile_crowning,
-            profile_slope=given.profile_slope,
-            bias=given.bias,
             tip_break=outline.tip_roll_length - tip,
             topography=grids.pop(None, None),
             tooth_topography=tuple((tooth, grid) for tooth, grid in grids.items() if tooth is not None),
@@ -256,16 +246,6 @@ class GearLayout:
         )
 
 
-@dataclass(frozen=True)
-class NodeBody:
-    """A rigid body at a node: which part, which shaft, where (m), and its RigidBody."""
-
-    part: str
-    shaft: str
-    z: float
-    body: RigidBody
-
-
 def inertia_is_given(part: Gear | Disk) -> bool:
     """Whether the part gives its mass or a moment of inertia itself."""
     return not (part.mass is None and part.polar_inertia is None and part.diametral_inertia is None)
@@ -274,19 +254,3 @@ def inertia_is_given(part: Gear | Disk) -> bool:
 def given_body(part: Gear | Disk) -> RigidBody:
     """Mass and inertias as the part gives them; what it leaves out is 0."""
     return RigidBody(part.mass or 0.0, part.polar_inertia or 0.0, part.diametral_inertia or 0.0)
-
-
-def disk_body(model: Tables, disk: Disk) -> RigidBody:
-    """Mass and inertias of a disk, given or of a plain cylinder.
-
-    Raises:
-        ValueError: the sizes make no disk; the text is what was expected.
-    """
-    if inertia_is_given(disk):
-        return given_body(disk)
-    bore = disk.bore
-    if bore is None:
-        shaft = model.shafts[disk.shaft]
-        bore = shaft.diameter_at(shaft.station(disk.at))
-    density = model.material_of(disk.shaft, name=disk.material).density
-    return hollow_cylinder(disk.outer_diameter or 0.0, bore, disk.width or 0.0, density)

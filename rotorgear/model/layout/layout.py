@@ -12,11 +12,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.errors import Problem
-from rotorgear.gears.geometry.blank import RigidBody
+from rotorgear.gears.geometry.blank import RigidBody, hollow_cylinder
 from rotorgear.model.layout.assembly import Assembly, put_together
 from rotorgear.model.layout.casings import BearingSeat, find_seat, reduced
 from rotorgear.model.layout.external_loads import ExternalLoad, external_loads
-from rotorgear.model.layout.gear_layout import GearLayout, NodeBody, disk_body
+from rotorgear.model.layout.gear_layout import GearLayout, given_body, inertia_is_given
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.layout.train import Train, walk
 from rotorgear.model.parts.load import Load
@@ -56,9 +56,8 @@ class Layout:
         """Two gears in mesh."""
         if name not in self._meshes:
             part = self.model.meshes[name]
-            self._meshes[name] = MeshLayout(
-                name, part, self.gear(part.pinion), self.gear(part.gear), lambda: self.train
-            )
+            pair = self.gear(part.pinion), self.gear(part.gear)
+            self._meshes[name] = MeshLayout(name, part, *pair, lambda: self.train)
         return self._meshes[name]
 
     @cached_property
@@ -87,6 +86,13 @@ class Layout:
             AnalysisError: the casing has no such seat, or the shaft does not run through it.
         """
         return find_seat(self.model, address, self.place(address), self.casing)
+
+    @property
+    def seats(self) -> Iterator[tuple[str, BearingSeat]]:
+        """Address and seat of each bearing and nonlinear element that stands in one; errors as of `seat`."""
+        for address, _ in self.model.parts_of("bearings", "nonlinear_elements"):
+            if (seat := self.seat(address)) is not None:
+                yield address, seat
 
     @property
     def gears(self) -> Iterator[GearLayout]:
@@ -147,8 +153,12 @@ class Layout:
         if table == "nonlinear_elements" and part.to_shaft is not None:
             to_at = part.at if part.to_at is None else part.to_at
             return self.at(part.shaft, part.at), self.at(part.to_shaft, to_at)
+        if table == "loads" and part.gear is not None:
+            return self.gear(part.gear).places
+        if table == "loads" and part.point is not None:
+            return self.places(f"points.{part.point}")[:1]
         if table == "loads":
-            return self._load_places(part)
+            return (self.load_place(part),)
         if table == "points" and part.on_casing is not None:
             return ()
         if table == "points" and part.on is not None:
@@ -168,20 +178,19 @@ class Layout:
         end = "start" if load.kind == "input" else "end"
         return self.at(load.on_shaft, end if load.at is None else load.at)
 
-    def _load_places(self, load: Load) -> tuple[Place, ...]:
-        if load.gear is not None:
-            return self.gear(load.gear).places
-        if load.point is not None:
-            return self.places(f"points.{load.point}")[:1]
-        return (self.load_place(load),)
-
     def disk_body(self, name: str) -> RigidBody:
-        """Mass and inertias of a disk.
+        """Mass and inertias of a disk, given or of a plain cylinder.
 
         Raises:
             ValueError: the sizes make no disk; the text is what was expected.
         """
-        return disk_body(self.model, self.model.disks[name])
+        disk = self.model.disks[name]
+        if inertia_is_given(disk):
+            return given_body(disk)
+        place = self.place(f"disks.{name}")
+        bore = self.model.shafts[place.shaft].diameter_at(place.z) if disk.bore is None else disk.bore
+        density = self.model.material_of(disk.shaft, name=disk.material).density
+        return hollow_cylinder(disk.outer_diameter or 0.0, bore, disk.width or 0.0, density)
 
     @cached_property
     def elastic_gears(self) -> dict[str, BlankTorsion]:
@@ -203,12 +212,11 @@ class Layout:
     @cached_property
     def turning_couplings(self) -> tuple[tuple[Place, Place, float], ...]:
         """Ends and torsional stiffness (N m/rad) of the couplings that make both shafts turn at one speed."""
-        found = []
-        for name, coupling in self.model.couplings.items():
-            if coupling.turns_both:
-                first, second = self.places(f"couplings.{name}")
-                found.append((first, second, coupling.stiffness.as_rows()[5][5]))
-        return tuple(found)
+        return tuple(
+            (self.at(c.from_shaft, c.from_at), self.at(c.to_shaft, c.to_at), c.stiffness.as_rows()[5][5])
+            for c in self.model.couplings.values()
+            if c.turns_both
+        )
 
     @cached_property
     def external_loads(self) -> tuple[ExternalLoad, ...]:
@@ -221,11 +229,11 @@ class Layout:
         return any(load.constant.any() for load in self.external_loads)
 
     @cached_property
-    def bodies(self) -> tuple[NodeBody, ...]:
-        """The rigid bodies of all gears, disks and point masses, one for each node; gears with a mesh are none."""
+    def bodies(self) -> tuple[tuple[str, Place, RigidBody], ...]:
+        """Address, place and rigid body of all gears, disks and point masses, one for each node; gears with a mesh are none."""
         found = [body for gear in self.gears if gear.part.body.mesh is None for body in gear.node_bodies]
         others = {f"disks.{name}": self.disk_body(name) for name in self.model.disks}
         for name, point in self.model.point_masses.items():
             others[f"point_masses.{name}"] = RigidBody(point.mass, 0.0, 0.0)
-        found += [NodeBody(address, *self.place(address), body) for address, body in others.items()]
+        found += [(address, self.place(address), body) for address, body in others.items()]
         return tuple(found)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.backlash import Backlash, normal_backlash
+from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry, working_pressure_angle_from_shifts
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from rotorgear.gears.maps.contact_map import ContactMap
     from rotorgear.gears.maps.face_map import FaceMap
     from rotorgear.gears.stiffness.face_load import FaceLoad
-    from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
+    from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothBody, ToothPair
 
 # Positions in a mesh period at which a stiffness model is asked.
 POSITIONS = 64
@@ -80,10 +81,8 @@ class MeshLayout:
         pinion, gear: the two gears, as the file calls them.
     """
 
-    def __init__(
-        self, name: str, part: Mesh, pinion: GearLayout, gear: GearLayout, train_of: Callable[[], Train]
-    ) -> None:
-        self._train_of = train_of
+    def __init__(self, name: str, part: Mesh, pinion: GearLayout, gear: GearLayout, train: Callable[[], Train]) -> None:
+        self._train = train
         self.name = name
         self.part = part
         self.pinion = pinion
@@ -92,7 +91,7 @@ class MeshLayout:
     @property
     def train(self) -> Train:
         """The train that the mesh is part of, walked when it is asked for: checks look at meshes before."""
-        return self._train_of()
+        return self._train()
 
     @property
     def gears(self) -> tuple[GearLayout, GearLayout]:
@@ -153,6 +152,12 @@ class MeshLayout:
         distance = self.centre_line[0] if self.centre_line else None
         return pair_geometry(self.pinion.geometry, self.gear.geometry, centre_distance=distance, width=self.width)
 
+    def _toothed(self, lacking: str) -> tuple[GearGeometry, GearGeometry, PairGeometry]:
+        """The geometry of gears that are given by their teeth; others lack what is asked for."""
+        if self.pinion.geometry is None or self.gear.geometry is None or self.pair is None:
+            raise AnalysisError(f"meshes.{self.name}: gears given by their base radius have no {lacking}.")
+        return self.pinion.geometry, self.gear.geometry, self.pair
+
     @cached_property
     def backlash(self) -> Backlash:
         """Normal backlash from the centre distance and the allowances.
@@ -160,14 +165,11 @@ class MeshLayout:
         Raises:
             AnalysisError: gears that are given by their base radius.
         """
-        if self.pinion.geometry is None or self.gear.geometry is None or self.pair is None:
-            raise AnalysisError(
-                f"meshes.{self.name}: gears given by their base radius have no backlash of their own; give one."
-            )
+        pinion, gear, pair = self._toothed("backlash of their own; give one")
         return normal_backlash(
-            self.pinion.geometry,
-            self.gear.geometry,
-            self.pair.centre_distance,
+            pinion,
+            gear,
+            pair.centre_distance,
             self.pinion.part.allowance,
             self.gear.part.allowance,
             self.part.centre_distance_allowance,
@@ -186,32 +188,31 @@ class MeshLayout:
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
         """The contacts of the mesh, without stiffness: one, or two for a herringbone pair from left to right."""
-        found = []
-        for helix in range(self.helices):
-            pinion = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
-            gear = self.gear.places[helix if len(self.gear.places) == 2 else 0]
-            low, high = self.face(helix) or (self.pinion.planes[helix], self.gear.planes[helix])
-            contact = Contact(
-                mesh=self.name,
-                helix=helix,
-                pinion=self.pinion.name,
-                gear=self.gear.name,
-                pinion_shaft=pinion.shaft,
-                gear_shaft=gear.shaft,
-                pinion_z=pinion.z,
-                gear_z=gear.z,
-                contact_z=0.5 * (low + high),
-                hand=self.pinion.hand if helix == 0 else -self.pinion.hand,
-                psi=self.psi,
-                pressure_angle=self.pressure_angle,
-                base_helix_angle=self.pinion.base_helix_angle,
-                pinion_base_radius=self.pinion.base_radius,
-                gear_base_radius=self.gear.base_radius,
-                stiffness=math.nan,
-                contact_position=self.part.contact_position,
-            )
-            found.append(contact)
-        return tuple(found)
+        return tuple(self._contact(helix) for helix in range(self.helices))
+
+    def _contact(self, helix: int) -> Contact:
+        pinion = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
+        gear = self.gear.places[helix if len(self.gear.places) == 2 else 0]
+        low, high = self.face(helix) or (self.pinion.planes[helix], self.gear.planes[helix])
+        return Contact(
+            mesh=self.name,
+            helix=helix,
+            pinion=self.pinion.name,
+            gear=self.gear.name,
+            pinion_shaft=pinion.shaft,
+            gear_shaft=gear.shaft,
+            pinion_z=pinion.z,
+            gear_z=gear.z,
+            contact_z=0.5 * (low + high),
+            hand=self.pinion.hand if helix == 0 else -self.pinion.hand,
+            psi=self.psi,
+            pressure_angle=self.pressure_angle,
+            base_helix_angle=self.pinion.base_helix_angle,
+            pinion_base_radius=self.pinion.base_radius,
+            gear_base_radius=self.gear.base_radius,
+            stiffness=math.nan,
+            contact_position=self.part.contact_position,
+        )
 
     @property
     def half_tooth(self) -> float:
@@ -232,13 +233,9 @@ class MeshLayout:
         from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
         from rotorgear.gears.tooth_fe.settings import ToothFe
 
-        if self.pinion.geometry is None or self.gear.geometry is None or self.pair is None:
-            raise AnalysisError(f"meshes.{self.name}: gears given by their base radius have no teeth to look at.")
         fe = self.part.tooth_fe
         return ToothPair(
-            self.pinion.geometry,
-            self.gear.geometry,
-            self.pair,
+            *self._toothed("teeth to look at"),
             self.width,
             self.pinion.tooth_body,
             self.gear.tooth_body,
@@ -304,11 +301,9 @@ class MeshLayout:
         if not self.has_loaded_teeth:
             return ()
         fe = self.teeth.fe
-        bodies = [(gear, fe.body_of(gear.blank)) for gear in self.gears]
         # Teeth that are cut on their shaft have no bore to turn against.
-        return tuple(
-            gear for gear, body in bodies if body == "wheel" and fe.excludes_torsion(body) and not gear.part.integral
-        )
+        bodies = [(gear, fe.body_of(gear.blank)) for gear in self.gears if not gear.part.integral]
+        return tuple(gear for gear, body in bodies if body == "wheel" and fe.excludes_torsion(body))
 
     def check_rims(self) -> None:
         """Loaded teeth on an elastic body are held where its rim is: below, its mesh gives, above the elements of the teeth.
@@ -327,11 +322,9 @@ class MeshLayout:
             if abs(held - wheel.rim_radius) <= _BETWEEN * module:
                 continue
             fitting = (root - wheel.rim_radius) / module
-            remedy = (
-                f"say meshes.{self.name}.tooth_fe.rim_thickness = {fitting:.3g}"
-                if fitting >= 1.0
-                else f"name a set of nodes at the radius {millimetres(held)} as gears.{gear.name}.body.rim"
-            )
+            remedy = f"say meshes.{self.name}.tooth_fe.rim_thickness = {fitting:.3g}"
+            if fitting < 1.0:
+                remedy = f"name a set of nodes at the radius {millimetres(held)} as gears.{gear.name}.body.rim"
             what = "would count twice" if held < wheel.rim_radius else "would be in neither"
             raise AnalysisError(
                 f"meshes.{self.name}.tooth_fe: the loaded teeth of {gear.name} are held at the radius {millimetres(held)}, and "
@@ -475,14 +468,15 @@ def _twelve_digits(value: float) -> float:
 
 def mirrored(teeth: ToothPair) -> ToothPair:
     """The pair seen from the other end of the face: that of the other hand, or with the other flanks in contact."""
-    bodies = [
-        replace(body, blank=body.blank and body.blank.mirrored()) for body in (teeth.first_body, teeth.second_body)
-    ]
+
+    def seen(body: ToothBody) -> ToothBody:
+        return replace(body, blank=body.blank and body.blank.mirrored())
+
     return replace(
         teeth,
         misalignment=-teeth.misalignment,
         first_flank=teeth.first_flank.mirrored(),
         second_flank=teeth.second_flank.mirrored(),
-        first_body=bodies[0],
-        second_body=bodies[1],
+        first_body=seen(teeth.first_body),
+        second_body=seen(teeth.second_body),
     )

@@ -19,9 +19,9 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from rotorgear.model.layout.assembly import ToothNumbers, tooth_numbers
+from rotorgear.model.layout.assembly import tooth_numbers
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
 from rotorgear.model.layout.spring import Spring, given_spring
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     Curves = Mapping[str, tuple[MeshStiffness, ...]]
     Faces = Mapping[str, tuple[FaceLoad, ...]]
     Misalignments = Mapping[str, tuple[tuple[float, ...], ...]]
+    Film = tuple[float | None, float | None]
 
 
 Kind = Literal["dynamic", "static"]
@@ -111,24 +112,12 @@ class MeshForce:
     def on_whole_face(self, mesh: MeshLayout) -> MeshForce:
         """The contact carrying evenly over its whole face, k b^2/12 against tilt: what is known without a load."""
         tilt_stiffness = self.contact.stiffness * mesh.width**2 / 12.0
-        askew = mesh.part.misalignment / mesh.width
-        return replace(self, face=FaceState(0.0, tilt_stiffness, 0.0, -tilt_stiffness * askew))
+        slope = mesh.part.misalignment / mesh.width
+        return replace(self, face=FaceState(0.0, tilt_stiffness, 0.0, -tilt_stiffness * slope))
 
 
 # Tables of the file whose parts linear analyses take as springs.
 SPRING_TABLES = ("bearings", "supports", "couplings", "nonlinear_elements")
-
-
-@dataclass(frozen=True)
-class FilmState:
-    """What an equilibrium found of an oil film, and motions in time keep; None of what follows from no equilibrium.
-
-    Attributes:
-        temperature: of the film (K). inlet: angle at which the oil flows in (rad).
-    """
-
-    temperature: float | None
-    inlet: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +166,8 @@ class State:
         faces: mesh -> how each helix carries along its face in equilibrium with the tilt of its shafts.
         cycle: mesh -> mean state of each helix over the mesh cycle, all loaded teeth of the gearbox in equilibrium together.
         tangents: address -> spring about the equilibrium, of a part that has a law alone.
-        films: address -> film that keeps its temperature and its inlet.
+        films: address -> temperature (K) and angle of the inlet (rad) that an equilibrium found of a film, and motions in time
+            keep; None of what follows from no equilibrium.
         mapped_at: mesh -> misalignments (m), falling, of the face map of each helix, where states next to each other share one,
             as long as they lie among these.
         operating: where the laws stand that `tangents` are of, at the lowest and the highest speed.
@@ -194,7 +184,7 @@ class State:
     faces: Faces = field(default_factory=dict)
     cycle: Mapping[str, tuple[MeshForce, ...]] = field(default_factory=dict)
     tangents: Mapping[str, Spring] = field(default_factory=dict)
-    films: Mapping[str, FilmState] = field(default_factory=dict)
+    films: Mapping[str, Film] = field(default_factory=dict)
     mapped_at: Misalignments = field(default_factory=dict)
     operating: tuple[OperatingPoint, ...] = ()
     notes: tuple[Note, ...] = ()
@@ -207,8 +197,7 @@ class State:
     @cached_property
     def springs(self) -> dict[str, Spring]:
         """Bearings, supports, couplings and nonlinear elements as linear analyses take them, by address."""
-        model = self.layout.model
-        given = ((f"{table}.{name}", part) for table in SPRING_TABLES for name, part in getattr(model, table).items())
+        given = self.layout.model.parts_of(*SPRING_TABLES)
         return {address: self.tangents.get(address) or given_spring(part) for address, part in given}
 
     def shaft_ratio(self, address: str) -> float:
@@ -229,7 +218,11 @@ class State:
         """The same state with the other stiffness of the contacts; one about the mesh cycle has one for both."""
         if self.flow is not None:
             return replace(self, kind=kind)
-        return replace(self, kind=kind, forces=tuple(self._with_stiffness(force, kind) for force in self.forces))
+        return self._with((self._with_stiffness(force, kind) for force in self.forces), kind=kind)
+
+    def _with(self, forces: Iterable[MeshForce], **changes: Any) -> State:
+        """The same state with other mean states of its contacts."""
+        return replace(self, forces=tuple(forces), **changes)
 
     def _with_stiffness(self, force: MeshForce, kind: Kind) -> MeshForce:
         """A contact with the stiffness about what is known of it."""
@@ -260,7 +253,7 @@ class State:
             start: of loaded teeth (N); None of a contact that keeps its own.
             faces: of loaded teeth that feel the tilt of their shafts; None of a contact that keeps its own, or has none.
         """
-        states = [
+        states = (
             replace(
                 state,
                 normal_force=float(F),
@@ -269,28 +262,25 @@ class State:
                 face=face or state.face,
             )
             for state, F, k, F_0, face in zip(self.forces, forces, stiffness, start, faces, strict=True)
-        ]
-        return replace(self, forces=tuple(states), flow=self.flow or self)
+        )
+        return self._with(states, flow=self.flow or self)
 
     def with_forces(self, forces: Iterable[float]) -> State:
         """The same flanks under other forces: N along the flank normal, one for each contact."""
         pairs = zip(self.forces, forces, strict=True)
-        return replace(self, forces=tuple(replace(state, normal_force=float(force)) for state, force in pairs))
+        return self._with(replace(state, normal_force=float(force)) for state, force in pairs)
 
     def on_other_flank(self, mesh: str) -> State:
         """The same state with one mesh working on its other flanks."""
-        forces = (state.on_other_flank if state.contact.mesh == mesh else state for state in self.forces)
-        return replace(self, forces=tuple(forces))
+        return self._with(state.on_other_flank if state.contact.mesh == mesh else state for state in self.forces)
 
     def about_faces(self, faces: Iterable[FaceLoad | None]) -> State:
         """The same state linear about other loads along the faces, one for each contact; None leaves a contact as it is."""
-        forces = (
-            state
-            if face is None
-            else state.about_face(face, self.layout.mesh(state.contact.mesh).part.misalignment, self.kind)
+        given = self.layout.model.meshes
+        return self._with(
+            state if face is None else state.about_face(face, given[state.contact.mesh].misalignment, self.kind)
             for state, face in zip(self.forces, faces, strict=True)
         )
-        return replace(self, forces=tuple(forces))
 
     def of_mesh(self, mesh: str) -> tuple[MeshForce, ...]:
         """The contacts of one mesh."""
@@ -304,8 +294,7 @@ class State:
     @cached_property
     def about_nominal_flanks(self) -> State:
         """The same state told from the flanks that the file calls the driving ones, which may not be those that carry."""
-        forces = (force if self.is_nominal(force) else force.on_other_flank for force in self.forces)
-        return replace(self, forces=tuple(forces))
+        return self._with(force if self.is_nominal(force) else force.on_other_flank for force in self.forces)
 
     @cached_property
     def phases(self) -> dict[str, float | None]:
@@ -332,8 +321,8 @@ class State:
         return phase + 2.0 * math.pi * self.layout.mesh(contact.mesh).lead(contact.helix, self.direction)
 
     @cached_property
-    def tooth_numbers(self) -> ToothNumbers:
-        """Where the maps of loaded teeth begin in the meshes of a gear whose teeth differ."""
+    def tooth_numbers(self) -> tuple[dict[str, int], list[str]]:
+        """Where the maps of loaded teeth begin in the meshes of a gear whose teeth differ, and where that is not known."""
         pressed = {force.contact.mesh: (force.torque_sense, force.pinion_drives) for force in reversed(self.forces)}
         layout = self.layout
         return tooth_numbers(layout.assembly, layout.train, layout.meshes, self.direction, pressed)
@@ -343,7 +332,7 @@ class State:
         phase = self.phase(contact)
         if phase is None:
             return None
-        return phase + 2.0 * math.pi * self.tooth_numbers.ahead.get(contact.mesh, 0)
+        return phase + 2.0 * math.pi * self.tooth_numbers[0].get(contact.mesh, 0)
 
     def whole_curve(self, mesh: str) -> MeshStiffness | None:
         """Stiffness of both helices together; None where the file names no stiffness model."""
@@ -355,7 +344,7 @@ class State:
         """Map F(delta, u) of one helix from its loaded teeth, along the path of contact; None where the file gives none.
 
         Its working load is the mean one of the mesh in the torque flow, so that equal helices share one map, and so do all
-        analyses. Teeth that feel the tilt of their shafts stand askew as in this state. In time u runs with the mesh phase phi
+        analyses. Teeth that feel the tilt of their shafts are misaligned as in this state. In time u runs with the mesh phase phi
         (`path_phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does. `near`
         gives the one for linear analyses, which takes less time.
         """
@@ -422,12 +411,12 @@ class State:
         """Stiffness of one helix over its mesh period, along the path of contact of the pinion."""
         mesh = self.layout.mesh(force.contact.mesh)
         helices = self.curves.get(mesh.name) or mesh.helix_stiffness(
-            force.normal_force or None, misalignments=askew(self.faces.get(mesh.name))
+            force.normal_force or None, misalignments=misalignments_of(self.faces.get(mesh.name))
         )
         return helices[force.contact.helix]
 
 
-def askew(faces: tuple[FaceLoad, ...] | None) -> tuple[float, ...] | None:
+def misalignments_of(faces: tuple[FaceLoad, ...] | None) -> tuple[float, ...] | None:
     """Misalignment (m) of each helix that carries along its face; None where none was looked for."""
     return tuple(face.misalignment for face in faces) if faces else None
 

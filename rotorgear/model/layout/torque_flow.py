@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from rotorgear.errors import AnalysisError, ConvergenceError, Problem
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact
-from rotorgear.model.layout.state import AppliedTorque, MeshForce, State, askew
+from rotorgear.model.layout.state import AppliedTorque, MeshForce, State, misalignments_of
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.shaft import Place
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 # A mesh whose share of the torque is below this relative to the largest one is called unloaded.
 UNLOADED = 1e-9
-# Stiffness and force of modelled meshes agree when no stiffness changes by more than this; so many passes are tried.
+# Stiffness and force of modelled meshes agree when no stiffness changes by more than this; passes that are tried at most.
 _AGREED = 1e-9
 _PASSES = 60
 
@@ -42,7 +42,7 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
     Args:
         layout: of a checked model.
         direction: +1 or -1, sense about +z in which the reference shaft turns; reversed, the other flanks drive.
-        faces: of meshes whose shafts are known to tilt: their teeth stand askew as these say.
+        faces: of meshes whose shafts are known to tilt: their teeth are misaligned as these say.
 
     Raises:
         AnalysisError: a stiffness model that can't do its teeth.
@@ -52,10 +52,10 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
     # Forces come first from the standard's stiffness: a model may need a load, and in a train without loops they stay.
     first = "iso" if applied else None
     faces = faces or {}
+    modelled = [mesh for mesh in layout.meshes if mesh.is_modelled]
     curves: Curves = {
-        mesh.name: mesh.helix_stiffness(name=first, misalignments=askew(faces.get(mesh.name)))
-        for mesh in layout.meshes
-        if mesh.is_modelled
+        mesh.name: mesh.helix_stiffness(name=first, misalignments=misalignments_of(faces.get(mesh.name)))
+        for mesh in modelled
     }
     lines, squeeze = _solved(layout, applied, curves)
     if curves and applied:
@@ -111,8 +111,9 @@ def _loaded(layout: Layout, lines: Sequence[Contact], squeeze: Sequence[float], 
             forces = [force for line, force in zip(lines, squeeze, strict=True) if line.mesh == mesh.name]
             mean = sum(forces) / len(forces)
             load = abs(mean) if abs(mean) > UNLOADED * largest else None
+            sense = 1 if mean >= 0.0 else -1
             found[mesh.name] = mesh.helix_stiffness(
-                load, sense=1 if mean >= 0.0 else -1, misalignments=askew(faces.get(mesh.name))
+                load, sense=sense, misalignments=misalignments_of(faces.get(mesh.name))
             )
     return found
 
@@ -162,13 +163,10 @@ def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
         )
         if operation.output_shaft:
             loads["operation.output_shaft"] = Load(shaft=operation.output_shaft, kind="output")
+    wanted = "a shaft that the train drives"
+    hint = "no mesh or coupling leads to it from the input shaft"
     problems = [
-        Problem(
-            name,
-            f"a load on shaft '{load.shaft}', which stands still",
-            "a shaft that the train drives",
-            "no mesh or coupling leads to it from the input shaft",
-        )
+        Problem(name, f"a load on shaft '{load.shaft}', which stands still", wanted, hint)
         for name, load in loads.items()
         if layout.train.ratios[load.on_shaft] == 0
     ]
@@ -188,27 +186,21 @@ def _balanced(
         scale = max((abs(item.torque * train.ratio(item.shaft)) for item in given), default=0.0)
         if len(ends) > 1:
             names = ", ".join(name for name, _, _ in ends)
-            problems.append(
-                Problem("loads", f"{names} without torque or power", "at most one of them: it takes the rest")
-            )
+            wanted = "at most one of them: it takes the rest"
+            problems.append(Problem("loads", f"{names} without torque or power", wanted))
         elif ends:
             name, load, place = ends[0]
             torque = -excess / train.ratio(load.on_shaft)
-            wanted = train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
-            if torque * wanted < 0.0:
+            sense = train.sense(load.on_shaft) * (1 if load.kind == "input" else -1)
+            if torque * sense < 0.0:
                 text = f"to balance the other loads this {load.kind} would need {abs(torque):.6g} N m against its sense"
                 other = "output" if load.kind == "input" else "input"
                 problems.append(Problem(name, "", text, f"change the other torques, or make it an {other}"))
             found.append(AppliedTorque(name, *place, torque))
         elif abs(excess) > 1e-6 * scale:
-            problems.append(
-                Problem(
-                    "loads",
-                    f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'",
-                    "torques that balance",
-                    "leave the torque of one output out and it takes the rest",
-                )
-            )
+            text = f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'"
+            hint = "leave the torque of one output out and it takes the rest"
+            problems.append(Problem("loads", text, "torques that balance", hint))
     return found, problems
 
 
@@ -216,40 +208,24 @@ def _balanced(
 _SAME_PLACE = 1e-9
 
 
-class _Network:
-    """Nodes in torsion by number and the springs between them. Places that a rigid stretch of shaft joins are one node."""
+def _network(model: Tables, places: Sequence[Place]) -> tuple[dict[Place, int], list[tuple[int, int, float]], int]:
+    """Number of the node at each place, springs between nodes, and how many nodes: places that a rigid stretch joins are one."""
+    from rotorgear.elements.shaft import torsional_flexibility
 
-    def __init__(self, model: Tables, places: Sequence[Place]) -> None:
-        from rotorgear.elements.shaft import torsional_flexibility
-
-        self.size = 0
-        self.springs: list[tuple[int, int, float]] = []
-        self._nodes: dict[str, list[tuple[float, int]]] = {}
-        for shaft in model.shafts:
-            nodes = self._nodes[shaft] = []
-            for z in sorted({z for name, z in places if name == shaft}):
-                give = torsional_flexibility(*_stretch(model, shaft, nodes[-1][0], z)) if nodes else 0.0
-                if nodes and (give == 0.0 or z - nodes[-1][0] <= _SAME_PLACE * max(1e-3, abs(z))):
-                    nodes.append((z, self.size - 1))
-                    continue
-                if nodes:
-                    self.springs.append((self.size - 1, self.size, 1.0 / give))
-                nodes.append((z, self.size))
-                self.size += 1
-
-    def node(self, shaft: str, z: float) -> int:
-        """Number of the node at a place that the network was built with."""
-        return next(number for place, number in self._nodes[shaft] if place == z)
-
-    def branch(self, node: int, stiffness: float) -> int:
-        """Number of a new node that hangs on another one by a spring (N m/rad)."""
-        self.springs.append((node, self.size, stiffness))
-        self.size += 1
-        return self.size - 1
-
-    def first_node(self, shaft: str) -> int | None:
-        """Number of the first node of a shaft; None where nothing acts on it."""
-        return self._nodes[shaft][0][1] if self._nodes[shaft] else None
+    node: dict[Place, int] = {}
+    springs = []
+    count = 0
+    for shaft in model.shafts:
+        before: float | None = None
+        for z in sorted({z for name, z in places if name == shaft}):
+            give = 0.0 if before is None else torsional_flexibility(*_stretch(model, shaft, before, z))
+            if before is None or (give != 0.0 and z - before > _SAME_PLACE * max(1e-3, abs(z))):
+                if before is not None:
+                    springs.append((count - 1, count, 1.0 / give))
+                count += 1
+            node[Place(shaft, z)] = count - 1
+            before = z
+    return node, springs, count
 
 
 def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequence[Contact]) -> list[float]:
@@ -268,42 +244,41 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
     ends = [(Place(line.pinion_shaft, line.pinion_z), Place(line.gear_shaft, line.gear_z)) for line in lines]
     places = [place for pair in ends for place in pair]
     places += [place for first, second, _ in layout.turning_couplings for place in (first, second)]
-    network = _Network(layout.model, [*places, *(Place(item.shaft, item.z) for item in applied)])
-    network.springs += [(network.node(*one), network.node(*two), k) for one, two, k in layout.turning_couplings]
-    elastic = {key: network.branch(network.node(*key[1]), k) for key, k in layout.teeth_on_bodies.items()}
-    teeth = [
-        [
-            elastic.get((name, place), network.node(*place))
-            for name, place in zip((line.pinion, line.gear), pair, strict=True)
-        ]
-        for line, pair in zip(lines, ends, strict=True)
-    ]
+    places += [Place(item.shaft, item.z) for item in applied]
+    node, springs, count = _network(layout.model, places)
+    springs += [(node[one], node[two], k) for one, two, k in layout.turning_couplings]
+    # Teeth that turn against their shaft have a node of their own, which hangs on that of the shaft.
+    elastic = {key: count + number for number, key in enumerate(layout.teeth_on_bodies)}
+    springs += [(node[key[1]], elastic[key], k) for key, k in layout.teeth_on_bodies.items()]
+    count += len(elastic)
 
     # Each contact is squeezed along its flank normal by r_b cos(beta_b) times the twist of its two nodes: delta = S q.
-    squeeze = np.zeros((len(lines), network.size))
-    for row, line, (pinion, gear) in zip(squeeze, lines, teeth, strict=True):
+    squeeze = np.zeros((len(lines), count))
+    for row, line, (first, second) in zip(squeeze, lines, ends, strict=True):
+        pinion = elastic.get((line.pinion, first), node[first])
+        gear = elastic.get((line.gear, second), node[second])
         row[pinion] += line.pinion_base_radius * np.cos(line.base_helix_angle)
         row[gear] += line.gear_base_radius * np.cos(line.base_helix_angle)
     stiffness = np.array([line.stiffness for line in lines])
     # K = sum of the springs + S^T diag(k) S
-    K = np.zeros((network.size, network.size))
-    for first, second, k in network.springs:
-        K[first, first] += k
-        K[second, second] += k
-        K[first, second] -= k
-        K[second, first] -= k
+    K = np.zeros((count, count))
+    for i, j, k in springs:
+        K[i, i] += k
+        K[j, j] += k
+        K[i, j] -= k
+        K[j, i] -= k
     K = K + (squeeze.T * stiffness) @ squeeze
-    torques = np.zeros(network.size)
+    torques = np.zeros(count)
     for item in applied:
-        torques[network.node(item.shaft, item.z)] += item.torque
+        torques[node[Place(item.shaft, item.z)]] += item.torque
     # Shafts that turn together have one rotation that strains nothing: K q = torques is solved with one node of each held.
+    first_node = {place.shaft: number for place, number in reversed(node.items())}
     held: dict[int, int] = {}
     for shaft, group in layout.train.group.items():
-        node = network.first_node(shaft)
-        if node is not None:
-            held.setdefault(group, node)
-    free = np.setdiff1d(np.arange(network.size), list(held.values()))
-    twist = np.zeros(network.size)
+        if shaft in first_node:
+            held.setdefault(group, first_node[shaft])
+    free = np.setdiff1d(np.arange(count), list(held.values()))
+    twist = np.zeros(count)
     try:
         twist[free] = np.linalg.solve(K[np.ix_(free, free)], torques[free])
     except np.linalg.LinAlgError:
@@ -326,18 +301,9 @@ def _stretch(
         low = max(left, z)
         high = min(right, z + section.length)
         if high > low and not section.rigid:
-            outer, bore, outer_end, bore_end = section.stiffness_diameters()
-            first = (low - z) / section.length
-            last = (high - z) / section.length
+            first, last = (section.diameters_at((end - z) / section.length) for end in (low, high))
             lengths.append(high - low)
-            diameters.append(
-                (
-                    outer + (outer_end - outer) * first,
-                    bore + (bore_end - bore) * first,
-                    outer + (outer_end - outer) * last,
-                    bore + (bore_end - bore) * last,
-                )
-            )
+            diameters.append((*first, *last))
             moduli.append(model.material_of(shaft, section).g)
         z += section.length
     return lengths, diameters, moduli

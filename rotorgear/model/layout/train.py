@@ -20,18 +20,12 @@ LOOP_TOLERANCE = 1e-6
 EXTREME_RATIO = 1e12
 
 
-@dataclass(frozen=True)
-class Link:
-    """What joins two shafts kinematically: `ratio` is the speed of `to_shaft` over that of `from_shaft`."""
-
-    part: str
-    from_shaft: str
-    to_shaft: str
-    ratio: Fraction | float
-
-    def seen_from(self, shaft: str) -> tuple[str, Fraction | float]:
-        """Return the other shaft and its ratio to `shaft`."""
-        return (self.to_shaft, self.ratio) if shaft == self.from_shaft else (self.from_shaft, 1 / self.ratio)
+# Speed over another speed: exact from numbers of teeth, else a float.
+Ratio = Fraction | float
+# What joins two shafts kinematically: its address, both shafts, the speed of the second over that of the first.
+Link = tuple[str, str, str, Ratio]
+# Shaft -> address, other shaft and its ratio to this one, of each link.
+Neighbours = dict[str, list[tuple[str, str, Ratio]]]
 
 
 @dataclass(frozen=True)
@@ -47,7 +41,7 @@ class Train:
     """
 
     reference: str
-    ratios: dict[str, Fraction | float] = field(default_factory=dict)
+    ratios: dict[str, Ratio] = field(default_factory=dict)
     depth: dict[str, int] = field(default_factory=dict)
     group: dict[str, int] = field(default_factory=dict)
     reached_by: dict[str, str] = field(default_factory=dict)
@@ -63,23 +57,24 @@ class Train:
 
 def links(model: Tables) -> list[Link]:
     """List the meshes and the torsionally stiff couplings as links between shafts (parts with errors are skipped)."""
-    found = []
+    found: list[Link] = []
     for name, mesh in model.meshes.items():
         pinion = model.gears.get(mesh.pinion)
         gear = model.gears.get(mesh.gear)
         if pinion is None or gear is None or pinion.shaft == gear.shaft:
             continue
-        ratio: Fraction | float | None = None
+        ratio: Ratio
         if pinion.teeth and gear.teeth:
             ratio = -Fraction(pinion.teeth, gear.teeth)
         elif pinion.base_radius and gear.base_radius:
             ratio = -pinion.base_radius / gear.base_radius
-        if ratio is not None:
-            found.append(Link(f"meshes.{name}", pinion.shaft, gear.shaft, ratio))
+        else:
+            continue
+        found.append((f"meshes.{name}", pinion.shaft, gear.shaft, ratio))
     for name, coupling in model.couplings.items():
         if coupling.turns_both:
-            found.append(Link(f"couplings.{name}", coupling.from_shaft, coupling.to_shaft, Fraction(1)))
-    return [link for link in found if link.from_shaft in model.shafts and link.to_shaft in model.shafts]
+            found.append((f"couplings.{name}", coupling.from_shaft, coupling.to_shaft, Fraction(1)))
+    return [link for link in found if link[1] in model.shafts and link[2] in model.shafts]
 
 
 def walk(model: Tables) -> tuple[Train, list[Problem]]:
@@ -89,17 +84,16 @@ def walk(model: Tables) -> tuple[Train, list[Problem]]:
     """
     train = Train(model.reference_shaft)
     problems = []
-    at_shaft: dict[str, list[Link]] = {}
-    for link in links(model):
-        at_shaft.setdefault(link.from_shaft, []).append(link)
-        at_shaft.setdefault(link.to_shaft, []).append(link)
+    beside: Neighbours = {}
+    for part, one, other, ratio in links(model):
+        beside.setdefault(one, []).append((part, other, ratio))
+        beside.setdefault(other, []).append((part, one, 1 / ratio))
     starts = [train.reference, *sorted(model.shafts, key=lambda name: model.shafts[name].speed_ratio is None)]
     for number, start in enumerate(starts):
         if start in train.ratios or start not in model.shafts:
             continue
         given = model.shafts[start].speed_ratio
-        first: Fraction | float = Fraction(1) if number == 0 else (given or Fraction(0))
-        problems += _walk_group(train, at_shaft, start, first)
+        problems += _walk_group(train, beside, start, Fraction(1) if number == 0 else (given or Fraction(0)))
     # A shaft's own ratio serves where no mesh or coupling reaches it; elsewhere it may only repeat what the train gives.
     for name, shaft in model.shafts.items():
         if shaft.speed_ratio is None or name not in train.ratios or _same(shaft.speed_ratio, train.ratio(name)):
@@ -111,7 +105,8 @@ def walk(model: Tables) -> tuple[Train, list[Problem]]:
     return train, problems
 
 
-def _walk_group(train: Train, at_shaft: dict[str, list[Link]], start: str, ratio: Fraction | float) -> list[Problem]:
+def _walk_group(train: Train, beside: Neighbours, start: str, ratio: Ratio) -> list[Problem]:
+    """Go from one shaft to all that links lead to."""
     group = len(set(train.group.values()))
     train.ratios[start] = ratio
     train.depth[start] = 0
@@ -122,43 +117,36 @@ def _walk_group(train: Train, at_shaft: dict[str, list[Link]], start: str, ratio
     used = set()
     while queue:
         shaft = queue.popleft()
-        for link in at_shaft.get(shaft, ()):
-            if link.part in used:
+        for part, other, step in beside.get(shaft, ()):
+            if part in used:
                 continue
-            used.add(link.part)
-            other, step = link.seen_from(shaft)
-            speed: Fraction | float = train.ratios[shaft] * step
+            used.add(part)
+            speed = train.ratios[shaft] * step
             if speed and not 1.0 / EXTREME_RATIO < abs(float(speed)) < EXTREME_RATIO:
-                expected = f"shafts whose speeds differ by less than a factor of {EXTREME_RATIO:g}"
-                problems.append(
-                    Problem(link.part, f"a ratio of {float(speed):.3g} to the start of the train", expected)
-                )
-                continue
-            if other not in train.ratios:
+                got = f"a ratio of {float(speed):.3g} to the start of the train"
+                wanted = f"shafts whose speeds differ by less than a factor of {EXTREME_RATIO:g}"
+                problems.append(Problem(part, got, wanted))
+            elif other not in train.ratios:
                 train.ratios[other] = speed
                 train.depth[other] = train.depth[shaft] + 1
                 train.group[other] = group
-                train.reached_by[other] = link.part
+                train.reached_by[other] = part
                 queue.append(other)
             elif not _same(speed, train.ratios[other]):
-                problems.append(
-                    Problem(
-                        link.part,
-                        f"ratio {_ratio_text(speed)} of shaft '{other}' on this path of a closed loop",
-                        f"{_ratio_text(train.ratios[other])}, as on the path through "
-                        f"{train.reached_by[other] or 'the input shaft'}",
-                        "change the numbers of teeth so that both paths give one ratio",
-                    )
-                )
+                got = f"ratio {_ratio_text(speed)} of shaft '{other}' on this path of a closed loop"
+                through = train.reached_by[other] or "the input shaft"
+                wanted = f"{_ratio_text(train.ratios[other])}, as on the path through {through}"
+                hint = "change the numbers of teeth so that both paths give one ratio"
+                problems.append(Problem(part, got, wanted, hint))
     return problems
 
 
-def _same(first: Fraction | float, second: Fraction | float) -> bool:
+def _same(first: Ratio, second: Ratio) -> bool:
     if isinstance(first, Fraction) and isinstance(second, Fraction):
         return first == second
     return math.isclose(first, second, rel_tol=LOOP_TOLERANCE, abs_tol=0.0)
 
 
-def _ratio_text(ratio: Fraction | float) -> str:
+def _ratio_text(ratio: Ratio) -> str:
     exact = f" ({ratio.numerator}/{ratio.denominator})" if isinstance(ratio, Fraction) and ratio.denominator > 1 else ""
     return f"{float(ratio):.9g}{exact}"

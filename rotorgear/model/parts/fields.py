@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numbers
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
 
@@ -84,9 +85,8 @@ class Part(BaseModel):
 
     def __eq__(self, other: object) -> bool:
         # Field by field: pydantic compares what is derived as well where both have derived it.
-        return type(self) is type(other) and all(
-            getattr(self, name) == getattr(other, name) for name in type(self).model_fields
-        )
+        fields = type(self).model_fields
+        return type(self) is type(other) and all(getattr(self, name) == getattr(other, name) for name in fields)
 
     def __repr__(self) -> str:
         """What differs from the defaults; long lists and tables by their length."""
@@ -125,13 +125,22 @@ def _words(value: Any, unit: Unit | None) -> str:
     return str(value)
 
 
-def unit_of(about: Any) -> Unit | None:
-    """The unit in the type of a field, however deep it stands."""
+def _marks(about: Any) -> Iterator[Any]:
+    """What the type of a field is annotated with, however deep it stands."""
     for item in (*getattr(about, "metadata", ()), *get_args(getattr(about, "annotation", about))):
-        found = item if isinstance(item, Unit) else unit_of(item) if get_args(item) else None
-        if found:
-            return found
-    return None
+        yield item
+        yield from _marks(item) if get_args(item) else ()
+
+
+def unit_of(about: Any) -> Unit | None:
+    """The first unit in the type of a field."""
+    return next((mark for mark in _marks(about) if isinstance(mark, Unit)), None)
+
+
+def si_unit(about: Any) -> str:
+    """SI unit of a field, by the unit or the JSON Schema in its type; "" of one that is no quantity."""
+    schemas = (mark.schema() if isinstance(mark, Unit) else getattr(mark, "json_schema", {}) for mark in _marks(about))
+    return next((str(schema["x-unit"]) for schema in schemas if "x-unit" in schema), "")
 
 
 def refuse(text: str) -> PydanticCustomError:
@@ -194,7 +203,6 @@ Modulus = Annotated[float, Unit("modulus", "positive")]
 Torque = Annotated[float, Unit("torque", "non-negative")]
 Power = Annotated[float, Unit("power", "non-negative")]
 Stiffness = Annotated[float, Unit("stiffness", "non-negative")]
-PositiveStiffness = Annotated[float, Unit("stiffness", "positive")]
 SignedStiffness = Annotated[float, Unit("stiffness")]
 StiffnessPerArea = Annotated[float, Unit("stiffness_per_area", "positive")]
 Frequency = Annotated[float, Unit("frequency", "positive")]
@@ -237,7 +245,7 @@ Station = Annotated[
 
 
 def listed(count: int, expected: str) -> BeforeValidator:
-    """Refuses all but a list of so many entries; `expected` says what it should have been."""
+    """Refuses all but a list of `count` entries; `expected` says what it should have been."""
 
     def parse(value: Any) -> Any:
         if not isinstance(value, list | tuple) or len(value) != count:
@@ -258,12 +266,10 @@ def _parse_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     rows = value if isinstance(value, list | tuple) else ()
     if len(rows) != 6 or any(not isinstance(row, list | tuple) or len(row) != 6 for row in rows):
         raise refuse("6 rows of 6 numbers in SI, rows and columns x y z tilt_x tilt_y torsion")
-    return tuple(
-        tuple(_entry(x, f"row {i + 1}, column {j + 1}") for j, x in enumerate(row)) for i, row in enumerate(rows)
-    )
+    return tuple(tuple(_cell(x, f"row {i}, column {j}") for j, x in enumerate(row, 1)) for i, row in enumerate(rows, 1))
 
 
-def _entry(value: Any, place: str) -> float:
+def _cell(value: Any, place: str) -> float:
     """A plain number: the entries of a 6 x 6 have several units, so that they are given in SI."""
     if isinstance(value, str):
         raise refuse(f"plain numbers in SI, without units; {place} is a text")
@@ -290,16 +296,14 @@ Matrix6 = Annotated[
 _MOST = 100_000
 
 
-def _parse_whole(value: Any) -> int:
+def _whole(value: Any) -> int:
     """No 29.0, no "29" and no true for 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= int(value) <= _MOST:
         raise refuse(f"a whole number from 1 to {_MOST}")
     return int(value)
 
 
-Whole = Annotated[
-    int, BeforeValidator(_parse_whole), WithJsonSchema({"type": "integer", "minimum": 1, "maximum": _MOST})
-]
+Whole = Annotated[int, BeforeValidator(_whole), WithJsonSchema({"type": "integer", "minimum": 1, "maximum": _MOST})]
 Flag = Annotated[bool, Field(strict=True)]
 
 

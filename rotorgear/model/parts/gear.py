@@ -17,6 +17,8 @@ from rotorgear.model.parts.casing import Seat, TextOrTable
 from rotorgear.model.parts.fields import Flag, Name, Part, Station, Whole
 from rotorgear.model.parts.topography import TopographyFile
 
+# Sizes of a gear's blank beside its bore.
+BLANK = ("rim_thickness", "web_thickness", "web_position", "hub_diameter", "hub_width")
 # Modifications of a flank that are depths.
 DEPTHS = ("root_relief", "crowning", "profile_crowning", "profile_slope", "end_relief", "helix_slope", "bias")
 

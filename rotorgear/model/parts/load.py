@@ -14,8 +14,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.fields import Part, Station, Unit, listed, refuse
-from rotorgear.model.parts.topography import csv_rows, from_csv
-from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.model.parts.topography import csv_table, from_csv
+from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 
 
 class Unbalance(Part):
@@ -69,10 +69,8 @@ class LoadHistory(Part):
         angles = np.array(self.places)
         start = float(np.interp(0.0, angles, values, period=_TURN))
         inner = (angles > 0.0) & (angles < _TURN)
-        return (
-            np.concatenate([[0.0], angles[inner], [_TURN]]),
-            np.concatenate([[start], np.array(values)[inner], [start]]),
-        )
+        turn = np.concatenate([[0.0], angles[inner], [_TURN]])
+        return turn, np.concatenate([[start], np.array(values)[inner], [start]])
 
 
 def parse_history(text: str, name: str) -> dict[str, Any]:
@@ -87,41 +85,31 @@ def parse_history(text: str, name: str) -> dict[str, Any]:
     Raises:
         PydanticCustomError: what is wrong, with its line.
     """
-    rows = csv_rows(text, name, "row, such as time_s,force_y_N")
-    columns = [_column(cell, f"{name}:{rows[0][0]}") for cell in rows[0][1]]
+    columns, rows = csv_table(text, name, "row, such as time_s,force_y_N", _column)
     names = [column for column, _, _ in columns]
     over = [column for column in ("time", "angle") if column in names]
     if len(over) != 1 or len(set(names)) != len(names) or len(names) < 2:
-        raise refuse(
-            f"one column of time or angle, and each of {', '.join(COMPONENTS)} at most once; {name} has {names}"
-        )
+        raise refuse(f"one column of time or angle, each of {', '.join(COMPONENTS)} at most once; {name} has {names}")
+    axis = over[0]
     table = []
-    for number, cells in rows[1:]:
-        if len(cells) != len(columns):
-            raise refuse(f"{len(columns)} cells in each row; {name}:{number} has {len(cells)}")
+    for line, cells in rows:
         try:
-            table.append(
-                [
-                    parse_quantity(f"{float(c)!r} {unit}", kind)
-                    for c, (_, kind, unit) in zip(cells, columns, strict=True)
-                ]
-            )
+            pairs = zip(cells, columns, strict=True)
+            table.append([parse_quantity(f"{float(cell)!r} {unit}", kind) for cell, (_, kind, unit) in pairs])
         except (ValueError, QuantityError):
             raise refuse(
                 "a finite number with a decimal point in each cell (leave rows without a value out); "
-                f"{name}:{number} has '{'; '.join(cells)}'"
+                f"{line} has '{'; '.join(cells)}'"
             ) from None
     by_name = dict(zip(names, zip(*table, strict=True), strict=True))
-    places = by_name.pop(over[0])
+    places = by_name.pop(axis)
     if len(places) < 2:
         raise refuse(f"at least two rows; {name} has one")
-    for (a, b), (number, _) in zip(pairwise(places), rows[2:], strict=True):
+    for (a, b), (line, _) in zip(pairwise(places), rows[1:], strict=True):
         if b <= a:
             how = "the same as" if b == a else "below that of"
-            raise refuse(
-                f"rising {over[0]}s; that of {name}:{number} is {how} the row before: sort the rows, each once"
-            )
-    if over[0] == "angle":
+            raise refuse(f"rising {axis}s; that of {line} is {how} the row before: sort the rows, each once")
+    if axis == "angle":
         # Angles go from 0 to below a whole turn; a last row at 360 deg repeats the first one.
         if places[0] < 0.0 or places[-1] > _TURN * (1.0 + 1e-9):
             raise refuse(f"angles from 0 to 360 deg, one turn that begins again; {name} goes beyond")
@@ -131,7 +119,7 @@ def parse_history(text: str, name: str) -> dict[str, Any]:
                 raise refuse(f"the same values at 360 deg as at 0 deg, where the turn begins again; {name} has others")
             places = places[:-1]
             by_name = {column: values[:-1] for column, values in by_name.items()}
-    return {"over": over[0], "places": places, "components": tuple(by_name), "values": tuple(by_name.values())}
+    return {"over": axis, "places": places, "components": tuple(by_name), "values": tuple(by_name.values())}
 
 
 def _column(cell: str, line: str) -> tuple[str, str, str]:
@@ -140,11 +128,8 @@ def _column(cell: str, line: str) -> tuple[str, str, str]:
     text = cell.strip().strip("])").replace("[", " ").replace("(", " ")
     found = next((name for name in kinds if text.lower().startswith(name)), None)
     if found is None:
-        guess = nearest(text.lower(), list(kinds))
-        raise refuse(
-            f"columns that are known; {line} has '{cell}' "
-            f"({f'did you mean {guess}?' if guess else 'there are ' + ', '.join(kinds)})"
-        )
+        hint = did_you_mean(text.lower(), kinds, f"there are {', '.join(kinds)}")
+        raise refuse(f"columns that are known; {line} has '{cell}' ({hint})")
     unit = text[len(found) :].strip(" _")
     try:
         parse_quantity(f"1.0 {unit}", kinds[found])

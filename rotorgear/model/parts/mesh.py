@@ -2,7 +2,7 @@
 
 The stiffness is a number, a list over one mesh period, a Fourier series, or the name of a stiffness model. The series is
 k(u) = mean [1 + sum_n a_n cos(2 pi n u + phi_n)], u in mesh periods from contact at the pitch point in the middle of the face; it
-is kept as the list of its values, so many that no harmonic is lost.
+is kept as the list of its values, which are enough for its highest harmonic.
 """
 
 from __future__ import annotations
@@ -15,22 +15,17 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.fields import Flag, Part, Unit, Whole, refuse
-from rotorgear.quantity import DIMENSIONS, nearest
+from rotorgear.quantity import DIMENSIONS, did_you_mean
 
+# Least length of a list; most harmonics of a series; values of a series for each harmonic, and at least.
 _LEAST_VALUES = 3
-
 _MOST_HARMONICS = 100
-
 _VALUES_A_HARMONIC = 8
-
 _VALUES = 64
-
 _UNIT = Unit("stiffness", "positive")
-
 _SHARE = Unit("ratio")
-
 _ANGLE = Unit("angle")
-
+_EXAMPLE = DIMENSIONS["stiffness"].example
 _SERIES = ("mean", "amplitudes", "phases")
 
 
@@ -44,9 +39,8 @@ def _parse(value: Any) -> Any:
     if isinstance(value, str) and value.strip() and not any(character.isdigit() for character in value):
         if value in MODELS:
             return value
-        guess = nearest(value, list(MODELS))
-        hint = f"; did you mean '{guess}'?" if guess else ""
-        raise refuse(f"a stiffness such as '{_example()}' or one of {', '.join(MODELS)}{hint}")
+        wanted = f"a stiffness such as '{_EXAMPLE}' or one of {', '.join(MODELS)}"
+        raise refuse("; ".join(filter(None, (wanted, did_you_mean(value, MODELS)))))
     return _UNIT.parse(value)
 
 
@@ -64,7 +58,7 @@ def _series(table: dict[str, Any]) -> tuple[float, ...]:
     ):
         raise refuse(
             f"mean, a list of 1 to {_MOST_HARMONICS} amplitudes as shares of it, and as many phases or none, such as "
-            f"{{ mean = '{_example()}', amplitudes = [0.1, 0.02], phases = ['0 deg', '90 deg'] }}"
+            f"{{ mean = '{_EXAMPLE}', amplitudes = [0.1, 0.02], phases = ['0 deg', '90 deg'] }}"
         )
     mean = _UNIT.parse(table["mean"])
     shares = [_SHARE.parse(item) for item in amplitudes]
@@ -76,10 +70,6 @@ def _series(table: dict[str, Any]) -> tuple[float, ...]:
     if min(values) <= 0.0:
         raise refuse("amplitudes that leave the stiffness positive over the whole mesh period")
     return values
-
-
-def _example() -> str:
-    return DIMENSIONS["stiffness"].example
 
 
 def _schema() -> dict[str, Any]:

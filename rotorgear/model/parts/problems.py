@@ -13,7 +13,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from rotorgear.errors import Problem
-from rotorgear.quantity import nearest
+from rotorgear.quantity import did_you_mean, nearest
 
 Loc = tuple[int | str, ...]
 _LONGEST = 60
@@ -113,20 +113,18 @@ def _problem(item: Any, root: type[BaseModel]) -> Problem:
     field = owner.model_fields.get(str(loc[-1])) if owner and loc else None
     description = (field.description if field else None) or ""
     if kind == "extra_forbidden":
-        guess = guessed_key(item, root)
         valid = list(owner.model_fields) if owner else []
-        return Problem(
-            where, "", "unknown key", f"did you mean '{guess}'?" if guess else "valid here: " + ", ".join(valid)
-        )
+        hint = did_you_mean(str(loc[-1]), valid, "valid here: " + ", ".join(valid))
+        return Problem(where, "", "unknown key", hint)
     if kind == "missing":
-        return Problem(where, "", "missing", f"required: {description}" if description else "required")
+        return missing(where, description) if description else Problem(where, "", "missing", "required")
     if kind == "literal_error":
         listed = re.findall(r"'([^']+)'|(\w+)", item["ctx"]["expected"].replace(" or ", " "))
         choices = [text or number for text, number in listed]
         if len(choices) == 1:
             return Problem(where, value, choices[0], description)
-        guess = nearest(item["input"], choices) if isinstance(item["input"], str) else ""
-        return Problem(where, value, "one of " + ", ".join(choices), f"did you mean '{guess}'?" if guess else "")
+        hint = did_you_mean(item["input"], choices) if isinstance(item["input"], str) else ""
+        return Problem(where, value, "one of " + ", ".join(choices), hint)
     if kind == "too_short":
         return Problem(where, value, f"at least {item['ctx']['min_length']} entry")
     if kind in _BOUNDS:

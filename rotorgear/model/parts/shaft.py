@@ -73,6 +73,11 @@ class Section(Part):
         bore_end = self.bore if self.bore_end is None else self.bore_end
         return self.outer_diameter, self.bore, outer_end, bore_end
 
+    def diameters_at(self, share: float) -> tuple[float, float]:
+        """Outer and inner diameter in m at a share of the length from the left end."""
+        outer, bore, outer_end, bore_end = self.stiffness_diameters()
+        return outer + (outer_end - outer) * share, bore + (bore_end - bore) * share
+
     def mass_diameters(self) -> tuple[float, float, float, float]:
         """The same four diameters as they count for the mass."""
         outer, bore, outer_end, bore_end = self.stiffness_diameters()
@@ -127,9 +132,8 @@ class Shaft(Part):
         for section in self.sections:
             right = left + section.length
             if left - tolerance <= z <= right + tolerance:
-                outer, _, outer_end, _ = section.stiffness_diameters()
-                share = min(max((z - left) / section.length, 0.0), 1.0)
-                found = max(found, outer + (outer_end - outer) * share)
+                outer, _ = section.diameters_at(min(max((z - left) / section.length, 0.0), 1.0))
+                found = max(found, outer)
             left = right
         return found
 

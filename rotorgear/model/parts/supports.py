@@ -273,7 +273,7 @@ def _in_si(value: Any, about: Parameter, kind: str) -> Any:
 
 
 def element_law(element: NonlinearElement, ratio: float) -> ForceLaw:
-    """The law of an element on a shaft that turns at so many times the speed of the reference.
+    """The law of an element on a shaft that turns at `ratio` times the speed of the reference.
 
     A law that needs the rotation of its shaft names the parameter that holds this ratio (`shaft_ratio`); what the file gives
     for it counts more.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Iterator
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -56,6 +57,12 @@ class Tables(Part):
         """Return the material of a shaft, of one of its sections, or of a body on it with its own material name."""
         own = name or (section.material if section else None) or self.shafts[shaft].material
         return self.materials[own] if own in self.materials else LIBRARY[own]
+
+    def parts_of(self, *tables: str) -> Iterator[tuple[str, Any]]:
+        """Address and part of all parts in some tables."""
+        for table in tables:
+            for name, part in getattr(self, table).items():
+                yield f"{table}.{name}", part
 
     def has(self, motion: str) -> bool:
         """Whether the model has a motion: bending, axial or torsion."""

@@ -14,13 +14,14 @@ import math
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from rotorgear.model.parts.fields import Length, Part, refuse
-from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 
+Column = TypeVar("Column")
 # In the order of a gear's hand: typing keeps one object for both, and the texts of errors take its order.
 Side = Literal["right", "left"]
 _LENGTHS = ("roll_length", "diameter", "z", "deviation")
@@ -60,9 +61,7 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
     Raises:
         PydanticCustomError: what is wrong, with line and column; `Model` makes a `Problem` of it.
     """
-    rows = csv_rows(text, name, "point, such as roll_length_mm,z_mm,deviation_um")
-    header = rows[0][1]
-    columns = [_column(cell, f"{name}:{rows[0][0]}") for cell in header]
+    columns, rows = csv_table(text, name, "point, such as roll_length_mm,z_mm,deviation_um", _column)
     names = [column for column, _ in columns]
     repeated = {column for column in names if names.count(column) > 1}
     if repeated:
@@ -70,17 +69,13 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
     by = [column for column in ("roll_length", "diameter") if column in names]
     missing = [column for column in ("z", "deviation") if column not in names]
     if len(by) != 1 or missing:
-        wanted = (
-            "one column of roll_length or diameter, one of z and one of deviation, with units: roll_length_mm, z_mm"
-        )
-        raise refuse(f"{wanted}, deviation_um; {name} has {', '.join(names)}")
+        wanted = "one column of roll_length or diameter, one of z and one of deviation"
+        units = "roll_length_mm, z_mm, deviation_um"
+        raise refuse(f"{wanted}, with units: {units}; {name} has {', '.join(names)}")
 
     # The points of each tooth and side, by place and z.
     flanks: dict[tuple[int | None, str | None], dict[tuple[float, float], float]] = {}
-    for number, cells in rows[1:]:
-        line = f"{name}:{number}"
-        if len(cells) != len(columns):
-            raise refuse(f"{len(columns)} cells in each row; {line} has {len(cells)}")
+    for line, cells in rows:
         found = {column: _cell(cell, column, unit, line) for cell, (column, unit) in zip(cells, columns, strict=True)}
         points = flanks.setdefault((found.get("tooth"), found.get("flank")), {})
         place = (found[by[0]], found["z"])
@@ -121,20 +116,27 @@ def from_csv(value: Any, what: str, parse: Callable[[str, str], Any]) -> Any:
     return parse(text, file.name)
 
 
-def csv_rows(text: str, name: str, example: str) -> list[tuple[int, list[str]]]:
-    """Line number and stripped cells of every row that says something, the header first; `example` is for the error."""
-    lines = text.splitlines()
-    written = [
-        (number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
-    ]
+def csv_table(
+    text: str, name: str, example: str, column: Callable[[str, str], Column]
+) -> tuple[list[Column], list[tuple[str, list[str]]]]:
+    """What `column(cell, line)` makes of each cell of the header, and where each other row is, with its stripped cells.
+
+    Rows say something, with a cell for each column; `example` is for the error.
+    """
+    written = [(f"{name}:{n}", line) for n, line in enumerate(text.splitlines(), 1) if not re.match(r"\s*(#|$)", line)]
     if len(written) < 2:
         raise refuse(f"a header and at least one {example}; {name} has none")
     if len(written) > _MOST_ROWS:
         raise refuse(f"up to {_MOST_ROWS} rows; {name} has {len(written) - 1}")
     delimiter = max(";\t,", key=written[0][1].count)
-    return [
-        (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in written
+    (head, header), *rows = [
+        (where, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for where, line in written
     ]
+    columns = [column(cell, head) for cell in header]
+    for where, cells in rows:
+        if len(cells) != len(columns):
+            raise refuse(f"{len(columns)} cells in each row; {where} has {len(cells)}")
+    return columns, rows
 
 
 def _column(cell: str, line: str) -> tuple[str, str]:
@@ -143,13 +145,11 @@ def _column(cell: str, line: str) -> tuple[str, str]:
     unit = words.pop() if words and words[-1] in _UNITS else ""
     column = "_".join(words)
     if column not in _COLUMNS:
-        guess = nearest(column, list(_COLUMNS))
-        hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(_COLUMNS)}"
+        hint = did_you_mean(column, _COLUMNS, f"there are {', '.join(_COLUMNS)}")
         raise refuse(f"columns that are known; {line} has '{cell}' ({hint})")
     if column in _LENGTHS and not unit:
-        raise refuse(
-            f"the unit of '{column}' in its header, such as {column}_{'um' if column == 'deviation' else 'mm'}; {line}"
-        )
+        example = f"{column}_{'um' if column == 'deviation' else 'mm'}"
+        raise refuse(f"the unit of '{column}' in its header, such as {example}; {line}")
     return column, _UNITS.get(unit, "")
 
 

@@ -16,7 +16,7 @@ STEEL = 7850.0
 
 
 def bodies(model: Model, part: str) -> list[tuple[float, RigidBody]]:
-    return [(node.z, node.body) for node in model.layout.bodies if node.part == part]
+    return [(place.z, body) for address, place, body in model.layout.bodies if address == part]
 
 
 def test_a_gear_without_a_body_is_solid_down_to_its_shaft(pair: Data) -> None:

@@ -177,7 +177,7 @@ def test_mesh_frequencies_are_one_for_both_gears_and_none_without_teeth(pair: Da
 
 
 def test_links_are_the_meshes_and_the_stiff_couplings(everything: Data) -> None:
-    found = {link.part: link.ratio for link in links(Model(**everything))}
+    found = {part: ratio for part, _, _, ratio in links(Model(**everything))}
     assert found == {"meshes.toothed": Fraction(-1, 2), "meshes.lumped": pytest.approx(-0.5), "couplings.membrane": 1}
 
 

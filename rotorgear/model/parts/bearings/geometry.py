@@ -7,6 +7,7 @@ kinds with an oil film share stands here as well: the oil, its checks, and that 
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -15,6 +16,7 @@ from pydantic import Field
 
 from rotorgear.errors import Problem
 from rotorgear.model.parts.fields import Density, Part, Ratio, SpecificHeat, Temperature, Viscosity
+from rotorgear.model.parts.problems import told
 from rotorgear.quantity import ZERO_CELSIUS
 
 if TYPE_CHECKING:
@@ -25,6 +27,12 @@ if TYPE_CHECKING:
 Judged = tuple[str, float, tuple[float, float], str, str, str | tuple[str, str]]
 # What is asked of a value that may be wrong in more ways.
 UNIT = "is its unit right?"
+
+
+def arc_row(key: str, count: int, arc: float | None, what: str) -> tuple[Any, ...]:
+    """A row of `told`: arcs that fit around a bearing."""
+    wide = arc is not None and not 0.0 < count * arc <= 2.0 * math.pi * (1.0 + 1e-9)
+    return key, wide, f"{count} of {math.degrees(arc or 0.0):.6g} deg", f"{what} that fit on 360 deg"
 
 
 class BearingGeometry(Part):
@@ -135,39 +143,31 @@ class Oil(BearingGeometry):
         """Parameters of a law of its film, which begins at the temperature of the inlet."""
         from rotorgear.forces.oil_film import oil_viscosity
 
-        given = {"density": self.density, "specific_heat": self.specific_heat, "heat_share": self.heat_share}
+        given = {key: getattr(self, key) for key in ("density", "specific_heat", "heat_share")}
         if self.viscosity is not None:
-            return {**given, "viscosity": self.viscosity}
+            return given | {"viscosity": self.viscosity}
         assert self.inlet_temperature is not None
-        return {
-            **given,
-            "viscosity": oil_viscosity(self.grade, self.density, self.inlet_temperature),
-            "grade": self.grade,
-            "inlet_temperature": self.inlet_temperature,
-        }
+        viscosity = oil_viscosity(self.grade, self.density, self.inlet_temperature)
+        return given | {"viscosity": viscosity, "grade": self.grade, "inlet_temperature": self.inlet_temperature}
 
     def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
         """A film alone in its bearing; a viscosity, or a grade with the temperature at which the oil flows in."""
-        if beside:
-            other = next(iter(beside))
-            got = f"{self.noun} beside {'a table' if other == 'table' else other}"
-            yield Problem(here, got, f"{self.noun} alone; {self.others}")
-        if self.viscosity is not None and self.oil is not None:
-            yield Problem(f"{here}.viscosity", "viscosity and oil", "one of the two")
-        elif self.viscosity == 0.0:
-            yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
-        elif self.viscosity is None and self.oil is None:
-            wanted = "a viscosity such as '0.02 Pa s', or an oil such as 'VG 46'"
-            yield Problem(here, "neither viscosity nor oil", wanted)
-        if self.oil is not None and self.inlet_temperature is None:
-            wanted = "a temperature such as '45 degC'"
-            yield Problem(f"{here}.inlet_temperature", "no temperature beside the oil", wanted)
-        if self.oil is None and (self.inlet_temperature is not None or self.heat_share != 1.0):
-            key = "inlet_temperature" if self.inlet_temperature is not None else "heat_share"
-            wanted = "an oil such as 'VG 46' in place of the viscosity"
-            yield Problem(f"{here}.{key}", "heat of a film of given viscosity", wanted)
-        if self.heat_share > 1.0:
-            yield Problem(f"{here}.heat_share", f"{self.heat_share:g}", "a share from 0 to 1")
+        other = "a table" if next(iter(beside), "") == "table" else next(iter(beside), "")
+        neither = self.viscosity is None and self.oil is None
+        heat = self.inlet_temperature is not None or self.heat_share != 1.0
+        key = "inlet_temperature" if self.inlet_temperature is not None else "heat_share"
+        instead = "an oil such as 'VG 46' in place of the viscosity"
+        cold = self.oil is not None and self.inlet_temperature is None
+        yield from told(
+            here,
+            ("", beside, f"{self.noun} beside {other}", f"{self.noun} alone; {self.others}"),
+            ("viscosity", self.viscosity is not None and self.oil is not None, "viscosity and oil", "one of the two"),
+            ("viscosity", self.viscosity == 0.0 and self.oil is None, "0", "a viscosity above 0 such as '0.02 Pa s'"),
+            ("", neither, "neither viscosity nor oil", "a viscosity such as '0.02 Pa s', or an oil such as 'VG 46'"),
+            ("inlet_temperature", cold, "no temperature beside the oil", "a temperature such as '45 degC'"),
+            (key, self.oil is None and heat, "heat of a film of given viscosity", instead),
+            ("heat_share", self.heat_share > 1.0, f"{self.heat_share:g}", "a share from 0 to 1"),
+        )
 
     def judged(self) -> Iterator[Judged]:
         """Gap, viscosity, temperature and density."""

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import Field
 
 from rotorgear.errors import Problem
-from rotorgear.model.parts.bearings.geometry import Oil
+from rotorgear.model.parts.bearings.geometry import Oil, arc_row
 from rotorgear.model.parts.fields import Angle, PositiveLength, Ratio, Whole
+from rotorgear.model.parts.problems import told
 from rotorgear.quantity import millimetres
 
 if TYPE_CHECKING:
@@ -103,53 +104,34 @@ class JournalGeometry(Oil):
         )
 
     def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
-        """Lobes or pads that fit, on a grid that serves."""
+        """Lobes or pads that fit, each with its keys, on a grid that serves."""
         yield from super().problems(here, beside)
-        if self.length > 2.0 * self.diameter:
-            got = f"{millimetres(self.length)} on a diameter of {millimetres(self.diameter)}"
-            yield Problem(f"{here}.length", got, "at most two diameters, beyond which shafts bend in their bearing")
-        if self.clearance > 0.1 * self.diameter:
-            got = f"{millimetres(self.clearance)} on a diameter of {millimetres(self.diameter)}"
-            wanted = "a film that is thin: at most a tenth of the diameter, 1e-3 as a rule"
-            yield Problem(f"{here}.clearance", got, wanted)
-        for key, most in (("lobes", 8), ("around", 2000), ("along", 200)):
-            if getattr(self, key) > most:
-                yield Problem(f"{here}.{key}", f"{getattr(self, key)}", f"at most {most}")
-        for key, least in (("around", 24), ("along", 2)):
-            if getattr(self, key) < least:
-                yield Problem(f"{here}.{key}", f"{getattr(self, key)}", f"at least {least} cells")
-        yield from self._pads(here)
-        if self.lobes == 1 and (
-            (self.preload and not self.pads) or self.lobe_arc is not None or self.lobe_at or self.offset != 0.5
-        ):
-            yield Problem(f"{here}.lobes", "keys of lobes in a plain bearing", "2 lobes or more beside them")
-        if self.lobes > 1 and self.inlet is not None:
-            yield Problem(f"{here}.inlet", "an inlet", "none beside lobes: oil comes in between them")
-        if not 0.0 <= self.preload < 1.0:
-            yield Problem(f"{here}.preload", f"{self.preload:g}", "a share from 0 to below 1")
-        if self.offset > 1.0:
-            yield Problem(f"{here}.offset", f"{self.offset:g}", "a share of the arc from 0 to 1")
-        arc = 0.0 if self.lobe_arc is None else self.lobe_arc
-        if not 0.0 <= self.lobes * arc <= 2.0 * math.pi * (1.0 + 1e-9) or (self.lobe_arc is not None and not arc):
-            got = f"{self.lobes} of {math.degrees(arc):.6g} deg"
-            yield Problem(f"{here}.lobe_arc", got, "lobes that fit on 360 deg")
-
-    def _pads(self, here: str) -> Iterator[Problem]:
-        """Tilting pads that fit, with their keys beside them and none of fixed bearings."""
-        if not self.pads:
-            if self.pads == 0:
-                yield Problem(f"{here}.pads", "0", "2 pads or more, or none of this key in a fixed bearing")
-            elif self.pad_arc is not None or self.pad_at or self.pivot != 0.5 or self.whirl_ratio != 1.0:
-                yield Problem(f"{here}.pads", "keys of pads in a fixed bearing", "the number of pads beside them")
-            return
-        if not 2 <= self.pads <= 12:
-            yield Problem(f"{here}.pads", str(self.pads), "2 to 12 pads")
-        if self.lobes > 1 or self.inlet is not None:
-            yield Problem(f"{here}.pads", "pads beside lobes or an inlet", "one of them: oil comes in between pads")
-        if self.pad_arc is not None and not 0.0 < self.pads * self.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
-            got = f"{self.pads} of {math.degrees(self.pad_arc):.6g} deg"
-            yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
-        if not 0.0 < self.pivot < 1.0:
-            yield Problem(f"{here}.pivot", f"{self.pivot:g}", "a share of the arc between 0 and 1")
-        if not self.whirl_ratio:
-            yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")
+        on = f"on a diameter of {millimetres(self.diameter)}"
+        long = "at most two diameters, beyond which shafts bend in their bearing"
+        thin = "a film that is thin: at most a tenth of the diameter, 1e-3 as a rule"
+        between = "none beside lobes: oil comes in between them"
+        counts = {key: getattr(self, key) for key in ("lobes", "around", "along")}
+        most = {"lobes": 8, "around": 2000, "along": 200}
+        least = {"around": 24, "along": 2}
+        pads = self.pads or 0
+        of_pads = self.pad_arc is not None or self.pad_at or self.pivot != 0.5 or self.whirl_ratio != 1.0
+        fixed = self.lobes > 1 or self.inlet is not None
+        of_lobes = (self.preload and not pads) or self.lobe_arc is not None or self.lobe_at or self.offset != 0.5
+        yield from told(
+            here,
+            ("length", self.length > 2.0 * self.diameter, f"{millimetres(self.length)} {on}", long),
+            ("clearance", self.clearance > 0.1 * self.diameter, f"{millimetres(self.clearance)} {on}", thin),
+            *((key, counts[key] > limit, f"{counts[key]}", f"at most {limit}") for key, limit in most.items()),
+            *((key, counts[key] < limit, f"{counts[key]}", f"at least {limit} cells") for key, limit in least.items()),
+            ("pads", not pads and of_pads, "keys of pads in a fixed bearing", "the number of pads beside them"),
+            ("pads", pads and not 2 <= pads <= 12, str(pads), "2 to 12 pads"),
+            ("pads", pads and fixed, "pads beside lobes or an inlet", "one of them: oil comes in between pads"),
+            arc_row("pad_arc", pads, self.pad_arc if pads else None, "pads"),
+            ("pivot", pads and not 0.0 < self.pivot < 1.0, f"{self.pivot:g}", "a share of the arc between 0 and 1"),
+            ("whirl_ratio", pads and not self.whirl_ratio, "0", "a ratio above 0; 1 is synchronous"),
+            ("lobes", self.lobes == 1 and of_lobes, "keys of lobes in a plain bearing", "2 lobes or more beside them"),
+            ("inlet", self.lobes > 1 and self.inlet is not None, "an inlet", between),
+            ("preload", self.preload >= 1.0, f"{self.preload:g}", "a share from 0 to below 1"),
+            ("offset", self.offset > 1.0, f"{self.offset:g}", "a share of the arc from 0 to 1"),
+            arc_row("lobe_arc", self.lobes, self.lobe_arc, "lobes"),
+        )

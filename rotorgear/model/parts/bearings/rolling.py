@@ -12,6 +12,7 @@ from rotorgear.errors import Problem
 from rotorgear.forces.designations import SERIES, class_clearance, inner_geometry
 from rotorgear.model.parts.bearings.geometry import UNIT, BearingGeometry, Judged
 from rotorgear.model.parts.fields import Angle, Force, NonNegativeLength, PositiveLength, PositiveRatio, Whole, refuse
+from rotorgear.model.parts.problems import told
 from rotorgear.quantity import millimetres
 
 if TYPE_CHECKING:
@@ -152,91 +153,83 @@ class RollingElements(BearingGeometry):
     def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
         """Rolling elements that fit into their bearing, beside a stiffness that the linear analyses take."""
         stiffness = beside.get("stiffness")
-        if "table" in beside or (stiffness and stiffness.given & {"matrix", "xy", "yx"}):
-            wanted = "stiffness along x, y, axial and tilt beside them"
-            yield Problem(here, "rolling elements beside a table or cross terms", wanted)
-        if self.elements < 3:
-            yield Problem(f"{here}.elements", str(self.elements), "at least 3")
-        if self.elements * self.element_diameter > math.pi * self.pitch_diameter:
-            text = f"{self.elements} of {millimetres(self.element_diameter)}"
-            wanted = f"elements that fit on a circle of {millimetres(self.pitch_diameter)}"
-            yield Problem(f"{here}.element_diameter", text, wanted)
+        crossed = "table" in beside or (stiffness and stiffness.given & {"matrix", "xy", "yx"})
+        diagonal = "stiffness along x, y, axial and tilt beside them"
+        size = millimetres(self.element_diameter)
+        fitting = f"elements that fit on a circle of {millimetres(self.pitch_diameter)}"
+        full = self.elements * self.element_diameter > math.pi * self.pitch_diameter
         rollers = self.kind in ("roller", "tapered")
         known = inner_geometry(self.designation or "")
+        others = []
         for key, value in known.keys.items() if known is not None else ():
             given = getattr(self, key)
             same = given == value or (isinstance(given, float) and math.isclose(given, value))
             if key != "contact_angle" and not same:
+                got = f"{given} beside designation = '{self.designation}'"
                 wanted = f"{value if key == 'kind' else f'{value:.6g}'} as {self.designation} has it, or no designation"
-                yield Problem(f"{here}.{key}", f"{given} beside designation = '{self.designation}'", wanted)
-        if rollers != (self.length is not None):
-            got = "a roller without length" if rollers else "a length of balls"
-            yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
-        if self.kind == "roller" and self.contact_angle:
-            yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
-        yield from self._rows(here)
-        yield from self._fit(here)
-        for key in ("inner_groove", "outer_groove"):
-            if getattr(self, key) <= 0.5:
-                wanted = "more than 0.5: a groove is wider than its ball"
-                yield Problem(f"{here}.{key}", f"{getattr(self, key):g}", wanted)
-        if not abs(self.contact_angle) < 1.4:
-            angle = f"{math.degrees(self.contact_angle):.6g} deg"
-            yield Problem(f"{here}.contact_angle", angle, "an angle below 80 deg")
+                others.append((key, True, got, wanted))
+        angle = f"{math.degrees(self.contact_angle):.6g} deg"
+        no_length = "a roller without length" if rollers else "a length of balls"
         reach = 2.0 * (self.inner_groove + self.outer_groove - 1.0) * self.element_diameter
-        if not rollers and reach > 0.0 and self.clearance >= reach * math.cos(self.contact_angle):
-            wanted = f"less than {millimetres(reach)}: the balls would fall out"
-            yield Problem(f"{here}.clearance", millimetres(self.clearance), wanted)
+        loose = not rollers and reach > 0.0 and self.clearance >= reach * math.cos(self.contact_angle)
+        inside = f"less than {millimetres(reach)}: the balls would fall out"
+        grooves = {key: getattr(self, key) for key in ("inner_groove", "outer_groove")}
+        wider = "more than 0.5: a groove is wider than its ball"
+        yield from told(
+            here,
+            ("", crossed, "rolling elements beside a table or cross terms", diagonal),
+            ("elements", self.elements < 3, str(self.elements), "at least 3"),
+            ("element_diameter", full, f"{self.elements} of {size}", fitting),
+            *others,
+            ("length", rollers != (self.length is not None), no_length, "a length for rollers, none for balls"),
+            ("contact_angle", self.kind == "roller" and self.contact_angle, "an angle", "0 for cylindrical rollers"),
+            *self._rows(angle, rollers),
+            *self._fit(),
+            *((key, value <= 0.5, f"{value:g}", wider) for key, value in grooves.items()),
+            ("contact_angle", not abs(self.contact_angle) < 1.4, angle, "an angle below 80 deg"),
+            ("clearance", loose, millimetres(self.clearance), inside),
+        )
 
-    def _rows(self, here: str) -> Iterator[Problem]:
+    def _rows(self, angle: str, rollers: bool) -> Iterator[tuple[Any, ...]]:
         """Rows with the contact angle that makes them press, and slices of rollers."""
-        if self.kind in ("tapered", "four-point") and not self.contact_angle:
-            wanted = f"an angle of a {self.kind} bearing, such as '15 deg' or '35 deg'"
-            yield Problem(f"{here}.contact_angle", "0", wanted)
+        pressing = f"an angle of a {self.kind} bearing, such as '15 deg' or '35 deg'"
+        yield "contact_angle", self.kind in ("tapered", "four-point") and not self.contact_angle, "0", pressing
         pair = self.arrangement != "single"
-        if pair and (self.kind not in ("ball", "tapered") or not self.contact_angle):
-            wanted = "a pair of angular contact ball or tapered roller bearings, with their contact_angle"
-            got = f"{self.arrangement} of a {self.kind} bearing without an angle"
-            yield Problem(f"{here}.arrangement", got, wanted)
-        if (pair or self.kind == "four-point") and self.contact_angle < 0.0:
-            angle = f"{math.degrees(self.contact_angle):.6g} deg"
-            yield Problem(f"{here}.contact_angle", angle, "a positive angle: the arrangement has the sides")
-        if pair != (self.row_distance is not None):
-            got = "a pair without a distance" if pair else "a distance of one row"
-            wanted = "the distance of the two rows beside an arrangement O, X or tandem"
-            yield Problem(f"{here}.row_distance", got, wanted)
-        if self.slices is not None and not (self.kind in ("roller", "tapered") and 1 <= self.slices <= 200):
-            yield Problem(f"{here}.slices", f"{self.slices} of a {self.kind} bearing", "1 to 200 slices of a roller")
+        straight = pair and (self.kind not in ("ball", "tapered") or not self.contact_angle)
+        got = f"{self.arrangement} of a {self.kind} bearing without an angle"
+        wanted = "a pair of angular contact ball or tapered roller bearings, with their contact_angle"
+        yield "arrangement", straight, got, wanted
+        two_sided = (pair or self.kind == "four-point") and self.contact_angle < 0.0
+        yield "contact_angle", two_sided, angle, "a positive angle: the arrangement has the sides"
+        got = "a pair without a distance" if pair else "a distance of one row"
+        wanted = "the distance of the two rows beside an arrangement O, X or tandem"
+        yield "row_distance", pair != (self.row_distance is not None), got, wanted
+        sliced = self.slices is not None and not (rollers and 1 <= self.slices <= 200)
+        yield "slices", sliced, f"{self.slices} of a {self.kind} bearing", "1 to 200 slices of a roller"
 
-    def _fit(self, here: str) -> Iterator[Problem]:
+    def _fit(self) -> Iterator[tuple[Any, ...]]:
         """A clearance class with its bore, and a preload of a bearing that can take one."""
+        bore = "no bore" if self.bore is None else millimetres(self.bore)
         if self.clearance_class is not None:
-            if self.kind != "ball" or self.contact_angle or self.clearance:
-                wanted = "the class of a deep groove ball bearing alone, or a clearance"
-                yield Problem(f"{here}.clearance_class", self.clearance_class, wanted)
-            if self.bore is None or class_clearance(self.bore, self.clearance_class) is None:
-                got = "no bore" if self.bore is None else millimetres(self.bore)
-                yield Problem(f"{here}.bore", got, "a bore above 10 to 120 mm, which the table of classes has")
-        elif self.bore is not None:
-            yield Problem(f"{here}.bore", millimetres(self.bore), "a clearance_class beside it, which it is for")
-        if (self.preload_displacement or self.preload_force) and not self.contact_angle:
-            yield Problem(here, "a preload without a contact angle", "a contact_angle, along which it presses")
-        if self.preload_displacement and self.preload_force:
-            yield Problem(here, "preload_displacement and preload_force", "one of the two")
+            alone = "the class of a deep groove ball bearing alone, or a clearance"
+            beside = self.kind != "ball" or self.contact_angle or self.clearance
+            yield "clearance_class", beside, self.clearance_class, alone
+            unknown = self.bore is None or class_clearance(self.bore, self.clearance_class) is None
+            yield "bore", unknown, bore, "a bore above 10 to 120 mm, which the table of classes has"
+        else:
+            yield "bore", self.bore is not None, bore, "a clearance_class beside it, which it is for"
+        pressed = (self.preload_displacement or self.preload_force) and not self.contact_angle
+        yield "", pressed, "a preload without a contact angle", "a contact_angle, along which it presses"
+        both = self.preload_displacement and self.preload_force
+        yield "", both, "preload_displacement and preload_force", "one of the two"
 
     def judged(self) -> Iterator[Judged]:
         """Clearance, preload, number and length of rolling elements against their diameter."""
         size = self.element_diameter
         for key, most in (("clearance", 0.05), ("preload_displacement", 0.02)):
             value = getattr(self, key)
-            yield (
-                key,
-                value / size,
-                (0.0, most),
-                f"{value:.4g} m",
-                "up to {1:g} of the diameter of an element",
-                "um meant?",
-            )
+            got = f"{value:.4g} m"
+            yield key, value / size, (0.0, most), got, "up to {1:g} of the diameter of an element", "um meant?"
         # Share of its circle that the elements of a row fill.
         filled = self.elements * size / (math.pi * self.pitch_diameter)
         got = f"{size:.4g} m, of which {self.elements} fill {filled:.2g} of their circle"

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import Field
 
 from rotorgear.errors import Problem
-from rotorgear.model.parts.bearings.geometry import UNIT, Judged, Oil
+from rotorgear.model.parts.bearings.geometry import UNIT, Judged, Oil, arc_row
 from rotorgear.model.parts.fields import Angle, PositiveLength, Ratio, Whole
+from rotorgear.model.parts.problems import told
 from rotorgear.quantity import millimetres
 
 if TYPE_CHECKING:
@@ -67,29 +68,26 @@ class ThrustGeometry(Oil):
     def problems(self, here: str, beside: Mapping[str, Any]) -> Iterator[Problem]:
         """Pads that fit and carry, on a grid that serves."""
         yield from super().problems(here, beside)
-        if self.inner_diameter >= self.outer_diameter:
-            wanted = f"less than the outer diameter of {millimetres(self.outer_diameter)}"
-            yield Problem(f"{here}.inner_diameter", millimetres(self.inner_diameter), wanted)
-        if self.clearance > 0.05 * self.outer_diameter:
-            wanted = "a film that is thin: at most a twentieth of the outer diameter, 1e-3 as a rule"
-            yield Problem(f"{here}.clearance", millimetres(self.clearance), wanted)
-        if not 1 <= self.pads <= 40:
-            yield Problem(f"{here}.pads", str(self.pads), "1 to 40 pads")
-        elif self.pad_arc is not None and not 0.0 < self.pads * self.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
-            got = f"{self.pads} of {math.degrees(self.pad_arc):.6g} deg"
-            yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
-        if (self.taper is None) == (self.pivot is None):
-            got = "neither taper nor pivot" if self.taper is None else "taper and pivot"
-            yield Problem(here, got, "a taper of fixed pads, or the pivot of tilting ones")
-        if self.pivot is not None and not 0.0 < self.pivot < 1.0:
-            yield Problem(f"{here}.pivot", f"{self.pivot:g}", "a share of the arc between 0 and 1")
-        if not 0.0 < self.taper_share <= 1.0:
-            yield Problem(f"{here}.taper_share", f"{self.taper_share:g}", "a share of the arc above 0, up to 1")
-        if not self.whirl_ratio:
-            yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")
-        for key, least, most in (("around", 6, 400), ("across", 4, 200)):
-            if not least <= getattr(self, key) <= most:
-                yield Problem(f"{here}.{key}", f"{getattr(self, key)}", f"{least} to {most} cells")
+        inside = f"less than the outer diameter of {millimetres(self.outer_diameter)}"
+        thin = "a film that is thin: at most a twentieth of the outer diameter, 1e-3 as a rule"
+        few = 1 <= self.pads <= 40
+        both = "neither taper nor pivot" if self.taper is None else "taper and pivot"
+        either = "a taper of fixed pads, or the pivot of tilting ones"
+        above = "a share of the arc above 0, up to 1"
+        pivot = 0.5 if self.pivot is None else self.pivot
+        cells = [("around", self.around, 6, 400), ("across", self.across, 4, 200)]
+        yield from told(
+            here,
+            ("inner_diameter", self.inner_diameter >= self.outer_diameter, millimetres(self.inner_diameter), inside),
+            ("clearance", self.clearance > 0.05 * self.outer_diameter, millimetres(self.clearance), thin),
+            ("pads", not few, str(self.pads), "1 to 40 pads"),
+            arc_row("pad_arc", self.pads, self.pad_arc if few else None, "pads"),
+            ("", (self.taper is None) == (self.pivot is None), both, either),
+            ("pivot", not 0.0 < pivot < 1.0, f"{pivot:g}", "a share of the arc between 0 and 1"),
+            ("taper_share", not 0.0 < self.taper_share <= 1.0, f"{self.taper_share:g}", above),
+            ("whirl_ratio", not self.whirl_ratio, "0", "a ratio above 0; 1 is synchronous"),
+            *((key, not least <= n <= most, f"{n}", f"{least} to {most} cells") for key, n, least, most in cells),
+        )
 
     def judged(self) -> Iterator[Judged]:
         """The oil and its gap, and before its density the taper."""

@@ -132,8 +132,9 @@ def test_the_slope_of_the_penalty_is_its_difference_quotient_where_participation
     inside = np.abs(state.hz / state.line_hz[0] - 1.0) < 0.35
     # The participation that most depends on the numbers stands on the ramp, so that its slope takes part.
     problem.least = float(np.sort(state.taken[0, inside])[-2]) / 0.85
-    (turning, *_) = [one for one in near_modes(state, 0.4, problem.least) if one.weight_slope > 0.0]
-    assert turning.height > 1e-2
+    near = near_modes(state, np.full(state.taken.shape, 0.4), problem.least)
+    (height, *_) = [height for _, _, _, weight_slope, height, _ in near if weight_slope > 0.0]
+    assert height > 1e-2
     slopes = problem.slopes(t, problem.states(t))
 
     def value(j: int, h: float) -> float:

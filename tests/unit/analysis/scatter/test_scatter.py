@@ -119,7 +119,6 @@ def test_rotating_states_are_those_of_the_hermitian_matrix_also_where_frequencie
 
 def test_forward_and_backward_whirl_take_part_in_unbalance_as_their_sense_says():
     from rotorgear.analysis.common.excitation import excitation_orders
-    from rotorgear.analysis.sensitivity.forms import participations
 
     rotor = model("jeffcott")
     for speed in (600.0, -600.0):
@@ -127,7 +126,7 @@ def test_forward_and_backward_whirl_take_part_in_unbalance_as_their_sense_says()
         forms = forms_of(system, speed, np.eye(system.n))
         found = modes_of(forms, 8, 1.0, system.n)
         lines = tuple(line for line in excitation_orders(rotor) if line.name == "shaft rotor 1x")
-        taken = participations(FormNames.of(rotor, speed), lines, forms, found)[0]
+        taken = FormNames.of(rotor, speed).participations(lines, forms, found)[0]
         whirl = list(rg.modal(rotor, speed=speed, modes=10, elements=2).whirl)
         assert taken.max() == pytest.approx(1.0, abs=0.05)
         assert "forward" in whirl
