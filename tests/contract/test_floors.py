@@ -6,6 +6,7 @@ An import inside a function counts like one at the top: it may save time, but it
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -36,62 +37,19 @@ FLOORS = {
     "page": 9,
     "cli": 10,
 }
-# Which room of a floor may import which other one: the plan of docs/architecture.md. A new arrow is a decision, made here.
-ROOMS = {
-    "analysis": {
-        "common": set(),
-        "static": {"common"},
-        "modal": {"common", "static"},
-        "campbell": {"common", "modal", "static"},
-        "response": {"common", "modal", "static"},
-        "transient": {"common", "static"},
-        "sweep": {"common", "static", "transient"},
-        "orbits": {"common", "static", "sweep", "transient"},
-        "teeth": {"common"},
-        "bearing": {"campbell", "common", "modal", "static"},
-        "sensitivity": {"static"},
-        "scatter": {"common", "modal", "sensitivity", "static", "transient"},
-        "layout": {"common", "sensitivity", "static"},
-        "rig": {"common", "modal", "response", "sensitivity", "static"},
-        "casing": {"common"},
-        "standards": {"campbell", "common", "modal", "response", "static"},
-        "studies": {
-            *(
-                "bearing",
-                "campbell",
-                "casing",
-                "common",
-                "modal",
-                "orbits",
-                "response",
-                "static",
-                "sweep",
-                "teeth",
-                "transient",
-            ),
-        },
-        "": {"studies"},
-    },
-    "gears": {
-        "geometry": set(),
-        "tooth_fe": {"geometry"},
-        "stiffness": {"geometry", "tooth_fe"},
-        "loaded": {"geometry", "stiffness", "tooth_fe"},
-        "maps": {"geometry", "loaded", "stiffness", "tooth_fe"},
-        "": {"geometry", "loaded", "stiffness", "tooth_fe"},
-    },
-    "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
-    "solvers": {
-        "": set(),
-        "sparse": set(),
-        "eigen": {"sparse"},
-        "time": {"eigen", "sparse"},
-        "frequency": {"eigen", "sparse", "time"},
-        "periodic": {"eigen", "sparse", "time"},
-        "contact": {"time"},
-        "batch": {"contact", "time"},
-    },
-}
+
+
+def planned_rooms() -> dict[str, dict[str, set[str]]]:
+    """Which room of a floor may import which other one, from the table of docs/architecture.md; "" holds files beside rooms."""
+    rooms: dict[str, dict[str, set[str]]] = {}
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    for name, imports in re.findall(r"^\| `([a-z_/]+)` \| .* \| ([a-z_, -]+) \|$", page, re.MULTILINE):
+        floor, _, room = name.partition("/")
+        rooms.setdefault(floor, {})[room] = set(imports.split(", ")) - {"-"}
+    return rooms
+
+
+ROOMS = planned_rooms()
 # Modules that load others by a name which no walk can read in their source, and the package that the name may lead to.
 BY_NAME = {
     "rotorgear.forces.registry": "rotorgear.forces",
@@ -272,6 +230,14 @@ def test_modules_do_not_import_each_other_in_a_circle(house: Arrows) -> None:
 
 def test_rooms_import_each_other_as_planned(house: Arrows) -> None:
     assert unplanned_arrows(house) == []
+
+
+def test_the_plan_names_every_room_that_there_is_and_no_other() -> None:
+    there = {
+        file.parent.relative_to(ROOT / "rotorgear").as_posix() for file in (ROOT / "rotorgear").rglob("*/__init__.py")
+    }
+    rooms = {name for name in there if "/" in name and not name.startswith("model/parts/")}
+    assert rooms == {f"{floor}/{room}" for floor, planned in ROOMS.items() for room in planned if room}
 
 
 def test_the_plan_of_the_rooms_has_no_circle() -> None:

@@ -244,9 +244,15 @@ def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str
         )
     base = float(fastest / turns)
     labels = tuple(dict.fromkeys(p.part for p in varying if _keeps(p.law, base)))
-    still = sorted({p.part for p in varying if not _keeps(p.law, base)})
-    notes = [Note("", f"excitation by {', '.join(still)}", "at its mean, because one stage excites at a time")]
-    return base, labels, tuple(notes if still else ())
+    why = "one stage excites at a time, all else at its mean"
+    still = {p.part: "" if _is_mean_free(p.law) else "what varies" for p in varying if not _keeps(p.law, base)}
+    return base, labels, tuple(Note(part, still[part], why) for part in sorted(still))
+
+
+def _is_mean_free(law: LocalLaw) -> bool:
+    """Whether nothing is left of a law at its mean, such as of an unbalance."""
+    given = all(column.kind == PRESCRIBED for column in law.columns())
+    return given and not np.any(law.mean().evaluate(0.0).force)  # type: ignore[attr-defined]
 
 
 def with_modal_damping(local: LocalSystem, ratio: float) -> LocalSystem:
