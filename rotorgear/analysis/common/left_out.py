@@ -91,8 +91,13 @@ _OF_FLANKS = (
 _MOTION = ("bending", "bending", "axial", "bending", "bending", "torsion")
 
 
-def left_out(system: System, analysis: Analysis, speed: float | None, *, undamped: bool = False) -> tuple[Note, ...]:
-    """What of its model an analysis at a speed in rad/s leaves out; None of the speed is an undamped one at standstill."""
+def left_out(
+    system: System, analysis: Analysis, speed: float | None, *, undamped: bool = False, contacts_only: bool = False
+) -> tuple[Note, ...]:
+    """What of its model an analysis at a speed in rad/s leaves out; None of the speed is an undamped one at standstill.
+
+    `contacts_only`: of the motions, the result tells those of the contacts.
+    """
     model = system.model
     undamped = undamped or speed is None
     kinds = {analysis, "undamped"} if undamped and analysis == "modes" else {analysis}
@@ -105,6 +110,7 @@ def left_out(system: System, analysis: Analysis, speed: float | None, *, undampe
         *_flanks(model, analysis),
         *_beside_laws(model, analysis),
         *_operating_point(system, analysis, speed),
+        *(_bearing_loads(system) if contacts_only else ()),
         *(note for load in system.layout.external_loads for note in _of_load(system, load, analysis)),
         *_beta(system, analysis, speed),
         *(mesh_stiffness(system) if analysis in ("modes", "frf") else ()),
@@ -264,8 +270,7 @@ def _operating_point(system: System, analysis: Analysis, speed: float | None) ->
         yield Note("operation.speed", "", why, in_words(operation, "speed"))
     if analysis == "static" or about:
         return
-    determinate = not system.layout.assembly.loops and len(system.state.forces) == len(model.meshes)
-    if analysis != "response" or determinate:
+    if analysis != "response" or _is_determinate(system):
         why = "vibration about the mean state does not depend on it"
         if operation is not None and operation.gravity and any(operation.gravity):
             yield Note("operation.gravity", "", why, in_words(operation, "gravity"))
@@ -285,6 +290,25 @@ def _operating_point(system: System, analysis: Analysis, speed: float | None) ->
         for name, torque in model.loads.items():
             if torque.kind is not None and getattr(torque, key) is not None:
                 yield Note(f"loads.{name}.{key}", "", only, in_words(torque, key))
+
+
+def _bearing_loads(system: System) -> Iterator[Note]:
+    """Constant loads that move the shafts, where the contacts do not feel that: their forces follow from the torques."""
+    model = system.model
+    laws = model.nonlinear_elements or any(bearing.has_law for bearing in model.bearings.values())
+    if laws or not _is_determinate(system) or any(mesh.tilt for mesh in model.meshes.values()):
+        return
+    why = "bearings carry it, and the contacts do not feel where the shafts are"
+    if model.operation is not None and model.operation.gravity and any(model.operation.gravity):
+        yield Note("operation.gravity", "", why, in_words(model.operation, "gravity"))
+    for load in system.layout.external_loads:
+        if load.constant.any() and not load.constant[5] and not load.amplitude.any() and load.history is None:
+            yield Note(load.address, "", why, _size(load))
+
+
+def _is_determinate(system: System) -> bool:
+    """Whether the torques alone give the forces of all contacts."""
+    return not system.layout.assembly.loops and len(system.state.forces) == len(system.model.meshes)
 
 
 def _says_speed(system: System, analysis: Analysis, speed: float | None) -> bool:

@@ -222,7 +222,7 @@ class PointMaker:
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
         watched = np.hstack([built.local.watched_vectors, approach])
         built = replace(built, local=replace(built.local, watched=watched))
-        self.left_out.append(left_out_in_time(built, speed))
+        self.left_out.append(left_out_in_time(built, speed, contacts_only=True))
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")

@@ -119,8 +119,8 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
         needed = steps_needed(point.system)
         least = steps_stable(point.system)
         classes = max(0, int(np.ceil(2.0 * np.log2(max(needed, LEAST_STEPS) / LEAST_STEPS) - 1e-9)))
-        steps[i] = wanted or int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))
-        if wanted is None and steps[i] > MOST_STEPS:
+        steps[i] = wanted or min(int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes))), MOST_STEPS)
+        if wanted is None and needed > MOST_STEPS:
             refused[i] = (
                 f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): "
                 "make it rigid, or ask for the steps"

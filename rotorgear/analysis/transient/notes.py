@@ -28,10 +28,11 @@ _UNSETTLED = 0.1
 _DRIFT = 0.01
 
 
-def left_out_in_time(local: LocalModel, speed: float) -> tuple[Note, ...]:
-    """What a motion over time at a speed of the reference in rad/s leaves out of its model."""
+def left_out_in_time(local: LocalModel, speed: float, *, contacts_only: bool = False) -> tuple[Note, ...]:
+    """What a motion over time at a speed of the reference in rad/s leaves out of its model; `contacts_only` as in `left_out`."""
     system = local.system
-    return (*left_out(system, "time", speed), *transient_left_out(local), *mean_torsion_notes(system, speed))
+    told = left_out(system, "time", speed, contacts_only=contacts_only)
+    return (*told, *transient_left_out(local), *mean_torsion_notes(system, speed))
 
 
 def transient_left_out(local: LocalModel) -> tuple[Note, ...]:

@@ -23,9 +23,11 @@ MESH = {
     "application_factor": 1.2,
 }
 PUSH = {"shaft": "two", "at": 0.03, "force": [0.0, -300.0, 0.0]}
-UNBALANCE = {"u": {"shaft": "two", "at": 0.06, "magnitude": 1e-4}}
+UNBALANCE = {"u": {"shaft": "two", "at": 0.06, "magnitude": 5e-3}}
 BALLS = {"kind": "ball", "elements": 9, "element_diameter": 0.0115, "pitch_diameter": 0.0435, "clearance": 1e-5}
 JOURNAL = 'journal = { diameter = "60 mm", length = "30 mm", clearance = "60 um", viscosity = "0.02 Pa s" }'
+
+TEETH = {"meshes__pair__stiffness": "tooth_fe", "meshes__pair__stiffness_variation": []}
 
 
 def full(**changes: Any) -> rg.Model:
@@ -76,6 +78,8 @@ MODELS: dict[str, Callable[[], rg.Model]] = {
     "iso": lambda: full(meshes__pair__stiffness="iso", meshes__pair__stiffness_variation=[]),
     "potential energy": lambda: full(meshes__pair__stiffness="potential_energy", meshes__pair__stiffness_variation=[]),
     "listed": lambda: full(meshes__pair__stiffness=[2.6e8, 3.4e8, 3.2e8, 2.8e8], meshes__pair__stiffness_variation=[]),
+    "loaded teeth": lambda: full(**TEETH),
+    "loaded teeth that tilt": lambda: full(**TEETH, meshes__pair__tilt=True, meshes__pair__misalignment="20 um"),
     "tilting": lambda: full(meshes__pair__tilt=True, meshes__pair__misalignment="60 um", operation__gravity=None),
     "misaligned": lambda: full(meshes__pair__misalignment="2 um", meshes__pair__index_error="3 um"),
     "two descriptions": lambda: full(bearings__a__rolling=BALLS),

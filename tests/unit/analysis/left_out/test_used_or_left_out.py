@@ -12,9 +12,15 @@ from rotorgear.note import as_notes
 from tests.unit.analysis.left_out.models_used import MODELS
 from tests.unit.analysis.left_out.used import LONG_VERBS, VERBS, used
 
-# Long: a motion of the whole gearbox for each of its keys.
+# Long: a motion of the whole gearbox, or maps of loaded teeth, for each of its keys.
 SLOW = {("split torque", "transient"), ("journal", "transient")}
-QUICK = ("full", "rotor")
+QUICK = {
+    "campbell": ("full", "rotor"),
+    "critical": ("full", "rotor", "balls", "journal"),
+    "state space": ("full", "tilting", "element", "journal"),
+    "sweep": ("plain", "rotor", "backlash pair"),
+    "orbits": ("plain", "rotor"),
+}
 
 
 def cases() -> list[object]:
@@ -22,7 +28,7 @@ def cases() -> list[object]:
     found = []
     for name in MODELS:
         for verb in (*VERBS, *LONG_VERBS):
-            slow = (name, verb) in SLOW or (verb in LONG_VERBS and name not in QUICK)
+            slow = (name, verb) in SLOW or name.startswith("loaded teeth") or name not in QUICK.get(verb, MODELS)
             found.append(pytest.param(name, verb, marks=pytest.mark.long if slow else ()))
     return found
 
@@ -36,7 +42,7 @@ def covers(part: str, key: str) -> bool:
 def test_what_is_not_used_is_left_out_and_what_is_left_out_is_not_used(name: str, verb: str) -> None:
     try:
         result, moves = used(MODELS[name](), verb)
-    except rg.AnalysisError as error:
+    except rg.RotorgearError as error:
         pytest.skip(str(error))
     facts = [note for note in as_notes(result.left_out) if note.part]
     said = {key: [fact for fact in facts if covers(fact.part, key)] for key in moves}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -96,8 +97,12 @@ VERBS: dict[str, Verb] = {
 
 
 def _sweep(model: rg.Model) -> Any:
-    """One point, some periods: what moves it does so in the first of them."""
-    return rg.sweep(model, {"as given": [0.0]}, change=lambda same, _: same, discard=1, sample=3, exponents=0)
+    """One point and one period: what moves it does so there. Modes are kept where all of them would need too short steps."""
+    run = partial(rg.sweep, over={"as given": [0.0]}, change=lambda same, _: same, discard=0, sample=1, exponents=0)
+    try:
+        return run(model)
+    except rg.RotorgearError:
+        return run(model, modes=2)
 
 
 def _orbits(model: rg.Model) -> Any:
