@@ -212,7 +212,7 @@ def orbits(
         method=why,
         status=short or "success",
         left_out=(
-            *left_out_in_time(family.local, plant.speed, contacts_only=not told.place),
+            *left_out_in_time(family.local, plant.speed, contacts_only=not outputs.place),
             *family.notes,
             *_modes_left_out(problem),
         ),

@@ -18,7 +18,7 @@ QUICK = {
     "campbell": ("full", "rotor"),
     "critical": ("full", "rotor", "balls", "journal"),
     "state space": ("full", "tilting", "element", "journal"),
-    "sweep": ("plain", "rotor", "backlash pair"),
+    "sweep": ("plain", "backlash pair"),
     "orbits": ("plain", "rotor"),
 }
 

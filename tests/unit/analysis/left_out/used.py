@@ -168,10 +168,16 @@ def moved(one: list[np.ndarray], other: list[np.ndarray]) -> bool:
 
 
 def used(model: rg.Model, verb: str) -> tuple[Any, dict[str, bool]]:
-    """The result of a verb, and of each key of the model whether the numbers of that result depend on it."""
+    """The result of a verb, and of each key of the model whether the numbers of that result depend on it.
+
+    Raises:
+        RotorgearError: the verb does not take the model, or has nothing to tell of it.
+    """
     run, read = (VERBS | LONG_VERBS)[verb]
     result = run(model)
     numbers = read(result)
+    if not any(array.size for array in numbers):
+        raise rg.AnalysisError("the result tells of contacts only, and there is none")
     found = {}
     for key, values in keys_of(model):
         if key == REQUESTED.get(verb):
