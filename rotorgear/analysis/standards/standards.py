@@ -19,7 +19,7 @@ from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.standards import rules
-from rotorgear.analysis.standards.unbalance import UnbalanceResponse, antinodes, plant_up_to
+from rotorgear.analysis.standards.unbalance import UnbalanceResponse, plant_up_to
 from rotorgear.analysis.static.lowest_speed import needs_rotation
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -34,6 +34,7 @@ from rotorgear.results.standards import (
     WITHIN,
     ResponseCritical,
     RuleCheck,
+    RuleTable,
     StandardsResult,
 )
 
@@ -152,8 +153,23 @@ def judged(found: CriticalResult, model: Model, grade: float, progress: Progress
     )
 
 
-def _verdict(kept: bool) -> str:
-    return WITHIN if kept else NOT_WITHIN
+def _check(
+    rule: RuleTable,
+    part: str,
+    note: str,
+    what: str = "-",
+    unit: str = "",
+    value: float | None = None,
+    limit: float | None = None,
+    *,
+    at_most: bool = False,
+) -> RuleCheck:
+    """One rule on one part: within where the value is at least the limit, or `at_most` that; without both not applicable."""
+    if value is None or limit is None:
+        verdict = NOT_APPLICABLE
+    else:
+        verdict = WITHIN if (value <= limit if at_most else value >= limit) else NOT_WITHIN
+    return RuleCheck(rule.name, part, what, unit, value, limit, verdict, note)
 
 
 class _Lateral:
@@ -188,18 +204,12 @@ class _Lateral:
                     else "no peak of its unbalance response"
                 )
                 note = f"{why} up to {ratio * top * RPM_PER_RAD_S:.6g} rpm of the shaft"
-                for rule in (rules.SEPARATION, rules.VIBRATION):
-                    self.checks.append(
-                        RuleCheck(rule.name, f"shafts.{shaft}", "-", "", None, None, NOT_APPLICABLE, note)
-                    )
+                self.checks += [_check(rule, f"shafts.{shaft}", note) for rule in (rules.SEPARATION, rules.VIBRATION)]
 
         damped = [one.speed for one in self.criticals if math.isfinite(one.amplification_factor)]
         near = np.multiply.outer(damped, 1.0 + np.array(_NEAR_PEAKS)).ravel()
-        self.curve_speeds = np.unique(
-            np.concatenate(
-                [np.linspace(max(0.02 * top, self.low), top, _CURVE), near[(near > self.low) & (near < top)]]
-            )
-        )
+        even = np.linspace(max(0.02 * top, self.low), top, _CURVE)
+        self.curve_speeds = np.unique(np.concatenate([even, near[(near > self.low) & (near < top)]]))
         self.curves = {
             shaft: np.array([response.orbits(speed, [probe])[0] for speed in self.curve_speeds])
             for shaft, (response, probe) in self._first.items()
@@ -208,11 +218,10 @@ class _Lateral:
     def _peak(self, shaft: str, found: CriticalResult, k: int, direction: int) -> None:
         """The peak of the response to unbalance in the shape of one critical speed; none where it makes no peak of its own."""
         item = found.speeds[k]
-        where = antinodes(self.plant.system, shaft, found.nodes, found.shapes[:, :, k])
-        if not where.nodes.size or where.mass.sum() <= 0.0:
-            return
         rpm = abs(self.plant.system.train.ratio(shaft)) * self.operating * RPM_PER_RAD_S
-        response = UnbalanceResponse(self.plant, shaft, direction, where, rpm)
+        response = UnbalanceResponse(self.plant, shaft, direction, (found.nodes, found.shapes[:, :, k]), rpm)
+        if response.unbalance.sum() <= 0.0:
+            return
         near = abs(item.speed)
         undamped = item.damping_ratio < _UNDAMPED
         # Of an undamped resonance the place of the largest response is told beside it.
@@ -242,7 +251,7 @@ class _Lateral:
                 whirl=item.whirl,
                 place_z=self.plant.system.nodes.z[probe],
                 unbalance_kg_m=float(response.unbalance.sum()),
-                antinodes_z=tuple(float(z) for z in where.z),
+                antinodes_z=tuple(float(z) for z in response.z),
                 speed=speed,
                 shaft_rpm=response.rpm(speed),
                 below_rpm=below,
@@ -253,20 +262,16 @@ class _Lateral:
                 error_estimate=item.error_estimate,
             )
         )
-        self._margin(shaft, response.rpm(speed), factor, required, margin)
-        self._responses.setdefault(shaft, []).append((response, speed))
-        self._first.setdefault(shaft, (response, probe))
-
-    def _margin(self, shaft: str, rpm: float, factor: float, required: float | None, margin: float) -> None:
-        part = f"shafts.{shaft}, {rpm:.5g} rpm"
         if math.isnan(factor):
             note = "the response does not fall to 0.707 of this peak on either side"
         elif required is None:
             note = f"AF {factor:.4g} is below {rules.LEAST_AMPLIFICATION}: no margin is asked for"
         else:
             note = "undamped: AF without bound" if math.isinf(factor) else f"AF {factor:.5g}"
-        verdict = NOT_APPLICABLE if required is None else _verdict(margin >= required)
-        self.checks.append(RuleCheck(rules.SEPARATION.name, part, "separation", "%", margin, required, verdict, note))
+        part = f"shafts.{shaft}, {response.rpm(speed):.5g} rpm"
+        self.checks.append(_check(rules.SEPARATION, part, note, "separation", "%", margin, required))
+        self._responses.setdefault(shaft, []).append((response, speed))
+        self._first.setdefault(shaft, (response, probe))
 
     def _vibration(self, shaft: str, responses: list[tuple[UnbalanceResponse, float]]) -> None:
         """The largest orbit of each bearing at the operating speed over the unbalances of all peaks, against both limits."""
@@ -284,27 +289,30 @@ class _Lateral:
                 f"at {rpm:.6g} rpm, {1e6 * response.unbalance.sum():.4g} g mm in the shape of the peak at "
                 f"{response.rpm(peak):.5g} rpm"
             )
-            limits = [(rules.VIBRATION.name, "peak to peak", 1e6 * rules.vibration_limit(rpm))]
+            limits = [(rules.VIBRATION, "peak to peak", 1e6 * rules.vibration_limit(rpm))]
             if (play := bearing.geometry.play if bearing.geometry else None) is not None:
-                limits.append((rules.CLEARANCE.name, "major axis", 1e6 * rules.CLEARANCE_SHARE * play))
+                limits.append((rules.CLEARANCE, "major axis", 1e6 * rules.CLEARANCE_SHARE * play))
             self.checks += [
-                RuleCheck(rule, f"bearings.{name}", what, "um", size, limit, _verdict(size <= limit), note)
+                _check(rule, f"bearings.{name}", note, what, "um", size, limit, at_most=True)
                 for rule, what, limit in limits
             ]
 
 
 def _stability(model: Model, running: ModalResult) -> Iterator[RuleCheck]:
     """The logarithmic decrement of each shaft's first bending mode that does not whirl backward, and of all that grow."""
-    name = rules.STABILITY.name
     zeta = running.damping_ratio
     decrement = 2.0 * np.pi * zeta / np.sqrt(np.maximum(1.0 - zeta**2, 1e-300))
     moving = ~running.rigid & (np.abs(running.eigenvalues.imag) > 0.0)
+    what = "logarithmic decrement"
+    least = rules.LEAST_DECREMENT
     if not np.any(np.abs(zeta[moving]) > _UNDAMPED):
-        note = "nothing damps the model"
-        yield RuleCheck(
-            name, "all modes", "logarithmic decrement", "", None, rules.LEAST_DECREMENT, NOT_APPLICABLE, note
-        )
+        yield _check(rules.STABILITY, "all modes", "nothing damps the model", what, limit=least)
         return
+
+    def decrement_of(part: str, mode: int) -> RuleCheck:
+        note = f"mode {mode + 1} at {running.frequency_hz[mode]:.4f} Hz: {running.description[mode]}"
+        return _check(rules.STABILITY, part, note, what, value=float(decrement[mode]), limit=least)
+
     lateral = {
         shaft: np.linalg.norm(np.abs(running.shapes[running.nodes.on_shaft(shaft), :2]), axis=1).max(axis=0)
         for shaft in model.shafts
@@ -316,21 +324,13 @@ def _stability(model: Model, running: ModalResult) -> Iterator[RuleCheck]:
         forward = np.flatnonzero(moving & largest & (whirl > _BACKWARD))
         if not forward.size:
             note = f"no forward or planar bending of this shaft among the lowest {len(running)} modes"
-            yield RuleCheck(name, f"shafts.{shaft}", "-", "", None, None, NOT_APPLICABLE, note)
+            yield _check(rules.STABILITY, f"shafts.{shaft}", note)
             continue
         shown.add(int(forward[0]))
-        yield _decrement(f"shafts.{shaft}", running, int(forward[0]), float(decrement[forward[0]]))
+        yield decrement_of(f"shafts.{shaft}", int(forward[0]))
     for mode in np.flatnonzero(moving & (zeta < -_UNDAMPED)):
         if int(mode) not in shown:
-            yield _decrement(f"mode {mode + 1}", running, int(mode), float(decrement[mode]))
-
-
-def _decrement(part: str, running: ModalResult, mode: int, value: float) -> RuleCheck:
-    note = f"mode {mode + 1} at {running.frequency_hz[mode]:.4f} Hz: {running.description[mode]}"
-    verdict = _verdict(value >= rules.LEAST_DECREMENT)
-    return RuleCheck(
-        rules.STABILITY.name, part, "logarithmic decrement", "", value, rules.LEAST_DECREMENT, verdict, note
-    )
+            yield decrement_of(f"mode {mode + 1}", int(mode))
 
 
 def _interference(lines: tuple[ExcitationOrder, ...], operating: float, torsional: ModalResult) -> Iterator[RuleCheck]:
@@ -341,16 +341,14 @@ def _interference(lines: tuple[ExcitationOrder, ...], operating: float, torsiona
         hz = line.frequency_hz(operating)
         if not torsion.size:
             note = f"no torsional mode up to {1.2 * hz:.5g} Hz"
-            yield RuleCheck(rules.INTERFERENCE.name, line.name, "-", "%", None, limit, NOT_APPLICABLE, note)
+            yield _check(rules.INTERFERENCE, line.name, note, unit="%", limit=limit)
             continue
         away = np.abs(torsional.frequency_hz[torsion] / hz - 1.0)
         nearest = int(torsion[int(np.argmin(away))])
         at = f"mode {nearest + 1} at {torsional.frequency_hz[nearest]:.5g} Hz"
         note = f"line at {hz:.5g} Hz, {at}: {torsional.description[nearest]}"
         margin = 100.0 * float(away.min())
-        yield RuleCheck(
-            rules.INTERFERENCE.name, line.name, "separation", "%", margin, limit, _verdict(margin >= limit), note
-        )
+        yield _check(rules.INTERFERENCE, line.name, note, "separation", "%", margin, limit)
 
 
 def _balance(model: Model, grade: float, operating: float) -> Iterator[RuleCheck]:
@@ -362,8 +360,6 @@ def _balance(model: Model, grade: float, operating: float) -> Iterator[RuleCheck
         limit = 1e6 * rules.residual_unbalance(grade, row.shaft_mass_kg + row.body_mass_kg, rpm)
         mine = [item.magnitude for item in model.unbalances.values() if item.shaft == row.name]
         value = 1e6 * sum(mine) if mine else None
-        note = f"G {grade:g}, {row.shaft_mass_kg + row.body_mass_kg:.4g} kg at {rpm:.6g} rpm" + (
-            "" if mine else "; the model gives this shaft no unbalance"
-        )
-        verdict = NOT_APPLICABLE if value is None else _verdict(value <= limit)
-        yield RuleCheck(rules.RESIDUAL.name, f"shafts.{row.name}", "unbalance", "g mm", value, limit, verdict, note)
+        note = f"G {grade:g}, {row.shaft_mass_kg + row.body_mass_kg:.4g} kg at {rpm:.6g} rpm"
+        note += "" if mine else "; the model gives this shaft no unbalance"
+        yield _check(rules.RESIDUAL, f"shafts.{row.name}", note, "unbalance", "g mm", value, limit, at_most=True)

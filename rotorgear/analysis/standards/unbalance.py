@@ -7,7 +7,6 @@ Re((X, Y) e^{iwt}); its major semi-axis is (|X + iY| + |X - iY|)/2.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,24 +21,10 @@ from rotorgear.results.modal import NodeTable
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to
 from rotorgear.system.loads import weight_loads
-from rotorgear.system.system import System
 
 # Where the shape is smaller than this share of its largest deflection there is no antinode.
 _SEEN = 0.1
 _TANGENTS = 9
-
-
-@dataclass(frozen=True)
-class Antinodes:
-    """Places of a shape's largest deflections on a shaft: numbers of nodes, z in m, side of the axis, and masses in kg.
-
-    Each takes the mass of the rotor that is nearer to it than to the others.
-    """
-
-    nodes: np.ndarray
-    z: np.ndarray
-    side: np.ndarray
-    mass: np.ndarray
 
 
 def plant_up_to(
@@ -62,50 +47,49 @@ def plant_up_to(
     return Plant(system, contact_lines(system), damping), first.notes
 
 
-def antinodes(system: System, shaft: str, nodes: NodeTable, shape: np.ndarray) -> Antinodes:
-    """Antinodes of a shape's deflection on a shaft.
-
-    Args:
-        system: whose nodes carry the unbalance; shaft: name.
-        nodes: of the shape; shape: displacements of all of them, (p, 6) complex.
-    """
-    there = nodes.on_shaft(shaft)
-    moved = shape[there, :2]
-    size = np.linalg.norm(np.abs(moved), axis=1)
-    padded = np.concatenate([[-1.0], size, [-1.0]])
-    inner = np.flatnonzero((size >= padded[:-2]) & (size > padded[2:]) & (size >= _SEEN * size.max(initial=0.0)))
-    z = nodes.position[there[inner], 2]
-    # Deflections lie on one side or the other of the axis: the sign of the projection on the largest one.
-    largest = moved[int(np.argmax(size))]
-    side = np.where(np.real(moved[inner] @ largest.conj()) >= 0.0, 1.0, -1.0)
-    at = np.array([system.nodes.at(shaft, place) for place in z], dtype=int)
-    kept = np.unique(at, return_index=True)[1]
-    weights = weight_loads(system, (1.0, 0.0, 0.0))
-    own = system.nodes.on_shaft(shaft)
-    places = np.array([system.nodes.z[node] for node in own])
-    nearest = np.argmin(np.abs(places[:, None] - z[kept]), axis=1) if kept.size else np.zeros(0, int)
-    mass = np.array([weights[6 * own[nearest == k]].sum() for k in range(len(kept))])
-    return Antinodes(at[kept], z[kept], side[kept], mass)
-
-
 class UnbalanceResponse:
-    """Response of a plant to the unbalance of one shaft.
+    """Response of a plant to unbalance at the antinodes of a shape's deflection on one shaft.
+
+    Each antinode takes the mass of the rotor that is nearer to it than to the others.
 
     Args:
         plant: of the model; shaft: name of the rotor; direction: sense of the input shaft.
-        where: antinodes that carry it; rpm: speed of the shaft that the unbalance is for.
+        shape: its nodes, and the displacements of all of them, (p, 6) complex.
+        rpm: speed of the shaft that the unbalance is for.
+
+    Attributes:
+        z: (a,) places of the antinodes in m.
+        unbalance: (a,) in kg m; empty where there is no antinode.
+        nodes: numbers of the shaft's nodes.
     """
 
-    def __init__(self, plant: Plant, shaft: str, direction: int, where: Antinodes, rpm: float) -> None:
+    def __init__(
+        self, plant: Plant, shaft: str, direction: int, shape: tuple[NodeTable, np.ndarray], rpm: float
+    ) -> None:
         system = plant.system
         self.plant = plant
         self.ratio = abs(system.train.ratio(shaft))
-        self.unbalance = np.array([trial_unbalance(mass, rpm) for mass in where.mass])
         self.nodes = system.nodes.on_shaft(shaft)
+        there = shape[0].on_shaft(shaft)
+        moved = shape[1][there, :2]
+        size = np.linalg.norm(np.abs(moved), axis=1)
+        padded = np.concatenate([[-1.0], size, [-1.0]])
+        inner = np.flatnonzero((size >= padded[:-2]) & (size > padded[2:]) & (size >= _SEEN * size.max(initial=0.0)))
+        z = shape[0].position[there[inner], 2]
+        # Deflections lie on one side or the other of the axis: the sign of the projection on the largest one.
+        side = np.where(np.real(moved[inner] @ moved[int(np.argmax(size))].conj()) >= 0.0, 1.0, -1.0)
+        at = np.array([system.nodes.at(shaft, place) for place in z], dtype=int)
+        kept = np.unique(at, return_index=True)[1]
+        self.z = z[kept]
+        weights = weight_loads(system, (1.0, 0.0, 0.0))
+        places = np.array([system.nodes.z[node] for node in self.nodes])
+        nearest = np.argmin(np.abs(places[:, None] - self.z), axis=1) if kept.size else np.zeros(0, int)
+        mass = [weights[6 * self.nodes[nearest == k]].sum() for k in range(len(kept))]
+        self.unbalance = np.array([trial_unbalance(one, rpm) for one in mass])
         sense = direction * system.train.sense(shaft)
         load = np.zeros(system.dofs.transform.shape[0], complex)
-        load[6 * where.nodes] = self.unbalance * where.side
-        load[6 * where.nodes + 1] = -1j * sense * self.unbalance * where.side
+        load[6 * at[kept]] = self.unbalance * side[kept]
+        load[6 * at[kept] + 1] = -1j * sense * self.unbalance * side[kept]
         self._load = system.dofs.transform.T @ load
         self._direction = direction
         self._rows = system.dofs.transform.tocsr()
