@@ -10,7 +10,7 @@ Gauss-Legendre along the slice), spread over the flank's nodes by the quadratic 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 
@@ -74,16 +74,12 @@ class Slices:
 
     def take(self, here: np.ndarray | slice) -> Slices:
         """Some of the slices."""
-        return Slices(
-            position=self.position[here],
-            pair=self.pair[here],
-            z=self.z[here],
-            length=self.length[here],
-            weight=self.weight,
-            roll=self.roll[:, here],
-            gap=self.gap[here],
-            corner=self.corner[here],
-        )
+        arrays = {name: getattr(self, name)[here] for name in OF_SLICES}
+        return replace(self, roll=self.roll[:, here], **arrays)
+
+
+# Arrays with an entry for each slice in their first axis.
+OF_SLICES = ("position", "pair", "z", "length", "gap", "corner")
 
 
 def contact_slices(
@@ -115,6 +111,8 @@ def contact_slices(
     last = line.end + beyond[1]
     zones = [(first, line.start), (line.start, line.end), (line.end, last)]
     away = _corner_borders(MOST_BEYOND * line.base_pitch, 4.0 * tangent * half / slices)
+    step = width / slices
+    centres = -half + step * (np.arange(slices) + 0.5)
     pieces: list[tuple[int, int, int, np.ndarray, float]] = []
     for p, u in enumerate(positions):
         low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
@@ -123,7 +121,12 @@ def contact_slices(
             middle = line.pitch_point + (u + k) * line.base_pitch
             for number, ends in enumerate(zones):
                 if tangent == 0.0 or stations:
-                    cut = _stations(middle, tangent, ends, half, slices, along, closed=number == 1)
+                    # The ends of the line of action belong to it, not to the corners: no slice is counted twice.
+                    on_line = middle + centres * tangent
+                    inside = (on_line > ends[0]) & (on_line < ends[1])
+                    if number == 1:
+                        inside = (on_line >= ends[0]) & (on_line <= ends[1])
+                    cut = [(centre + 0.5 * step * along, step) for centre in centres[inside]]
                 elif number == 1:
                     cut = _line_pieces(middle, tangent, ends, half, slices)
                 else:
@@ -160,25 +163,6 @@ def _legendre() -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre places on -1 ... 1 along a slice, and their shares of it."""
     x, w = np.polynomial.legendre.leggauss(_ALONG)
     return x, 0.5 * w
-
-
-def _stations(
-    middle: float,
-    tangent: float,
-    ends: tuple[float, float],
-    half: float,
-    slices: int,
-    along: np.ndarray,
-    *,
-    closed: bool,
-) -> list[tuple[np.ndarray, float]]:
-    """Places and lengths of slices at fixed places of the face that lie inside a zone of the line of action."""
-    step = 2.0 * half / slices
-    z = -half + step * (np.arange(slices) + 0.5)
-    # The ends of the line of action belong to it, not to the corners: no slice is counted twice.
-    roll = middle + z * tangent
-    inside = (roll >= ends[0]) & (roll <= ends[1]) if closed else (roll > ends[0]) & (roll < ends[1])
-    return [(centre + 0.5 * step * along, step) for centre in z[inside]]
 
 
 def _line_pieces(

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.gears.loaded.contact_points import MOST_BEYOND, Slices, contact_slices
+from rotorgear.gears.loaded.contact_points import MOST_BEYOND, OF_SLICES, Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents, tangent_compliance
 from rotorgear.gears.loaded.settled_contacts import PASSES, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
@@ -165,12 +165,10 @@ def corner_reach(problem: ContactProblem, load: float, positions: np.ndarray) ->
     return _followed(problem, load, positions, None, silent, passes=1).beyond
 
 
-def with_more(
-    problem: ContactProblem, cycle: MeshCycle, positions: np.ndarray, progress: Progress = silent
-) -> MeshCycle:
+def with_more(problem: ContactProblem, cycle: MeshCycle, positions: np.ndarray) -> MeshCycle:
     """The cycle with more positions (m,), solved with slices as far beyond the line of action as those that are there."""
     widest = float(cycle.patch.max())
-    more = _swept(problem, cycle.load, positions, cycle.beyond, progress, PASSES, widest)
+    more = _swept(problem, cycle.load, positions, cycle.beyond, silent, PASSES, widest)
     wanted = beyond_line(problem, float((more.deflection - more.no_load).max()) + problem.largest_gap)
     wider = problem.oblique and more.patch.max() > widest
     if wider or any(np.array(wanted) > cycle.beyond):
@@ -196,13 +194,13 @@ def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
     b = second.slices
     arrays = {name: both(first, second, name, order) for name in _BY_POSITION}
     arrays |= {name: both(first, second, name, here) for name in _BY_SLICE}
-    slices = {name: both(a, b, name, here) for name in ("pair", "z", "length", "gap", "corner")}
+    slices = {name: both(a, b, name, here) for name in OF_SLICES} | {"position": number[here]}
     contacts = first.contacts + second.contacts
     states = first.states + second.states
     return replace(
         first,
         **arrays,
-        slices=replace(a, **slices, position=number[here], roll=both(a, b, "roll", here, axis=1)),
+        slices=replace(a, **slices, roll=both(a, b, "roll", here, axis=1)),
         residual=max(first.residual, second.residual),
         contacts=tuple(contacts[i] for i in order),
         states=tuple(states[i] for i in order),

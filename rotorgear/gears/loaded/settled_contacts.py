@@ -68,6 +68,8 @@ def settled(
     known: Settled | None = None,
     passes: int = PASSES,
     least: float = 0.0,
+    *,
+    narrowest: bool = False,
 ) -> Settled:
     """Contacts and states at all positions, with patches wider than the strips under them.
 
@@ -80,17 +82,17 @@ def settled(
         known: of the same slices with other gaps or under another load: patches grow from these, forces begin with these.
         passes: for the widths at most.
         least: where patches of oblique lines begin, in normal modules, in place of the narrowest.
+        narrowest: patches begin as narrow as for the smallest loads although others are `known`, of whose compliances only rows
+            that change are spread anew.
     """
     numbers = [slices.at(i) for i in range(int(slices.position[-1]) + 1)]
     count = len(numbers)
-    patch = _least_patches(problem, slices, least) if known is None else known.patch.copy()
-    contacts: dict[int, PositionContact] = {}
-    start: dict[int, np.ndarray] = {}
-    if known is None:
+    narrow = max(least, _LEAST_OBLIQUE_PATCH) if problem.oblique else _LEAST_PATCH
+    patch = known.patch.copy() if known and not narrowest else np.full(len(slices), narrow)
+    contacts = {i: replace(one, gap=gap[numbers[i]]) for i, one in enumerate(known.contacts)} if known else {}
+    start = {i: one.force for i, one in enumerate(known.states)} if known else {}
+    if known is None or narrowest:
         contacts = _with_patches(problem, slices, gap, range(count), patch, contacts)
-    else:
-        contacts = {i: replace(one, gap=gap[numbers[i]]) for i, one in enumerate(known.contacts)}
-        start = {i: one.force for i, one in enumerate(known.states)}
     states: dict[int, ContactState] = {}
     margin = 1.0 if problem.oblique else _STRIP_MARGIN
     unsettled = list(range(count))
@@ -129,19 +131,6 @@ def same_patches(first: Settled, second: Settled) -> bool:
     """Whether both have the same compliances, the second having grown from the first or the other way round."""
     both = zip(first.contacts, second.contacts, strict=True)
     return all(one.compliance is other.compliance for one, other in both)
-
-
-def with_least_patches(problem: ContactProblem, slices: Slices, gap: np.ndarray, known: Settled) -> Settled:
-    """Known contacts with the narrowest patches, as smaller loads begin with: only rows that change are spread anew."""
-    patch = _least_patches(problem, slices)
-    count = len(known.contacts)
-    contacts = _with_patches(problem, slices, gap, range(count), patch, dict(enumerate(known.contacts)))
-    return Settled(tuple(contacts[i] for i in range(count)), known.states, patch)
-
-
-def _least_patches(problem: ContactProblem, slices: Slices, least: float = 0.0) -> np.ndarray:
-    """Least half-widths (n,) in normal modules that patches begin with."""
-    return np.full(len(slices), max(least, _LEAST_OBLIQUE_PATCH) if problem.oblique else _LEAST_PATCH)
 
 
 def _with_patches(

@@ -30,7 +30,7 @@ from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
-from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches, settled, with_least_patches
+from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.maps.map_positions import (
@@ -61,13 +61,11 @@ _Solved = list[tuple[tuple[float, ...], Settled]]
 def up_to(problem: ContactProblem, cycle: MeshCycle, load: float, family: Groups) -> _Solved:
     """Groups of rising multiples of a force (N), the last of which is that of the cycle, and contacts on its slices."""
     last = Settled(cycle.contacts, cycle.states, cycle.patch)
-    if len(family) == 1:
-        return [(family[0], last)]
     gap = problem.gap(cycle.slices)
-    below = with_least_patches(problem, cycle.slices, gap, last)
+    below = last
     found = []
     for group in family[:-1]:
-        below = settled(problem, cycle.slices, gap, load * group[-1], known=below)
+        below = settled(problem, cycle.slices, gap, load * group[-1], known=below, narrowest=below is last)
         found.append((group, below))
     return [*found, (family[-1], last)]
 

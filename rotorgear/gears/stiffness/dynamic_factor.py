@@ -35,12 +35,11 @@ _MOST_RUN_IN = 3e-6
 
 @dataclass(frozen=True)
 class DynamicFactor:
-    """K_v with the method it comes from; resonance ratio N and speed range only of method B."""
+    """K_v with the method it comes from; resonance ratio N only of method B."""
 
     value: float
     method: str
     resonance_ratio: float | None = None
-    speed_range: str = ""
     warnings: tuple[str, ...] = ()
 
 
@@ -116,19 +115,15 @@ def iso_dynamic_factor(
     beyond = C5 * B_p + C6 * B_f + C7
     if subcritical_end >= N:
         value = 1.0 + N * (C1 * B_p + C2 * B_f + C3 * B_k)
-        words = "subcritical"
     elif N <= 1.15:
         value = resonance
-        words = "main resonance"
     elif N < 1.5:
         value = beyond + (resonance - beyond) * (1.5 - N) / 0.35
-        words = "between main resonance and supercritical"
     else:
         value = beyond
-        words = "supercritical"
     slow = _speed_term(pitch_line_velocity, pinion_teeth, ratio) < _LEAST_B
     note = ("K_v: v z1/100 sqrt(u^2/(1+u^2)) is below 3 m/s, where method B is not meant for use",) if slow else ()
-    return DynamicFactor(value, "ISO 6336-1 method B", N, words, note)
+    return DynamicFactor(value, "ISO 6336-1 method B", N, note)
 
 
 def _speed_term(velocity: float, pinion_teeth: int, ratio: float) -> float:

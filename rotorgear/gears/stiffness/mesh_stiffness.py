@@ -129,10 +129,13 @@ class MeshStiffness:
 
     def evenly(self, count: int) -> np.ndarray:
         """Transverse stiffness (count,) in N/m at even positions from 0."""
-        u = np.arange(count) / count
+        return self._at(np.arange(count) / count, self.transverse)
+
+    def _at(self, u: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Values (n,) at the positions, read at any others (m,)."""
         if self.event is None:
-            return np.interp(u, self.position, self.transverse, period=1.0)
-        return np.asarray(self._curve(self.transverse).at(u)[:, 0])
+            return np.interp(u, self.position, values, period=1.0)
+        return np.asarray(self._curve(values).at(u)[:, 0])
 
     def _curve(self, values: np.ndarray) -> CycleCurve:
         assert self.event is not None
@@ -201,26 +204,23 @@ class MeshStiffness:
         event = self.event
         if self.event is not None and other.event is not None:
             # Both have kinks of their own.
-            theirs = np.mod(other.position - stagger, 1.0)
-            position = np.concatenate([self.position, np.where(theirs > 1.0 - _SAME, 0.0, theirs)])
+            added = np.mod(other.position - stagger, 1.0)
+            position = np.concatenate([self.position, np.where(added > 1.0 - _SAME, 0.0, added)])
             order = np.argsort(position, kind="stable")
             order = order[np.diff(position[order], prepend=-1.0) > _SAME]
             position = position[order]
             event = np.concatenate([self.event, other.event])[order]
 
-        def at(curve: MeshStiffness, values: np.ndarray, ahead: float) -> np.ndarray:
-            if curve.event is None:
-                return np.interp(position + ahead, curve.position, values, period=1.0)
-            return np.asarray(curve._curve(values).at(position + ahead)[:, 0])
+        theirs = position + stagger
 
         # Stiffness that does not depend on the load: two springs in parallel.
         if self.tangent is None or other.tangent is None:
-            both = at(self, self.transverse, 0.0) + at(other, other.transverse, stagger)
+            both = self._at(position, self.transverse) + other._at(theirs, other.transverse)
             return replace(self, transverse=both, helices=2 * self.helices, load=load)
         # Curves at a load: the floating pinion gives each helix half of it, so the approaches are averaged,
         # (F_1 + F_2) / mean(delta) = 4 / (1/k_1 + 1/k_2).
-        secant = 4.0 / (at(self, 1.0 / self.transverse, 0.0) + at(other, 1.0 / other.transverse, stagger))
-        tangent = 4.0 / (at(self, 1.0 / self.tangent, 0.0) + at(other, 1.0 / other.tangent, stagger))
+        secant = 4.0 / (self._at(position, 1.0 / self.transverse) + other._at(theirs, 1.0 / other.transverse))
+        tangent = 4.0 / (self._at(position, 1.0 / self.tangent) + other._at(theirs, 1.0 / other.tangent))
         notes = tuple(dict.fromkeys(self.warnings + other.warnings))
         return replace(
             self,

@@ -34,7 +34,7 @@ from rotorgear.gears.tooth_fe.blank_section import AXIAL_SIDE, BlankSection, tor
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.mesh import LEAST_INNER, PitchMesh, pitch_mesh
 from rotorgear.gears.tooth_fe.points import MeshSize
-from rotorgear.gears.tooth_fe.sector import layered_sector, plane_sector
+from rotorgear.gears.tooth_fe.sector import Sector, layered_sector, plane_sector
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.gears.tooth_fe.wheel_compliance import wheel_flexibility
 from rotorgear.gears.tooth_fe.wheel_sector import SEATS, WheelSector, even_wheel, layered_wheel
@@ -281,7 +281,8 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
     teeth = key.geometry.teeth if key.arc == 0 else key.arc
     reach = min(REACH, (teeth - 1) // 2)
     if key.blank is not None:
-        wheel = wheel_sector(key, mesh, part_of(progress, 0.0, 0.6))
+        wheel = sector_of(key, mesh, part_of(progress, 0.0, 0.6))
+        assert isinstance(wheel, WheelSector)
         # Polynomials along the face are smooth: on a wide one a dozen elements follow them.
         side = AXIAL_SIDE if key.width else max(AXIAL_SIDE, key.face / _POLYNOMIAL_CELLS)
         blank = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio, side, key.coarseness)
@@ -291,11 +292,7 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
             G = G * key.face
         unknowns = wheel.unknowns * teeth + blank.unknowns
     else:
-        sector = (
-            layered_sector(mesh, key.poisson_ratio, key.width, key.size.face, progress)
-            if key.width
-            else plane_sector(mesh, key.poisson_ratio)
-        )
+        sector = sector_of(key, mesh, progress)
         G, asymmetry = chained(sector, teeth, reach, ring=key.arc == 0)
         unknowns = sector.unknowns * teeth
     return GearCompliance(
@@ -328,11 +325,13 @@ def layers_of(key: ComplianceKey, mesh: PitchMesh) -> Stack:
     )
 
 
-def wheel_sector(key: ComplianceKey, mesh: PitchMesh, progress: Progress = silent) -> WheelSector:
-    """The pitch of a wheel: in layers, or by polynomials along a face that is loaded evenly."""
-    assert key.blank is not None
+def sector_of(key: ComplianceKey, mesh: PitchMesh, progress: Progress = silent) -> Sector:
+    """Superelement of a pitch: in layers or in the plane; of a wheel by polynomials along a face that is loaded evenly."""
     if key.width:
-        return layered_wheel(mesh, key.poisson_ratio, key.width, key.size.face, progress)
+        layered = layered_wheel if key.blank else layered_sector
+        return layered(mesh, key.poisson_ratio, key.width, key.size.face, progress)
+    if key.blank is None:
+        return plane_sector(mesh, key.poisson_ratio)
     return even_wheel(mesh, key.poisson_ratio, key.face, key.size.face, centred=key.blank.web_position == 0.0)
 
 

@@ -117,20 +117,19 @@ class _JoinedPitches:
         of_pitch = la.cho_solve(factor, S[h:, :h]).T
         K = S[:h, :h] - S[:h, h:] @ of_pitch.T
         size = c + sector.middle
+        own = np.concatenate([np.arange(c), np.arange(2 * c, h)])  # left cut and middle
+        right = slice(c, 2 * c)
         stiffness = np.zeros((3, size, size))
-        stiffness[0, :c, :c] = K[:c, :c] + K[c : 2 * c, c : 2 * c]
-        stiffness[0, :c, c:] = K[:c, 2 * c :]
+        stiffness[0] = K[np.ix_(own, own)]
+        stiffness[0, :c, :c] += K[right, right]
         stiffness[0, c:, :c] = stiffness[0, :c, c:].T
-        stiffness[0, c:, c:] = K[2 * c :, 2 * c :]
         ahead = np.zeros((size, size))  # times e^(i t), and its transpose times e^(-i t)
-        ahead[:c, :c] = K[:c, c : 2 * c]
-        ahead[c:, :c] = K[2 * c :, c : 2 * c]
+        ahead[:, :c] = K[own, right]
         stiffness[1] = ahead + ahead.T
         stiffness[2] = ahead - ahead.T
         load = np.zeros((3, size, sector.flank))
-        load[0, :c] = of_pitch[:c]
-        load[0, c:] = of_pitch[2 * c :]
-        load[1, :c] = of_pitch[c : 2 * c]
+        load[0] = of_pitch[own]
+        load[1, :c] = of_pitch[right]
         load[2] = -load[1]
         return cls(stiffness, load)
 

@@ -22,7 +22,7 @@ from rotorgear.gears.tooth_fe.compliance_model import (
     pitch_of,
 )
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
-from rotorgear.gears.tooth_fe.sector import Sector, layered_sector, plane_sector
+from rotorgear.gears.tooth_fe.sector import Sector
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, helical, pair, spur
 
@@ -37,10 +37,7 @@ def key_of(body: str = "rim", *, space: bool = False, bore: float = 40e-3, gear:
 
 
 def sector_of(key: ComplianceKey) -> Sector:
-    mesh = pitch_of(key)[1]
-    if key.width:
-        return layered_sector(mesh, NU, key.width, key.size.face)
-    return plane_sector(mesh, NU)
+    return compliance_model.sector_of(key, pitch_of(key)[1])
 
 
 @pytest.mark.parametrize("space", [False, True])

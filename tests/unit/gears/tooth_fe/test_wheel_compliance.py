@@ -10,11 +10,12 @@ import pytest
 from rotorgear.gears.geometry.blank import BlankShape, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.tooth_fe.blank_section import BlankSection
-from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance, pitch_of, wheel_sector, wind_up
+from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance, pitch_of, sector_of, wind_up
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.gears.tooth_fe.wheel_compliance import wheel_flexibility, wheel_motions
+from rotorgear.gears.tooth_fe.wheel_sector import WheelSector
 from validation.benchmarks.cyclic_wheel import WHEELS, cyclic_deflection, program_deflection
 from validation.benchmarks.wheel_compliance import TABLE, Expected, found
 
@@ -85,7 +86,8 @@ def test_seats_of_pitches_far_apart_feel_each_other_through_the_blank_only() -> 
     gear = GearGeometry(teeth, 1.0, math.radians(20.0), 0.0)
     key = compliance_key(gear, ToothFe(body="wheel", size=EVEN), 0.3, WIDTH, 20.0, space=False, blank=blank)
     assert key.blank is not None
-    sector = wheel_sector(key, pitch_of(key)[1])
+    sector = sector_of(key, pitch_of(key)[1])
+    assert isinstance(sector, WheelSector)
     section = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio, 1.0)
     G, _ = wheel_flexibility(sector, section, teeth, 2)
     force = np.linspace(1.0, 2.0, sector.flank)
