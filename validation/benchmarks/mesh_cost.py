@@ -12,7 +12,7 @@ import time
 from dataclasses import replace
 
 from rotorgear.gears.loaded.tooth_contact import gear_key, in_space
-from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, gear_compliance, layers_of, pitch_of
+from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, forecast, gear_compliance, pitch_of
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.memory import largest_memory
 from validation.benchmarks.mesh_estimates import HELICAL
@@ -33,7 +33,7 @@ def key_of(name: str, preset: str) -> ComplianceKey:
 def measure(name: str, preset: str) -> None:
     """Print forecast and measurement of one gear."""
     key = key_of(name, preset)
-    forecast_memory, forecast_seconds = layers_of(key, pitch_of(key)[1]).forecast()
+    forecast_memory, forecast_seconds = forecast(key, pitch_of(key)[1])
     begun = time.perf_counter()
     gear_compliance(key, fresh=True)
     seconds = time.perf_counter() - begun

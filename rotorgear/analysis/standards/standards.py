@@ -183,8 +183,8 @@ class _Lateral:
         self.low = abs(found.low_speed)
         self.criticals: list[ResponseCritical] = []
         self.checks: list[RuleCheck] = []
-        self._responses: dict[str, list[tuple[UnbalanceResponse, float]]] = {}
-        self._first: dict[str, tuple[UnbalanceResponse, int]] = {}
+        # Of each shaft: the response to each unbalance, the speed of its peak, and the node that is looked at.
+        self._responses: dict[str, list[tuple[UnbalanceResponse, float, int]]] = {shaft: [] for shaft in model.shafts}
         parts = {line.name: line.parts for line in found.lines}
         for shaft in model.shafts:
             ratio = abs(model.layout.train.ratio(shaft))
@@ -193,15 +193,14 @@ class _Lateral:
             mine = [
                 k for k, item in enumerate(found.speeds) if shaft in parts[item.line] and item.whirl and item.excited
             ]
-            before = len(self.criticals)
             for k in mine:
                 self._peak(shaft, found, k, direction)
-            self._vibration(shaft, self._responses.get(shaft, []))
-            if len(self.criticals) == before:
+            self._vibration(shaft)
+            if not self._responses[shaft]:
                 why = (
-                    "no critical speed of bending that its unbalance drives"
-                    if not mine
-                    else "no peak of its unbalance response"
+                    "no peak of its unbalance response"
+                    if mine
+                    else "no critical speed of bending that its unbalance drives"
                 )
                 note = f"{why} up to {ratio * top * RPM_PER_RAD_S:.6g} rpm of the shaft"
                 self.checks += [_check(rule, f"shafts.{shaft}", note) for rule in (rules.SEPARATION, rules.VIBRATION)]
@@ -212,7 +211,7 @@ class _Lateral:
         self.curve_speeds = np.unique(np.concatenate([even, near[(near > self.low) & (near < top)]]))
         self.curves = {
             shaft: np.array([response.orbits(speed, [probe])[0] for speed in self.curve_speeds])
-            for shaft, (response, probe) in self._first.items()
+            for shaft, [(response, _, probe), *_] in ((shaft, some) for shaft, some in self._responses.items() if some)
         }
 
     def _peak(self, shaft: str, found: CriticalResult, k: int, direction: int) -> None:
@@ -227,21 +226,16 @@ class _Lateral:
         # Of an undamped resonance the place of the largest response is told beside it.
         sizes = response.orbits(near * (1.0 + 1e-3 if undamped else 1.0), response.nodes)
         probe = int(response.nodes[int(np.argmax(sizes))])
-        if undamped:
-            speed = near
-            below = above = math.nan
-            factor = math.inf
-        else:
+        peak: rules.ResponsePeak | None = rules.ResponsePeak(near, math.nan, math.nan, math.nan)
+        if not undamped:
             peak = rules.response_peak(
                 lambda s: float(response.orbits(s, [probe])[0]), near, item.damping_ratio, self.low
             )
-            known = [one.speed for one in self.criticals if one.shaft == shaft]
-            if peak is None or any(abs(peak.speed / speed - 1.0) < 1e-3 for speed in known):
-                return
-            speed = peak.speed
-            below = response.rpm(peak.below)
-            above = response.rpm(peak.above)
-            factor = peak.amplification_factor
+        known = [one.speed for one in self.criticals if one.shaft == shaft and not undamped]
+        if peak is None or any(abs(peak.speed / speed - 1.0) < 1e-3 for speed in known):
+            return
+        speed = peak.speed
+        factor = math.inf if undamped else peak.amplification_factor
         margin = 100.0 * abs(speed - self.operating) / self.operating
         required = None if math.isnan(factor) else rules.separation_margin(factor, speed < self.operating)
         self.criticals.append(
@@ -254,8 +248,8 @@ class _Lateral:
                 antinodes_z=tuple(float(z) for z in response.z),
                 speed=speed,
                 shaft_rpm=response.rpm(speed),
-                below_rpm=below,
-                above_rpm=above,
+                below_rpm=response.rpm(peak.below),
+                above_rpm=response.rpm(peak.above),
                 amplification_factor=factor,
                 required_percent=required,
                 margin_percent=margin,
@@ -270,20 +264,20 @@ class _Lateral:
             note = "undamped: AF without bound" if math.isinf(factor) else f"AF {factor:.5g}"
         part = f"shafts.{shaft}, {response.rpm(speed):.5g} rpm"
         self.checks.append(_check(rules.SEPARATION, part, note, "separation", "%", margin, required))
-        self._responses.setdefault(shaft, []).append((response, speed))
-        self._first.setdefault(shaft, (response, probe))
+        self._responses[shaft].append((response, speed, probe))
 
-    def _vibration(self, shaft: str, responses: list[tuple[UnbalanceResponse, float]]) -> None:
+    def _vibration(self, shaft: str) -> None:
         """The largest orbit of each bearing at the operating speed over the unbalances of all peaks, against both limits."""
         system = self.plant.system
+        responses = self._responses[shaft]
         bearings = {name: part for name, part in self.model.bearings.items() if part.shaft == shaft}
         if not bearings or not responses:
             return
         nodes = [system.nodes.at(*system.layout.place(f"bearings.{name}")) for name in bearings]
-        moved = np.array([response.orbits(self.operating, nodes) for response, _ in responses])
+        moved = np.array([response.orbits(self.operating, nodes) for response, _, _ in responses])
         rpm = responses[0][0].rpm(self.operating)
         for k, (name, bearing) in enumerate(bearings.items()):
-            response, peak = responses[int(np.argmax(moved[:, k]))]
+            response, peak, _ = responses[int(np.argmax(moved[:, k]))]
             size = 1e6 * float(moved[:, k].max())
             note = (
                 f"at {rpm:.6g} rpm, {1e6 * response.unbalance.sum():.4g} g mm in the shape of the peak at "

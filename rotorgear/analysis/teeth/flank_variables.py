@@ -12,7 +12,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 
 # Depths up to these shares of the normal module are looked at where no bounds are given: those of usual modifications.
 _RELIEF = 0.02
@@ -73,9 +73,7 @@ def flank_variables(
         if gear and gear not in own:
             raise AnalysisError(f"optimise {text}: meshes.{mesh.name} has the gears {own[0]} and {own[1]}.")
         if field not in NAMES:
-            guess = nearest(field, list(NAMES))
-            hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(NAMES)}"
-            raise AnalysisError(f"optimise: there is no '{field}': {hint}")
+            raise AnalysisError(f"optimise: there is no '{field}': {did_you_mean(field, NAMES)}")
         gears = (own.index(gear),) if gear else (0, 1)
         low, high = _bounds(mesh.teeth, field, text, bounds)
         found.append(Variable(text, field, gears, low, high))

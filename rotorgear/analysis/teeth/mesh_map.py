@@ -12,6 +12,7 @@ from itertools import product
 import numpy as np
 
 from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.request import quantity
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
 from rotorgear.analysis.teeth.request import MeshRequest, mesh_request, solve_helices
 from rotorgear.errors import AnalysisError
@@ -20,7 +21,6 @@ from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.mesh_map import MeshMap
 
 ORDERS = 3
@@ -111,10 +111,7 @@ def operating_values(given: Mapping[str, object], name: str) -> np.ndarray | Non
         return None
     values = given[name]
     listed = values if isinstance(values, list | tuple | np.ndarray) else [values]
-    try:
-        found = np.array([parse_quantity(value, AXES[name]) for value in listed], float)
-    except QuantityError as error:
-        raise AnalysisError(f"over {name}: got {values!r}, expected {error}") from None
+    found = np.array([quantity(value, AXES[name], f"over {name}") for value in listed], float)
     if not len(found) or not np.isfinite(found).all():
         raise AnalysisError(f"over {name}: got {values!r}, expected at least one finite value")
     return found

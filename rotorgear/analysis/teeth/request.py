@@ -26,7 +26,7 @@ from rotorgear.model.layout.mesh_layout import MeshLayout, mirrored
 from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.quantity import nearest
+from rotorgear.quantity import did_you_mean
 from rotorgear.results.mesh import MeshLoad
 
 
@@ -184,16 +184,14 @@ def mesh_request(
     if name is None and len(names) > 1:
         raise AnalysisError(f"Which mesh? Give --mesh with one of {', '.join(names)}.")
     if name is not None and name not in names:
-        guess = nearest(name, names)
-        hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(names)}."
-        raise AnalysisError(f"There is no mesh '{name}': {hint}")
+        raise AnalysisError(f"There is no mesh '{name}': {did_you_mean(name, names)}")
     mesh = model.layout.mesh(name or names[0])
     given = mesh.part.stiffness
     chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
     if chosen not in (*MODELS, "given"):
-        guess = nearest(chosen, [*MODELS, "given"])
-        hint = f"did you mean '{guess}'?" if guess else "there are " + ", ".join((*MODELS, "given"))
-        raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
+        raise AnalysisError(
+            f"--stiffness: there is no stiffness model '{chosen}': {did_you_mean(chosen, (*MODELS, 'given'))}"
+        )
     if chosen == "given" and isinstance(given, str):
         raise AnalysisError(f"--stiffness given: meshes.{mesh.name} names the model '{given}' and gives no numbers.")
     load, sense = _load(model, mesh, torque)

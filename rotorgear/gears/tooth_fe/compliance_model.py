@@ -54,54 +54,49 @@ _GAUGE = 700
 _SHARE = 0.8
 
 
-@dataclass(frozen=True)
-class Stack:
-    """Sizes that decide the cost of a gear in layers.
+def plane_unknowns(key: ComplianceKey, mesh: PitchMesh) -> tuple[int, int, int, int]:
+    """Unknowns of one plane of a gear in space: that are condensed, that are kept, and of these on a cut and on the flank."""
+    flank = len(mesh.flank)
+    # A wheel keeps its seat on the blank, too: one node of it in each cut, the others between.
+    seat = 3 if key.blank else 0
+    cut = 3 * len(mesh.left) + seat
+    free = 3 * (len(mesh.points) - len(mesh.inner))
+    return free - 6 * len(mesh.left) - flank, 2 * cut + flank + seat * (2 * SEATS - 1), cut, flank
 
-    Attributes:
-        inside: unknowns of a plane that are condensed; kept: those that are not.
-        cut: of these on one cut; flank: on the flank.
-        layers: along the face; pitches: that are chained.
-    """
 
-    inside: int
-    kept: int
-    cut: int
-    flank: int
-    layers: int
-    pitches: int
+def forecast(key: ComplianceKey, mesh: PitchMesh) -> tuple[float, float]:
+    """Memory (bytes) of the process and seconds that this machine needs for a gear in layers."""
+    inside, kept, cut, flank = plane_unknowns(key, mesh)
+    planes = 2 * key.size.face + 1
+    sizes = _joints(inside, kept, key.size.face)
+    operations = sum(_eliminated(size, inside) for size in sizes)
+    operations += (planes * flank) ** 3
+    operations += 4.0 * (key.arc or key.geometry.teeth) * (planes * cut) ** 3
+    return _PROGRAM + _COPIES * 8.0 * max(sizes) ** 2, operations / (_SHARE * _speed())
 
-    def forecast(self) -> tuple[float, float]:
-        """Memory (bytes) of the process and seconds that this machine needs for it."""
-        sizes = self._condensed()
-        operations = sum(_eliminated(size, self.inside) for size in sizes)
-        planes = 2 * self.layers + 1
-        operations += (planes * self.flank) ** 3
-        operations += 4.0 * self.pitches * (planes * self.cut) ** 3
-        return _PROGRAM + _COPIES * 8.0 * max(sizes) ** 2, operations / (_SHARE * _speed())
 
-    def _condensed(self) -> list[int]:
-        """Sizes of the matrices, each of which loses the inside of one plane, in the order of `sector.stacked_layers`."""
+def _joints(inside: int, kept: int, layers: int) -> list[int]:
+    """Sizes of the matrices, each of which loses the inside of one plane, in the order of `sector.stacked_layers`."""
 
-        def size(planes_inside: int, layers: int) -> int:
-            return planes_inside * self.inside + (2 * layers + 1) * self.kept
+    def size(planes_inside: int, layers: int) -> int:
+        return planes_inside * inside + (2 * layers + 1) * kept
 
-        sizes = [size(3, 1)]
-        block = 1
-        stack = 0
-        rest = self.layers
-        while rest > 2 or (rest == 2 and stack):
-            if rest % 2:
-                sizes.append(size(2, stack + block))
-                stack += block
-            rest //= 2
-            block *= 2
-            sizes.append(size(3, block))
-        if self.layers == 1:
-            return [*sizes, size(2, 1), size(1, 1)]
-        if not stack:
-            sizes.append(size(2, block))
-        return [*sizes, size(2, block), size(1, self.layers)]
+    sizes = [size(3, 1)]
+    block = 1
+    stack = 0
+    rest = layers
+    while rest > 2 or (rest == 2 and stack):
+        if rest % 2:
+            sizes.append(size(2, stack + block))
+            stack += block
+        rest //= 2
+        block *= 2
+        sizes.append(size(3, block))
+    if layers == 1:
+        return [*sizes, size(2, 1), size(1, 1)]
+    if not stack:
+        sizes.append(size(2, block))
+    return [*sizes, size(2, block), size(1, layers)]
 
 
 def _eliminated(size: int, inside: int) -> float:
@@ -269,7 +264,7 @@ def forget() -> None:
 def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
     outline, mesh = pitch_of(key)
     if key.width:
-        memory, seconds = layers_of(key, mesh).forecast()
+        memory, seconds = forecast(key, mesh)
         free = free_memory()
         if free is not None and memory > free:
             raise AnalysisError(
@@ -304,24 +299,6 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
         base_radius=outline.geometry.base_radius,
         unknowns=unknowns,
         asymmetry=asymmetry,
-    )
-
-
-def layers_of(key: ComplianceKey, mesh: PitchMesh) -> Stack:
-    """Sizes of a gear in space, which tell what it takes."""
-    flank = len(mesh.flank)
-    # A wheel keeps its seat on the blank, too: one node of it in each cut, the others between.
-    seat = 3 if key.blank else 0
-    cut = 3 * len(mesh.left) + seat
-    kept = 2 * cut + flank + seat * (2 * SEATS - 1)
-    free = 3 * (len(mesh.points) - len(mesh.inner))
-    return Stack(
-        inside=free - 6 * len(mesh.left) - flank,
-        kept=kept,
-        cut=cut,
-        flank=flank,
-        layers=key.size.face,
-        pitches=key.arc or key.geometry.teeth,
     )
 
 

@@ -57,8 +57,12 @@ def plane_sector(mesh: PitchMesh, poisson_ratio: float) -> Sector:
     """Superelement of a spur pitch in plane strain, unit width."""
     skfem = scikit_fem()
     K_e = element_matrices(skfem.Basis(mesh.mesh, skfem.ElementQuad2(), intorder=4), poisson_ratio)
-    frame, free, inside, keep = _frames(mesh, mesh.normal)
-    K = sp.csc_array(frame.T @ assembled(K_e, component_dofs(mesh.cells, 2), 2 * len(mesh.points)) @ frame)
+    frame = held_frame(mesh, mesh.normal)
+    inside = frame.inside
+    keep = frame.keep
+    K = sp.csc_array(
+        frame.matrix.T @ assembled(K_e, component_dofs(mesh.cells, 2), 2 * len(mesh.points)) @ frame.matrix
+    )
     A = K[inside][:, inside]
     B = K[inside][:, keep].toarray()
     D = K[keep][:, keep].toarray()
@@ -67,21 +71,27 @@ def plane_sector(mesh: PitchMesh, poisson_ratio: float) -> Sector:
     else:
         # Minimum degree on A + A^T: A is symmetric, and its pivots on the diagonal keep that pattern.
         condensed = D - B.T @ sp.linalg.splu(sp.csc_matrix(A), permc_spec="MMD_AT_PLUS_A").solve(B)
-    cut = 2 * len(mesh.left)
-    return Sector(0.5 * (condensed + condensed.T), cut, len(keep) - 2 * cut, len(free))
+    return Sector(0.5 * (condensed + condensed.T), len(frame.cut[0]), len(frame.flank), len(inside) + len(keep))
 
 
 def layered_sector(
-    mesh: PitchMesh, poisson_ratio: float, width: float, layers: int, progress: Progress = silent
+    mesh: PitchMesh,
+    poisson_ratio: float,
+    width: float,
+    layers: int,
+    progress: Progress = silent,
+    frame: Frame | None = None,
 ) -> Sector:
-    """Superelement of a helical pitch of face width `width` (normal modules) in so many layers; end faces free."""
-    frame, free, inside, keep = _frames(mesh, mesh.helicoid_normal)
-    K = layer_stiffness(mesh, poisson_ratio, width / layers, frame)
-    cut = 3 * len(mesh.left)
-    groups = [cut, cut, len(keep) - 2 * cut]
-    S = stacked_layers(K, inside, keep, layers, groups, progress)
+    """Superelement of a pitch of face width `width` (normal modules) in so many layers of hexahedra; end faces free.
+
+    Its inner circle is held where no other `frame` is given.
+    """
+    frame = frame or held_frame(mesh, mesh.helicoid_normal)
+    K = layer_stiffness(mesh, poisson_ratio, width / layers, frame.matrix)
+    groups = [len(group) for group in (*frame.cut, frame.middle, frame.flank)]
+    S = stacked_layers(K, frame.inside, frame.keep, layers, groups, progress)
     planes = 2 * layers + 1
-    return Sector(S, planes * cut, planes * groups[2], len(free) * planes)
+    return Sector(S, planes * groups[0], planes * groups[3], planes * (len(frame.inside) + len(frame.keep)))
 
 
 def layer_stiffness(mesh: PitchMesh, poisson_ratio: float, height: float, frame: sp.csc_array) -> sp.csc_array:
@@ -122,13 +132,38 @@ def layer_mesh(mesh: PitchMesh, height: float) -> tuple[Any, np.ndarray]:
     return skfem.MeshHex2(points, straight.t), lattice[:, 2] * len(mesh.points) + below
 
 
-def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarray, np.ndarray, np.ndarray]:
-    """Frame of the unknowns in one plane (displacements = frame @ unknowns) and the numbers of free, inner and kept ones."""
+@dataclass(frozen=True)
+class Frame:
+    """Unknowns of one plane: displacements = matrix @ unknowns.
+
+    Attributes:
+        matrix: sparse, square; columns of inner nodes that are held, or follow others, don't matter or are empty.
+        inside: unknowns that are condensed.
+        cut: (2, c) unknowns of the left and the right cut, the end of a seat first.
+        middle: unknowns of the rest of a seat.
+        flank: unknowns along the flank normals.
+    """
+
+    matrix: sp.csc_array
+    inside: np.ndarray
+    cut: np.ndarray
+    middle: np.ndarray
+    flank: np.ndarray
+
+    @property
+    def keep(self) -> np.ndarray:
+        """Unknowns that are kept, group by group."""
+        return np.concatenate([*self.cut, self.middle, self.flank])
+
+
+def held_frame(mesh: PitchMesh, normal: np.ndarray) -> Frame:
+    """Frame of a plane whose inner circle is held."""
     d = normal.shape[1]
-    frame = sp.csc_array(sp.block_diag(list(node_frames(mesh, normal))))
-    free = np.setdiff1d(np.arange(d * len(mesh.points)), node_dofs(mesh.inner, d))
-    keep = np.concatenate([node_dofs(mesh.left, d), node_dofs(mesh.right, d), d * mesh.flank])
-    return frame, free, np.setdiff1d(free, keep), keep
+    cut = np.stack([node_dofs(mesh.left, d), node_dofs(mesh.right, d)])
+    flank = d * mesh.flank
+    kept = np.concatenate([*cut, flank, node_dofs(mesh.inner, d)])
+    inside = np.setdiff1d(np.arange(d * len(mesh.points)), kept)
+    return Frame(sp.csc_array(sp.block_diag(list(node_frames(mesh, normal)))), inside, cut, np.empty(0, int), flank)
 
 
 def node_frames(mesh: PitchMesh, normal: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ from rotorgear.gears.tooth_fe.elasticity import (
     quadratic,
 )
 from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
-from rotorgear.gears.tooth_fe.sector import Sector, layer_stiffness, node_frames, stacked_layers
+from rotorgear.gears.tooth_fe.sector import Frame, Sector, layered_sector, node_frames
 from rotorgear.progress import Progress, silent
 
 # Quadratic elements of the seat over one pitch.
@@ -81,26 +81,7 @@ def seat_frame(mesh: PitchMesh) -> tuple[np.ndarray, np.ndarray]:
     return seat_shapes(angle / mesh.pitch_angle), polar
 
 
-@dataclass(frozen=True)
-class _Frame:
-    """Unknowns of one plane: displacements = matrix @ unknowns.
-
-    Attributes:
-        matrix: sparse, square; columns of inner nodes beyond the seat's are empty.
-        inside: unknowns that are condensed.
-        cut: (2, c) unknowns of the left and the right cut, the seat's end first.
-        middle: unknowns of the rest of the seat.
-        flank: unknowns along the flank normals.
-    """
-
-    matrix: sp.csc_array
-    inside: np.ndarray
-    cut: np.ndarray
-    middle: np.ndarray
-    flank: np.ndarray
-
-
-def _frame(mesh: PitchMesh, normal: np.ndarray) -> _Frame:
+def _frame(mesh: PitchMesh, normal: np.ndarray) -> Frame:
     """Frame of the plane's nodes with d = 1 (axial), 2 (in the plane) or 3 components, for normals (f, d) or none (0, 1)."""
     d = normal.shape[1]
     matrix = sp.lil_array(sp.block_diag(list(node_frames(mesh, normal))))
@@ -121,7 +102,7 @@ def _frame(mesh: PitchMesh, normal: np.ndarray) -> _Frame:
     middle = node_dofs(nodes[1:-1], d)
     flank = d * mesh.flank if len(normal) else np.empty(0, int)
     kept = np.concatenate([cut.ravel(), middle, flank, node_dofs(mesh.inner, d)])
-    return _Frame(sp.csc_array(matrix), np.setdiff1d(np.arange(d * len(mesh.points)), kept), cut, middle, flank)
+    return Frame(sp.csc_array(matrix), np.setdiff1d(np.arange(d * len(mesh.points)), kept), cut, middle, flank)
 
 
 def layered_wheel(
@@ -129,30 +110,23 @@ def layered_wheel(
 ) -> WheelSector:
     """Superelement in layers of hexahedra, spur or helical; end faces free."""
     frame = _frame(mesh, mesh.helicoid_normal)
-    K = layer_stiffness(mesh, poisson_ratio, width / layers, frame.matrix)
-    keep = np.concatenate([*frame.cut, frame.middle, frame.flank])
-    groups = [len(frame.cut[0]), len(frame.cut[1]), len(frame.middle), len(frame.flank)]
-    S = stacked_layers(K, frame.inside, keep, layers, groups, progress)
-    planes = 2 * layers + 1
-    cut, _, middle, flank = groups
+    base = layered_sector(mesh, poisson_ratio, width, layers, progress, frame)
+    cut = len(frame.cut[0])
+    middle = len(frame.middle)
 
     # Plane by plane, a cut begins with the seat's end, and the middle holds the seat's other nodes.
-    plane = np.arange(planes)[:, None]
-    end = cut * plane + np.arange(3)
+    plane = np.arange(2 * layers + 1)[:, None]
     rest = [middle * plane + 3 * node + np.arange(3) for node in range(2 * SEATS - 1)]
 
     def along(z: np.ndarray) -> np.ndarray:
         return _row_of_elements(0.5 * (np.clip(2.0 * z / width, -1.0, 1.0) + 1.0) * layers, layers)
 
     return WheelSector(
-        stiffness=S,
-        cut=planes * cut,
-        middle=planes * middle,
-        flank=planes * flank,
-        seat=np.stack([end, *rest]),
+        **vars(base),
+        middle=len(plane) * middle,
+        seat=np.stack([cut * plane + np.arange(3), *rest]),
         along=along,
         twist=mesh.twist,
-        unknowns=planes * (len(frame.inside) + len(keep)),
     )
 
 

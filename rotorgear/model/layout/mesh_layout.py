@@ -17,9 +17,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.backlash import Backlash, normal_backlash
 from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry, working_pressure_angle_from_shifts
+from rotorgear.gears.geometry.pair import (
+    Backlash,
+    PairGeometry,
+    normal_backlash,
+    pair_geometry,
+    working_pressure_angle_from_shifts,
+)
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.mesh import Mesh

@@ -10,8 +10,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from rotorgear.gears.geometry.backlash import Allowance
 from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.pair import Allowance
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.casing import Seat, TextOrTable
 from rotorgear.model.parts.fields import Flag, Name, Part, Station, Whole

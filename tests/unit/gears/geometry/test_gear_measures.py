@@ -9,7 +9,6 @@ import pytest
 from scipy.optimize import brentq
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.backlash import Allowance, normal_backlash
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.measure import (
     ball_contact_diameter,
@@ -19,7 +18,7 @@ from rotorgear.gears.geometry.measure import (
     over_balls,
     with_allowance,
 )
-from rotorgear.gears.geometry.pair import pair_geometry, working_centre_distance
+from rotorgear.gears.geometry.pair import Allowance, normal_backlash, pair_geometry, working_centre_distance
 
 deg = math.radians
 

@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.gears.loaded.tooth_contact import gear_key
-from rotorgear.gears.tooth_fe.compliance_model import forget, gear_compliance, layers_of, pitch_of
+from rotorgear.gears.tooth_fe.compliance_model import forecast, forget, gear_compliance, pitch_of, plane_unknowns
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.models import pair_file
 from tests.unit.gears.tooth_pairs import COARSE, helical
@@ -20,18 +20,18 @@ def test_memory_of_the_presets_is_that_which_was_measured(preset: str, measured:
     """Largest memory of a process that computed this gear (validation.benchmarks.mesh_cost): 0.85 and 0.96 GB."""
     fe: ToothFe = replace(ToothFe(), preset=preset)  # type: ignore[arg-type]
     key = gear_key(replace(helical(), fe=fe), 0, space=True)
-    memory, seconds = layers_of(key, pitch_of(key)[1]).forecast()
+    memory, seconds = forecast(key, pitch_of(key)[1])
     assert memory == pytest.approx(measured, rel=0.1)
     assert seconds > 0.0
 
 
 def test_sizes_are_those_of_the_superelement() -> None:
     key = gear_key(replace(helical(), fe=ToothFe(size=COARSE)), 0, space=True)
-    sizes = layers_of(key, pitch_of(key)[1])
+    inside, kept, _, flank = plane_unknowns(key, pitch_of(key)[1])
     planes = 2 * COARSE.face + 1
     found = gear_compliance(key)
-    assert found.unknowns == (sizes.inside + sizes.kept) * planes * sizes.pitches
-    assert found.flexibility.shape[1] == sizes.flank * planes
+    assert found.unknowns == (inside + kept) * planes * (key.arc or key.geometry.teeth)
+    assert found.flexibility.shape[1] == flank * planes
 
 
 def test_what_does_not_fit_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

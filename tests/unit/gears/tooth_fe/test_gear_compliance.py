@@ -133,7 +133,7 @@ def test_a_damaged_entry_is_computed_anew(folder: Path, damage: str) -> None:
 def test_other_sources_do_not_see_the_entry(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached("key", small)
     forget()
-    monkeypatch.setattr(compliance_model, "MAKERS", ("gears/geometry/backlash.py",))
+    monkeypatch.setattr(compliance_model, "MAKERS", ("gears/geometry/pair.py",))
     calls: list[int] = []
     cached("key", lambda: calls.append(1) or small())
     assert calls == [1]
