@@ -232,12 +232,12 @@ def reference(request: MeshRequest) -> np.ndarray:
     thin = _meshed(request, DEFAULT_PROFILE, THIN)
     found = solve_helices(request, thin, POSITIONS, judged=True)
     rough, fine = (
-        curves_at(request, _meshed(request, profile, THICK), found.position, 1)
+        curves_at(request, _meshed(request, profile, THICK), found.curve.position, 1)
         for profile in (DEFAULT_PROFILE, FINE_PROFILE)
     )
     left = 1.0 / ((FINE_PROFILE.involute / DEFAULT_PROFILE.involute) ** PROFILE_ORDER - 1.0)
     values = found.curve.values[:, [0, 1, 3]] + (1.0 + left) * (fine - rough)
-    curve = CycleCurve(found.position, values, found.curve.period, found.curve.event)
+    curve = CycleCurve(found.curve.position, values, found.curve.period, found.curve.event)
     return np.array([curve.mean()[1], np.ptp(values[:, 1]), np.ptp(values[:, 0]), values[:, 2].max()])
 
 

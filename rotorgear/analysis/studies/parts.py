@@ -186,7 +186,7 @@ def mesh_convergence_study(
     size = finest.mesh_size(modules, space=space)
     layers = f" in {size.face} layers" if size.face else ""
     words = f"{size.elements} elements a pitch{layers}, {reference.unknowns} dofs, {reference.slices} slices"
-    return MeshConvergenceStudy(model.title, request.name, reference.body, request.base_force, words, tuple(rungs))
+    return MeshConvergenceStudy(model.title, request.mesh.name, reference.body, request.base_force, words, tuple(rungs))
 
 
 def _figures(cycle: MeshCycle) -> tuple[float, float, float]:

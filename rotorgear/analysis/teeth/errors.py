@@ -73,10 +73,10 @@ def error_parts(
     sampling = sampling_errors(found)
     # Other meshes are looked at at positions that are spread evenly, and at the extremes of all curves.
     even = np.arange(0.0, found.curve.period, 1.0 / _COMPARED)
-    nearest = np.abs(found.position[:, None] - even).argmin(axis=0)
+    nearest = np.abs(found.curve.position[:, None] - even).argmin(axis=0)
     values = found.curve.values[:, [0, 1, 3]]
     compared = np.unique([*nearest, *values.argmax(axis=0), *values[:, :2].argmin(axis=0)])
-    u = found.position[compared]
+    u = found.curve.position[compared]
     here = values[compared]
     periods = round(found.curve.period)
 

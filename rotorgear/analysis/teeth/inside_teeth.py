@@ -91,7 +91,7 @@ def root_stress(
         left_out.append("the second helix")
     return RootStress(
         title=model.title,
-        mesh=request.name,
+        mesh=request.mesh.name,
         preset=teeth.fe.preset,
         pinion_torque_n_m=request.load.pinion_torque_n_m,
         positions=positions,
@@ -247,7 +247,7 @@ def tooth_fields(
         cycle.pressure[loaded],
         slices.pair[loaded],
     )
-    return ToothFields(request.name, at, (pinion, gear), contact)
+    return ToothFields(request.mesh.name, at, (pinion, gear), contact)
 
 
 def _field(

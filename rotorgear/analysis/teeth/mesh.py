@@ -99,7 +99,7 @@ def mesh(
                 contact_ratio=at.contact_ratio,
                 ste_harmonics_m=tuple(np.abs(at.curve.harmonics(3)[:, 0]).tolist()),
                 largest_pressure_pa=float(at.curve.values[:, 3].max()),
-                position=at.position,
+                position=at.curve.position,
                 ste_m=at.error,
             )
         )
@@ -153,7 +153,7 @@ def _common(model: Model, request: MeshRequest, clock: Clock) -> dict[str, Any]:
     """What a result says of the mesh and the run, whatever the stiffness model."""
     return {
         "title": model.title,
-        "mesh": request.name,
+        "mesh": request.mesh.name,
         "pinion": request.mesh.pinion.name,
         "gear": request.mesh.gear.name,
         "helices": request.helices,
@@ -226,10 +226,10 @@ def _result(
         body=found.problem.body,
         face_width=teeth.width,
         base_helix_angle=teeth.pair.base_helix_angle,
-        position=found.position,
+        position=found.curve.position,
         event=found.curve.event,
         stiffness=found.stiffness,
-        tangent=found.tangent,
+        tangent=found.curve.values[:, 2],
         transmission_error=found.error,
         no_load_error=found.no_load,
         helix=tuple(

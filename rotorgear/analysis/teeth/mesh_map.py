@@ -142,7 +142,7 @@ def operating_points(
     assert teeth is not None
     if torques is None:
         if request.load is None:
-            raise AnalysisError(f"meshes.{request.name} carries no torque: give over torque, or --torque.")
+            raise AnalysisError(f"meshes.{request.mesh.name} carries no torque: give over torque, or --torque.")
         torques = np.array([request.load.pinion_torque_n_m])
     if not ((torques > 0.0).all() or (torques < 0.0).all()):
         raise AnalysisError(
@@ -203,7 +203,7 @@ def mesh_map(
         missing.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
     return MeshMap(
         title=model.title,
-        mesh=request.name,
+        mesh=request.mesh.name,
         pinion=request.mesh.pinion.name,
         gear=request.mesh.gear.name,
         preset=teeth.fe.preset,

@@ -49,11 +49,6 @@ class SolvedHelices:
     sampling: SampledCurves
 
     @property
-    def position(self) -> np.ndarray:
-        """(p,) u in base pitches."""
-        return self.curve.position
-
-    @property
     def error(self) -> np.ndarray:
         """Transmission error (p,) in m."""
         return np.asarray(self.curve.values[:, 0])
@@ -62,11 +57,6 @@ class SolvedHelices:
     def stiffness(self) -> np.ndarray:
         """Secant stiffness (p,) in N/m."""
         return np.asarray(self.curve.values[:, 1])
-
-    @property
-    def tangent(self) -> np.ndarray:
-        """Tangent stiffness (p,) in N/m."""
-        return np.asarray(self.curve.values[:, 2])
 
     @property
     def contact_ratio(self) -> float:
@@ -147,11 +137,6 @@ class MeshRequest:
     sense: int
     senses: tuple[int, ...]
     load: MeshLoad | None
-
-    @property
-    def name(self) -> str:
-        """Name of the mesh."""
-        return self.mesh.name
 
     @property
     def helices(self) -> int:

@@ -48,10 +48,10 @@ def loaded_face(teeth: ToothPair, force: float, positions: int = _POSITIONS) -> 
     place = tangents[:, 0, 1] / tangents[:, 0, 0]
     against_tilt = tangents[:, 1, 1] - place * tangents[:, 0, 1]
     deflection, moment = found.mean(np.stack([cycle.deflection, cycle.moment], axis=1))
-    compliance, mean_place, mean_against_tilt = found.mean_of_tangents(
-        np.stack([1.0 / tangents[:, 0, 0], place, against_tilt], axis=1)
-    )
-    k, k_tilt, _, tilt_tilt = found.mean_of_tangents(tangents.reshape(-1, 4))
+    # Tangents step where pairs come and go: straight between positions.
+    springs = np.stack([1.0 / tangents[:, 0, 0], place, against_tilt], axis=1)
+    compliance, mean_place, mean_against_tilt = cycle.weight @ springs
+    k, k_tilt, _, tilt_tilt = cycle.weight @ tangents.reshape(-1, 4)
     z, line_load = load_per_width(cycle, teeth.width, min(_PLACES, found.problem.slices))
     largest = int(np.argmax(line_load))
     return FaceLoad(

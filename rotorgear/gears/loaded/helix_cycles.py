@@ -240,10 +240,6 @@ class HelixCycle:
             return np.asarray(values.mean(axis=0))
         return CycleCurve(self.cycle.position, values, 1.0, self.event).mean()
 
-    def mean_of_tangents(self, values: np.ndarray) -> np.ndarray:
-        """Means (c,) of curves (p, c) that step where pairs come and go: straight between positions."""
-        return np.asarray(self.cycle.weight @ values)
-
 
 @lru_cache(maxsize=4)  # stiffness and map of a mesh ask for the same one
 def helix_cycle(teeth: ToothPair, load: float, positions: int) -> HelixCycle:

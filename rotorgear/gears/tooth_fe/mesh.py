@@ -54,16 +54,6 @@ class PitchMesh:
     mesh: Any = field(repr=False, compare=False)
 
     @property
-    def loaded_column(self) -> int:
-        """Doubled lattice number of the column on the loaded flank."""
-        return int(self.lattice[self.flank[0], 0])
-
-    @property
-    def tooth_rows(self) -> tuple[int, int]:
-        """Doubled lattice numbers of the rows where tooth and involute begin."""
-        return int(self.lattice[self.right[-1], 1]), int(self.lattice[self.flank[0], 1])
-
-    @property
     def pitch_angle(self) -> float:
         """2 pi / z (rad)."""
         return 2.0 * math.pi / self.outline.geometry.teeth

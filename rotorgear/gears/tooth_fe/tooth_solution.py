@@ -113,10 +113,10 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
     d = 3 if layers else 2
 
     # Fillet: from the foot of the involute down the loaded column, then along the root to the cut.
-    low, high = mesh.tooth_rows
-    column = mesh.loaded_column
-    inside = (mesh.lattice[:, 0] == column) & (mesh.lattice[:, 1] >= low) & (mesh.lattice[:, 1] <= high)
-    fillet = np.flatnonzero(inside | ((mesh.lattice[:, 1] == low) & (mesh.lattice[:, 0] >= column)))
+    column, high = mesh.lattice[mesh.flank[0]]
+    low = mesh.lattice[mesh.right[-1], 1]  # the row where the tooth begins
+    across, row = mesh.lattice.T
+    fillet = np.flatnonzero(((across == column) & (row >= low) & (row <= high)) | ((row == low) & (across >= column)))
 
     # Planes and layers turn with the helix about the middle of the face; quadratic elements have a plane in their middle.
     if layers:
