@@ -12,7 +12,7 @@ Where patches grow, those of slices far from the ends of the flank stay what the
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -151,53 +151,27 @@ def _with_patches(
     # rho = xi / cos b_b.
     length = slices.length / problem.cosine
     R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / problem.cosine
-    before = {i: (known[i].compliance, known[i].log_width) for i in positions if i in known}
     found = {}
-    compliances = slice_compliances(problem, slices, positions, patch, before or None)
-    for i, (compliance, log_width) in zip(positions, compliances, strict=True):
-        here = slices.at(i)
-        found[i] = PositionContact(
-            compliance=compliance,
-            gap=gap[here],
-            length=length[here],
-            local=problem.local,
-            log_width=log_width,
-            radius=R[here],
-            modulus=problem.modulus,
-            least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,
-        )
+    for first in range(0, len(positions), _TOGETHER):
+        some = positions[first : first + _TOGETHER]
+        compliances = _compliances(problem, slices, some, patch, [known[i] for i in some] if known else None)
+        for i, (compliance, log_width) in zip(some, compliances, strict=True):
+            here = slices.at(i)
+            found[i] = PositionContact(
+                compliance=compliance,
+                gap=gap[here],
+                length=length[here],
+                local=problem.local,
+                log_width=log_width,
+                radius=R[here],
+                modulus=problem.modulus,
+                least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,
+            )
     return found
 
 
 # Positions that are taken together.
 _TOGETHER = 16
-
-
-def slice_compliances(
-    problem: ContactProblem,
-    slices: Slices,
-    positions: Sequence[int],
-    least: np.ndarray,
-    known: Mapping[int, tuple[np.ndarray, np.ndarray]] | None = None,
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Compliances of the slices at some positions.
-
-    Args:
-        problem: the helix.
-        slices: of all positions.
-        positions: numbers of those asked for.
-        least: (n,) least half-width of the patch of every slice, in normal modules.
-        known: those of all these positions in space with other patches.
-
-    Returns:
-        For each position C (n, n) in m/N without the local part, symmetric, and (n, 2) the logarithm of the patches' half-widths
-        across the contact line (m).
-    """
-    found: list[tuple[np.ndarray, np.ndarray]] = []
-    for first in range(0, len(positions), _TOGETHER):
-        some = positions[first : first + _TOGETHER]
-        found += _compliances(problem, slices, some, least, None if known is None else [known[i] for i in some])
-    return found
 
 
 # The slices of one position among those taken together, and those of each of its tooth pairs, which stand in a row.
@@ -209,8 +183,19 @@ def _compliances(
     slices: Slices,
     positions: Sequence[int],
     least: np.ndarray,
-    known: Sequence[tuple[np.ndarray, np.ndarray]] | None,
+    known: Sequence[PositionContact] | None,
 ) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Compliances of the slices at some positions, on patches of least half-widths (n,) in normal modules.
+
+    Args:
+        problem: the helix; slices: of all positions; positions: numbers of those asked for.
+        least: of every slice.
+        known: the contacts at all these positions in space with other patches.
+
+    Returns:
+        For each position C (n, n) in m/N without the local part, symmetric, and (n, 2) the logarithm of the patches' half-widths
+        across the contact line (m).
+    """
     ranges = [slices.at(position) for position in positions]
     here = np.concatenate(ranges)
     some = slices.take(here)
@@ -226,15 +211,15 @@ def _compliances(
     log_width = np.log(problem.module * problem.cosine) + np.stack([one.log_width for one in patches], axis=1)
     changed = None
     if known is not None:
-        changed = np.any(log_width != np.concatenate([width for _, width in known]), axis=1)
+        changed = np.any(log_width != np.concatenate([one.log_width for one in known]), axis=1)
     for gear in (0, 1):
         _add(problem, gear, patches[gear], blocks, matrices, changed)
     if known is None or changed is None:
         done = [_completed(problem, some.take(block), C) for (block, _), C in zip(blocks, matrices, strict=True)]
     else:
         done = [
-            _with_rows(old, C, np.flatnonzero(changed[block]))
-            for (old, _), C, (block, _) in zip(known, matrices, blocks, strict=True)
+            _with_rows(old.compliance, C, np.flatnonzero(changed[block]))
+            for old, C, (block, _) in zip(known, matrices, blocks, strict=True)
         ]
     return [(C, log_width[block]) for (block, _), C in zip(blocks, done, strict=True)]
 
