@@ -383,7 +383,8 @@ def flank_variables(
         if gear and gear not in own:
             raise AnalysisError(f"optimise {text}: meshes.{mesh.name} has the gears {own[0]} and {own[1]}.")
         if field not in NAMES:
-            raise AnalysisError(f"optimise: there is no '{field}': {did_you_mean(field, NAMES)}")
+            hint = did_you_mean(field, NAMES, f"there are {', '.join(NAMES)}")
+            raise AnalysisError(f"optimise: there is no '{field}': {hint}")
         gears = (own.index(gear),) if gear else (0, 1)
         low, high = _bounds(mesh.teeth, field, text, bounds)
         found.append(Variable(text, field, gears, low, high))

@@ -169,14 +169,15 @@ def mesh_request(
     if name is None and len(names) > 1:
         raise AnalysisError(f"Which mesh? Give --mesh with one of {', '.join(names)}.")
     if name is not None and name not in names:
-        raise AnalysisError(f"There is no mesh '{name}': {did_you_mean(name, names)}")
+        hint = did_you_mean(name, names, f"there are {', '.join(names)}.")
+        raise AnalysisError(f"There is no mesh '{name}': {hint}")
     mesh = model.layout.mesh(name or names[0])
     given = mesh.part.stiffness
     chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
-    if chosen not in (*MODELS, "given"):
-        raise AnalysisError(
-            f"--stiffness: there is no stiffness model '{chosen}': {did_you_mean(chosen, (*MODELS, 'given'))}"
-        )
+    known = (*MODELS, "given")
+    if chosen not in known:
+        hint = did_you_mean(chosen, known, f"there are {', '.join(known)}")
+        raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
     if chosen == "given" and isinstance(given, str):
         raise AnalysisError(f"--stiffness given: meshes.{mesh.name} names the model '{given}' and gives no numbers.")
     load, sense = _load(model, mesh, torque)
