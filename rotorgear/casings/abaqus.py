@@ -6,13 +6,14 @@ only, and takes no sets from headings. Here any number of blocks is read; elemen
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from rotorgear.casings.elements import element
-from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, NamedSet, gathered, not_read, set_of
+from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, NamedSet, gathered, not_read, places_of, set_of
 
 # Elements by how their names begin: kind and number of nodes; the longest beginning counts.
 _ELEMENTS = {
@@ -43,9 +44,11 @@ _BESIDE = (
     "TIE",
     "CONTACT PAIR",
 )
-# Corners of the faces S1, S2, ... of solids.
-_TET_FACES = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
-_HEX_FACES = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
+# Corners of the faces S1, S2, ... of solids, by the number of all corners.
+_SIDES = {
+    4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
+    8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7)),
+}
 
 
 def read_abaqus(path: Path) -> FileMesh:
@@ -56,14 +59,13 @@ def read_abaqus(path: Path) -> FileMesh:
     cell_sets: dict[str, list[int]] = {}
     surfaces: dict[str, list[tuple[str, str]]] = {}
     nodes_of_elements: dict[str, str] = {}
-    instances = 0
-    beside: list[str] = []
+    instanced = False
+    beside: dict[str, None] = {}
     for keyword, options, lines in _keywords(path):
         if keyword == "SYSTEM" or (keyword == "NODE" and options.get("SYSTEM", "R").upper() != "R"):
             raise ValueError("its nodes stand in a coordinate system of their own: export global coordinates x, y, z")
         if keyword in _BESIDE:
-            if keyword not in beside:
-                beside.append(keyword)
+            beside[keyword] = None
         elif keyword == "NODE":
             for line in lines:
                 number, *xyz = line.rstrip(",").split(",")
@@ -89,119 +91,83 @@ def read_abaqus(path: Path) -> FileMesh:
             sets = node_sets if keyword == "NSET" else cell_sets
             sets.setdefault(options.get(keyword, ""), []).extend(_members(options, lines, sets))
         elif keyword == "SURFACE":
-            items = [[item.strip().strip('"') for item in line.split(",")] for line in lines]
-            surfaces.setdefault(options.get("NAME", ""), []).extend(
-                (row[0], row[1] if len(row) > 1 else "") for row in items
-            )
+            items = [[item.strip().strip('"') for item in f"{line}, ".split(",")] for line in lines]
+            surfaces.setdefault(options.get("NAME", ""), []).extend((row[0], row[1]) for row in items)
         elif keyword == "INCLUDE":
             raise ValueError(f"it includes another file, {options.get('INPUT', '')}: put both into one")
         elif keyword == "INSTANCE":
-            instances += 1
-            if instances > 1 or any(line.strip() for line in lines):
+            if instanced or lines:
                 raise ValueError("it has several instances or a moved one: export a flat deck without parts")
+            instanced = True
     if not coordinates:
         raise ValueError("it has no *NODE")
-    order = {number: place for place, number in enumerate(coordinates)}
-    try:
-        cells = [(kind, np.array([[order[node] for node in row] for row in rows])) for kind, rows, _ in blocks]
-        named = {
-            name: NamedSet(np.unique([order[node] for node in nodes]))
-            for name, nodes in node_sets.items()
-            if nodes and name
-        }
-    except KeyError as error:
-        raise ValueError(f"node {error.args[0]} is named but not given") from None
+    places = places_of(coordinates, "node")
+    cells = [(kind, places(rows), ids) for kind, rows, ids in blocks]
+    named = {name: NamedSet(np.unique(places(nodes))) for name, nodes in node_sets.items() if name and nodes}
+
+    def chosen(numbers: Iterable[int]) -> list[tuple[str, np.ndarray]]:
+        wanted = list(numbers)
+        return [(kind, nodes[np.isin(ids, wanted)]) for kind, nodes, ids in cells]
+
     for name, numbers in cell_sets.items():
-        wanted = np.array(numbers)
-        chosen = [
-            (kind, rows[np.isin(ids, wanted)])
-            for (kind, rows), (_, _, ids) in zip(cells, blocks, strict=True)
-            if len(rows)
-        ]
-        found = set_of(chosen)
+        found = set_of(chosen(numbers))
         # A deck often has one name for the nodes and for the faces of a place; then the faces say more.
         if name and (name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes))):
             named[name] = found
     for name, elements in nodes_of_elements.items():
-        wanted = np.array(cell_sets.get(elements, []))
-        of_blocks = [rows[np.isin(ids, wanted)].ravel() for (_, rows), (_, _, ids) in zip(cells, blocks, strict=True)]
-        named.setdefault(name, NamedSet(np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *of_blocks]))))
-    for name, places in surfaces.items():
-        faces = [rows for place in places for rows in _faces_at(place, cells, blocks, cell_sets)]
-        nodes = [node for place, _ in places for node in _members({}, [place], node_sets) if node in order]
-        on_nodes = [np.array([order[node] for node in nodes], dtype=np.int64)] if nodes and not faces else []
-        if name and name not in named and (faces or on_nodes):
-            all_nodes = np.unique(np.concatenate([rows.ravel() for rows in (*faces, *on_nodes)]))
-            named[name] = NamedSet(all_nodes, [rows[:, : 4 if rows.shape[1] in (4, 8, 9) else 3] for rows in faces])
-    return FileMesh(np.array(list(coordinates.values())), gathered(cells), named, not_read(beside))
+        named.setdefault(name, NamedSet(set_of(chosen(cell_sets.get(elements, []))).nodes))
+    for name, sides in surfaces.items():
+        faces = [rows for which, label in sides for rows in _faces(chosen(_members({}, [which], cell_sets)), label)]
+        nodes = [node for which, _ in sides for node in _members({}, [which], node_sets) if node in coordinates]
+        if name and name not in named and (faces or nodes):
+            all_nodes = np.concatenate([rows.ravel() for rows in faces] or [places(nodes)])
+            corners = [rows[:, : 4 if rows.shape[1] in (4, 8, 9) else 3] for rows in faces]
+            named[name] = NamedSet(np.unique(all_nodes), corners)
+    return FileMesh(
+        np.array(list(coordinates.values())),
+        gathered([(kind, nodes) for kind, nodes, _ in cells]),
+        named,
+        not_read(list(beside)),
+    )
 
 
-def _faces_at(
-    place: tuple[str, str],
-    cells: list[tuple[str, np.ndarray]],
-    blocks: list[tuple[str, list[list[int]], list[int]]],
-    cell_sets: dict[str, list[int]],
-) -> Iterator[np.ndarray]:
-    """Yield the nodes (f, m) of a line of a surface: an element or a set of them, and a face S1 to S6 of each."""
-    which, label = place
-    wanted = list(_members({}, [which], cell_sets))
-    if label.upper() in _SHELL_SIDES:
-        label = ""
-    for (kind, rows), (_, _, ids) in zip(cells, blocks, strict=True):
-        chosen = rows[np.isin(ids, wanted)]
-        if not len(chosen):
+def _faces(cells: list[tuple[str, np.ndarray]], label: str) -> Iterator[np.ndarray]:
+    """Yield the nodes (f, m) of a line of a surface: cells that are faces, and the face S1 to S6 of those that are solids."""
+    for kind, nodes in cells:
+        if not len(nodes):
             continue
         if kind in FACES:
-            yield chosen
-        elif label and kind in SOLIDS:
-            number = int(label.upper().removeprefix("S")) - 1 if label.upper().removeprefix("S").isdigit() else -1
-            corners = (
-                (_TET_FACES if kind.startswith("tetra") else _HEX_FACES)[number : number + 1] if number >= 0 else ()
-            )
-            if not corners:
+            yield nodes
+        elif label and label.upper() not in _SHELL_SIDES and kind in SOLIDS:
+            shape = element(kind)
+            sides = {f"S{number}": list(corners) for number, corners in enumerate(_SIDES[shape.corners], start=1)}
+            side = sides.get(f"S{label.upper().removeprefix('S')}")
+            if side is None:
                 raise ValueError(f"a *SURFACE has the face {label} of {kind} elements")
-            nodes = list(corners[0])
-            if kind not in ("tetra", "hexahedron"):  # nodes on the edges of the face too
-                shape = element(kind)
-                same = [sorted(face) == sorted(nodes) for face in shape.faces]
-                nodes = shape.face_nodes[same.index(True)].tolist()
-            yield chosen[:, nodes]
+            # Nodes on the edges of the face too.
+            yield nodes[:, shape.face_nodes[[sorted(face) == side for face in shape.faces].index(True)]]
 
 
 def _keywords(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
     """Yield keyword, options (names in capitals) and lines of data of every block."""
-    keyword = ""
-    options: dict[str, str] = {}
-    lines: list[str] = []
-    pending = ""
     with path.open(encoding="utf-8", errors="replace") as file:
-        for raw in file:
-            line = raw.strip()
-            if not line or line.startswith("**"):
-                continue
-            if not line.startswith("*") and not pending:
-                lines.append(line)
-                continue
-            pending += line
-            if pending.endswith(","):  # a keyword goes on in the next line
-                continue
-            if keyword:
-                yield keyword, options, lines
-            head, *items = pending.lstrip("*").split(",")
-            keyword = head.strip().upper()
-            options = {
-                key.strip().upper(): value.strip().strip('"') for key, _, value in (i.partition("=") for i in items)
-            }
-            lines = []
-            pending = ""
-    if keyword:
-        yield keyword, options, lines
+        lines = [line for raw in file if (line := raw.strip()) and not line.startswith("**")]
+    for block in re.split(r"^\*", "\n".join(lines), flags=re.MULTILINE)[1:]:
+        head, *data = block.rstrip("\n").split("\n")
+        while head.endswith(",") and data:  # a keyword goes on in the next line
+            head += data.pop(0)
+        keyword, *items = head.split(",")
+        options = (item.partition("=") for item in items)
+        yield (
+            keyword.strip().upper(),
+            {key.strip().upper(): value.strip().strip('"') for key, _, value in options},
+            data,
+        )
 
 
 def _element(name: str) -> tuple[str, int]:
-    known = [start for start in _ELEMENTS if name.startswith(start)]
     # C3D10M and C3D20R are C3D10 and C3D20; C3D100 would be neither.
-    known = [start for start in known if not name[len(start) : len(start) + 1].isdigit()]
+    known = [start for start in _ELEMENTS if name.startswith(start) and not name[len(start) : len(start) + 1].isdigit()]
     if not known:
         raise ValueError(f"elements of the type {name or 'without a name'}")
     return _ELEMENTS[max(known, key=len)]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +45,25 @@ def not_read(cards: list[str]) -> list[str]:
     if not cards:
         return []
     return [f"Not read from the deck: {', '.join(cards)}; seats, mounts, joins and masses stand in the model file."]
+
+
+def places_of(points: Iterable[int], word: str) -> Callable[[Any], np.ndarray]:
+    """A function from numbers of points, in an array of any shape, to the places of these points in the order of the file.
+
+    It raises a ValueError for a number that no point has; `word` is what the deck calls a point.
+    """
+    numbers = np.array(list(points), dtype=np.int64)
+    order = np.argsort(numbers)
+
+    def places(wanted: Any) -> np.ndarray:
+        wanted = np.asarray(wanted, dtype=np.int64)
+        found = order[np.searchsorted(numbers, wanted, sorter=order).clip(max=len(order) - 1)]
+        missing = wanted[numbers[found] != wanted]
+        if missing.size:
+            raise ValueError(f"{word} {missing[0]} is named but not given")
+        return np.asarray(found)
+
+    return places
 
 
 def gathered(blocks: list[tuple[str, np.ndarray]]) -> dict[str, np.ndarray]:

@@ -8,12 +8,13 @@ number N are the sets of nodes "set_N" and "spc_N".
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, not_read, set_of
+from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, not_read, places_of, set_of
 
 _ELEMENTS = {
     "CTETRA": {4: "tetra", 10: "tetra10"},
@@ -39,7 +40,7 @@ def read_nastran(path: Path) -> FileMesh:
     points: dict[int, list[float]] = {}
     rows: dict[tuple[str, int], list[list[int]]] = {}
     node_sets: dict[str, list[tuple[int, int]]] = {}
-    beside: dict[str, int] = {}
+    beside: Counter[str] = Counter()
     for fields in _cards(path):
         name = fields[0].upper()
         if name in _STRUCTURE:
@@ -47,12 +48,10 @@ def read_nastran(path: Path) -> FileMesh:
         if name.startswith("INCLUDE"):
             raise ValueError("it includes another file: put both into one")
         if name in _BESIDE:
-            beside[name] = beside.get(name, 0) + 1
+            beside[name] += 1
         elif name == "GRID":
             if fields[2].strip() not in ("", "0"):
-                raise ValueError(
-                    f"GRID {fields[1]} stands in a coordinate system of its own: export global coordinates"
-                )
+                raise ValueError(f"GRID {fields[1]} is in a coordinate system of its own: export global coordinates")
             place = [_number(text) for text in (*fields[3:6], "", "", "")[:3]]
             if points.setdefault(int(fields[1]), place) != place:
                 raise ValueError(f"GRID {fields[1]} is given twice, at two places")
@@ -65,42 +64,31 @@ def read_nastran(path: Path) -> FileMesh:
             if not count:
                 raise ValueError(f"{name} {fields[1]} has {len(nodes)} nodes")
             rows.setdefault((kinds[count], int(fields[2] or 0)), []).append(nodes[:count])
-        elif name == "SET1":
+        elif name in ("SET", "SET1"):
             node_sets.setdefault(f"set_{fields[1]}", []).extend(_listed(fields[2:]))
         elif name == "SPC1":
             node_sets.setdefault(f"spc_{fields[1]}", []).extend(_listed(fields[3:]))
-        elif name == "SET":
-            node_sets.setdefault(f"set_{fields[1]}", []).extend(_listed(fields[2:]))
     if not points:
         raise ValueError("it has no GRID")
-    order = {number: place for place, number in enumerate(points)}
-    try:
-        blocks = {key: np.array([[order[node] for node in row] for row in found]) for key, found in rows.items()}
-    except KeyError as error:
-        raise ValueError(f"GRID {error.args[0]} is named but not given") from None
-    for key in blocks:
-        if key[0] == "hexahedron20":
-            blocks[key] = blocks[key][:, _HEXA]
-    sets = {
-        f"property_{number}": set_of([(kind, cells)])
-        for (kind, number), cells in blocks.items()
-        if kind.startswith(("triangle", "quad"))
-    }
+    places = places_of(points, "GRID")
+    cells = []
+    sets = {}
+    for (kind, number), found in rows.items():
+        nodes = places(found)
+        cells.append((kind, nodes[:, _HEXA] if kind == "hexahedron20" else nodes))
+        if kind.startswith(("triangle", "quad")):
+            sets[f"property_{number}"] = set_of(cells[-1:])
     numbers = np.array(list(points))
     for name, ranges in node_sets.items():
         # A set of the case control may be one of elements: only nodes that are there count.
-        nodes = [order[first] for first, last in ranges if first == last and first in order]
+        member = np.isin(numbers, [first for first, last in ranges if first == last])
         for first, last in ranges:
             if first < last:
-                nodes += np.flatnonzero((numbers >= first) & (numbers <= last)).tolist()
-        if nodes:
-            sets[name] = NamedSet(np.unique(nodes))
-    return FileMesh(
-        np.array(list(points.values())),
-        gathered([(kind, cells) for (kind, _), cells in blocks.items()]),
-        sets,
-        not_read([f"{count} {name}" for name, count in beside.items()]),
-    )
+                member |= (numbers >= first) & (numbers <= last)
+        if member.any():
+            sets[name] = NamedSet(np.flatnonzero(member))
+    left_out = not_read([f"{count} {name}" for name, count in beside.items()])
+    return FileMesh(np.array(list(points.values())), gathered(cells), sets, left_out)
 
 
 def _cards(path: Path) -> Iterator[list[str]]:
@@ -121,9 +109,8 @@ def _cards(path: Path) -> Iterator[list[str]]:
                     yield ["SET", number, *(text.strip() for text in re.split(r"[,\s]+", pending) if text)]
                     pending = ""
                 continue
-            goes_on = line[0] in "+* ," and bool(card)
             fields = _fields(line)
-            if goes_on:
+            if card and line[0] in "+* ,":
                 card += fields[1:]
                 continue
             if card:
@@ -148,9 +135,7 @@ def _fields(line: str) -> list[str]:
     if "," in line:
         return [text.strip().rstrip("*") for text in line.split(",")][:9]
     width = 16 if "*" in line[:8] else 8
-    count = 4 if width == 16 else 8
-    body = line[8:].ljust(width * count)
-    return [line[:8].strip().rstrip("*"), *(body[width * i : width * (i + 1)].strip() for i in range(count))]
+    return [line[:8].strip().rstrip("*"), *(line[start : start + width].strip() for start in range(8, 72, width))]
 
 
 def _number(text: str) -> float:

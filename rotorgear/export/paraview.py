@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -89,10 +89,21 @@ def save_mesh(mesh: Any, path: Path) -> None:
         raise OSError(f"VTK could not write {path.name}; is the disk full?")
 
 
-def put_shape(mesh: Any, name: str, values: np.ndarray) -> None:
-    """Point data of complex displacements (P, 3), real and imaginary; the star of a name such as "displacement*_m" says which."""
-    mesh.point_data[name.replace("*", "_real")] = values.real.astype(np.float32)
-    mesh.point_data[name.replace("*", "_imag")] = values.imag.astype(np.float32)
+def save_shape(plain: Any, path: Path, shapes: Mapping[str, np.ndarray], facts: Mapping[str, Any]) -> None:
+    """Write undeformed solids with displacements (P, 3) of their points, and with numbers and texts as field data.
+
+    The star in the name of complex displacements, such as "displacement*_m", becomes "_real" and "_imag".
+    """
+    mesh = plain.copy(deep=False)  # the same points and cells, but data of its own
+    for name, values in shapes.items():
+        for word, part in (("_real", values.real), ("_imag", values.imag)) if "*" in name else (("", values),):
+            mesh.point_data[name.replace("*", word)] = part.astype(np.float32)
+    for name, fact in facts.items():
+        if isinstance(fact, str):
+            add_texts(mesh, name, [fact])
+        else:
+            mesh.field_data[name] = np.array([fact])
+    save_mesh(mesh, path)
 
 
 def write_collection(path: Path, steps: Iterable[tuple[float, str]]) -> None:

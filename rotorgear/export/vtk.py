@@ -17,7 +17,7 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.export.attachment import nodes_in_order
 from rotorgear.export.files import filling, publish
-from rotorgear.export.paraview import add_texts, put_shape, save_mesh, undeformed, write_collection
+from rotorgear.export.paraview import add_texts, save_mesh, save_shape, undeformed, write_collection
 from rotorgear.export.solids import Solids
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
@@ -70,16 +70,16 @@ def write_vtk(
             progress(count / len(chosen), f"mode {mode + 1}")
             scaled, scale = solids.scaled(result.shapes[:, :, mode], amplitude)
             name = f"mode_{mode + 1:02d}"
-            mesh = plain.copy(deep=False)  # the same points and cells, but data of its own
-            put_shape(mesh, "displacement*", scaled)
-            put_shape(mesh, "mass_normalised*", scaled / scale)
-            mesh.field_data["mode"] = np.array([mode + 1], dtype=np.int32)
-            mesh.field_data["displacement_scale"] = np.array([scale])
-            mesh.field_data["frequency_hz"] = result.frequency_hz[[mode]]
-            mesh.field_data["natural_frequency_hz"] = result.natural_frequency_hz[[mode]]
-            mesh.field_data["damping_ratio"] = result.damping_ratio[[mode]]
-            add_texts(mesh, "description", [result.description[mode]])
-            save_mesh(mesh, scratch / f"{name}.vtp")
+            facts = {
+                "mode": np.int32(mode + 1),
+                "displacement_scale": scale,
+                "frequency_hz": result.frequency_hz[mode],
+                "natural_frequency_hz": result.natural_frequency_hz[mode],
+                "damping_ratio": result.damping_ratio[mode],
+                "description": result.description[mode],
+            }
+            shapes = {"displacement*": scaled, "mass_normalised*": scaled / scale}
+            save_shape(plain, scratch / f"{name}.vtp", shapes, facts)
             names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, frames, scratch, name)]
         index = [(mode + 1, f"mode_{mode + 1:02d}.vtp") for mode in chosen]
         write_collection(scratch / "index.pvd", index)
@@ -97,19 +97,17 @@ def write_vtk(
 
 def chosen_modes(result: ModalResult, modes: Sequence[int] | None) -> list[int]:
     """Modes to write, counted from 0; AnalysisError for one that the result does not have."""
-    chosen = list(range(len(result))) if modes is None else [int(mode) for mode in modes]
+    chosen = dict.fromkeys(range(len(result)) if modes is None else map(int, modes))
     for mode in chosen:
         if not 0 <= mode < len(result):
             raise AnalysisError(f"there is no mode {mode + 1}: the result has {len(result)}")
-    return list(dict.fromkeys(chosen))
+    return list(chosen)
 
 
 def check_amplitude(amplitude: float | None) -> None:
     """AnalysisError unless positive and finite, or None."""
     if amplitude is not None and not 0.0 < amplitude < math.inf:
-        raise AnalysisError(
-            f"the amplitude must be a positive share of the model's size, such as 0.05, got {amplitude:g}"
-        )
+        raise AnalysisError(f"the amplitude is a positive share of the model's size, such as 0.05, got {amplitude:g}")
 
 
 def write_period(
@@ -156,8 +154,7 @@ def beam_mesh(pv: ModuleType, result: ModalResult, solids: Solids) -> Any:
     model = result.model
     lines = [nodes_in_order(nodes, name) for name in model.shafts]
     cells = [[len(line), *line] for line in lines if len(line) > 1]
-    single = [int(line[0]) for line in lines if len(line) == 1]
-    single += [number for number, bearing in enumerate(nodes.pedestal) if bearing]
+    single = [*(line[0] for line in lines if len(line) == 1), *np.flatnonzero(nodes.pedestal)]
     # Points of casings come last, and are no nodes of a beam.
     count = sum(bool(shaft) for shaft in nodes.shaft)
     mesh = pv.PolyData()
@@ -168,15 +165,16 @@ def beam_mesh(pv: ModuleType, result: ModalResult, solids: Solids) -> Any:
         mesh.verts = np.column_stack([np.ones(len(single), int), single]).ravel()
     names = list(model.shafts)
     mesh.point_data["shaft_id"] = np.array([names.index(shaft) for shaft in nodes.shaft[:count]], dtype=np.int16)
-    mesh.point_data["pedestal"] = np.array([bool(bearing) for bearing in nodes.pedestal[:count]], dtype=np.uint8)
+    mesh.point_data["pedestal"] = np.array(nodes.pedestal[:count], dtype=bool).astype(np.uint8)
     mesh.point_data["outer_diameter"] = np.array(
         [model.shafts[s].diameter_at(z) for s, z in zip(nodes.shaft[:count], nodes.position[:count, 2], strict=True)]
     )
     for mode in range(len(result)):
         for what, dofs in (("translation", slice(0, 3)), ("rotation", slice(3, 6))):
             values = result.shapes[:count, dofs, mode]
-            mesh.point_data[f"mode_{mode + 1:02d}_{what}_real"] = np.ascontiguousarray(values.real, float)
-            mesh.point_data[f"mode_{mode + 1:02d}_{what}_imag"] = np.ascontiguousarray(values.imag, float)
+            for part in ("real", "imag"):
+                name = f"mode_{mode + 1:02d}_{what}_{part}"
+                mesh.point_data[name] = np.ascontiguousarray(getattr(values, part), float)
     add_texts(mesh, "shaft_names", names)
     mesh.field_data["frequency_hz"] = result.frequency_hz
     mesh.field_data["damping_ratio"] = result.damping_ratio

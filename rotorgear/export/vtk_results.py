@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish
-from rotorgear.export.paraview import add_texts, put_shape, save_mesh, undeformed, write_collection
+from rotorgear.export.paraview import save_shape, undeformed, write_collection
 from rotorgear.export.vtk import check_amplitude, write_period
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -51,27 +51,23 @@ def write_deflections(
     with filling(directory) as scratch:
         if isinstance(result, StaticResult):
             scaled, scale = solids.scaled(result.displacement, amplitude)
-            mesh = plain.copy(deep=False)
-            mesh.point_data["displacement"] = scaled.astype(np.float32)
-            mesh.point_data["displacement_m"] = (scaled / scale).astype(np.float32)
-            mesh.field_data["displacement_scale"] = np.array([scale])
-            save_mesh(mesh, scratch / "static.vtp")
             names = ["static.vtp"]
+            shapes = {"displacement": scaled, "displacement_m": scaled / scale}
+            save_shape(plain, scratch / names[0], shapes, {"displacement_scale": scale})
         else:
             names = []
             for o, order in enumerate(result.orders):
                 progress(o / len(result.orders), order)
                 scaled, scale = solids.scaled(result.shapes[:, :, o], amplitude)
                 name = f"order_{o + 1:02d}"
-                mesh = plain.copy(deep=False)
-                put_shape(mesh, "displacement*", scaled)
-                put_shape(mesh, "displacement*_m", scaled / scale)
-                hz = result.ratio[o] * abs(result.shape_speed) / (2.0 * np.pi)
-                mesh.field_data["displacement_scale"] = np.array([scale])
-                mesh.field_data["speed_rpm"] = np.array([result.shape_speed * RPM_PER_RAD_S])
-                mesh.field_data["frequency_hz"] = np.array([hz])
-                add_texts(mesh, "order", [order])
-                save_mesh(mesh, scratch / f"{name}.vtp")
+                facts = {
+                    "displacement_scale": scale,
+                    "speed_rpm": result.shape_speed * RPM_PER_RAD_S,
+                    "frequency_hz": result.ratio[o] * abs(result.shape_speed) / (2.0 * np.pi),
+                    "order": order,
+                }
+                shapes = {"displacement*": scaled, "displacement*_m": scaled / scale}
+                save_shape(plain, scratch / f"{name}.vtp", shapes, facts)
                 # What refers to others comes last.
                 names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, FRAMES, scratch, name)]
         written = publish(scratch, Path(directory), names)
@@ -108,25 +104,22 @@ def write_branch(
         raise AnalysisError(f"there is no branch {branch + 1}: the result has {len(result)}")
     check_amplitude(amplitude)
     _, solids, plain = undeformed(result)
-    names = []
     with filling(directory) as scratch:
         steps = []
-        shapes = smooth_shapes(result, branch)
-        for k, shape in shapes:
+        for k, shape in smooth_shapes(result, branch):
             progress(k / len(result.speeds), f"speed {k + 1}")
             scaled, scale = solids.scaled(shape, amplitude)
-            mesh = plain.copy(deep=False)
-            put_shape(mesh, "displacement*", scaled)
-            mesh.field_data["displacement_scale"] = np.array([scale])
-            mesh.field_data["speed_rpm"] = result.speed_rpm[[k]]
-            mesh.field_data["frequency_hz"] = result.frequency_hz[[k], branch]
-            mesh.field_data["log_decrement"] = result.log_decrement[[k], branch]
-            names.append(f"branch_{branch + 1:02d}_{k:03d}.vtp")
-            save_mesh(mesh, scratch / names[-1])
-            steps.append((float(result.speeds[k] * RPM_PER_RAD_S), names[-1]))
-        names.append(f"branch_{branch + 1:02d}.pvd")
-        write_collection(scratch / names[-1], steps)
-        written = publish(scratch, Path(directory), names)
+            facts = {
+                "displacement_scale": scale,
+                "speed_rpm": result.speed_rpm[k],
+                "frequency_hz": result.frequency_hz[k, branch],
+                "log_decrement": result.log_decrement[k, branch],
+            }
+            steps.append((float(result.speeds[k] * RPM_PER_RAD_S), f"branch_{branch + 1:02d}_{k:03d}.vtp"))
+            save_shape(plain, scratch / steps[-1][1], {"displacement*": scaled}, facts)
+        collection = f"branch_{branch + 1:02d}.pvd"
+        write_collection(scratch / collection, steps)
+        written = publish(scratch, Path(directory), [*(file for _, file in steps), collection])
     progress(1.0, "done")
     return written
 
@@ -137,10 +130,7 @@ def smooth_shapes(result: CampbellResult, branch: int) -> Sequence[tuple[int, np
     for k in np.flatnonzero(np.isfinite(result.eigenvalues[:, branch])):
         shape = result.basis @ result.coordinates[k, :, branch]
         # The phase of an eigenvector is free: the first shape has its largest component real, each other follows the one before.
-        if shapes:
-            turn = np.vdot(shape, shapes[-1][1])
-        else:
-            turn = np.conj(shape[np.unravel_index(np.argmax(np.abs(shape)), shape.shape)])
+        turn = np.vdot(shape, shapes[-1][1]) if shapes else np.conj(shape.flat[np.argmax(np.abs(shape))])
         shapes.append((int(k), shape * (turn / abs(turn) if turn else 1.0)))
     return shapes
 
@@ -178,15 +168,11 @@ def write_motion(
         for i, time in enumerate(result.motion_time):
             progress(i / result.motion_time.size, f"instant {i + 1}")
             raw = solids.displacement(about[:, :, i])
-            mesh = plain.copy(deep=False)
-            mesh.SetPoints(pv.vtk_points((solids.points + scale * raw).astype(np.float32)))
-            mesh.point_data["displacement"] = (scale * raw).astype(np.float32)
-            mesh.point_data["displacement_m"] = raw.astype(np.float32)
-            mesh.field_data["displacement_scale"] = np.array([scale])
-            mesh.field_data["time_s"] = np.array([time])
-            file = f"motion/instant_{i + 1:04d}.vtp"
-            save_mesh(mesh, scratch / file)
-            steps.append((float(time), file))
+            moved = plain.copy(deep=False)
+            moved.SetPoints(pv.vtk_points((solids.points + scale * raw).astype(np.float32)))
+            steps.append((float(time), f"motion/instant_{i + 1:04d}.vtp"))
+            shapes = {"displacement": scale * raw, "displacement_m": raw}
+            save_shape(moved, scratch / steps[-1][1], shapes, {"displacement_scale": scale, "time_s": time})
         write_collection(scratch / "motion.pvd", steps)
         written = publish(scratch, Path(directory), [*(file for _, file in steps), "motion.pvd"])
     progress(1.0, "done")
