@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.casings.solid_mesh import MASS_DEGREE, STIFFNESS_DEGREE, SolidMesh
+from rotorgear.casings.solid_mesh import MASS_DEGREE, STIFFNESS_DEGREE, SolidMesh, in_space
 
 _CHUNK = 4000  # elements at a time: some ten MB of gradients
 
@@ -69,10 +69,8 @@ def assemble(mesh: SolidMesh, material: Elastic) -> Assembled:
     for start in range(0, len(cells), _CHUNK):
         some = mesh.points[cells[start : start + _CHUNK]]
         where = inverse[start * k * k : (start + len(some)) * k * k]
-        J = np.einsum("eki,kjq->eqij", some, stiff_gradients, optimize=True)
-        volume = np.linalg.det(J) * stiff_weights
-        # ∇N = J^-T ∇_ξ N, each times √(w det J), so that one product of matrices integrates.
-        gradients = np.einsum("eqji,kjq->eqki", np.linalg.inv(J), stiff_gradients, optimize=True)
+        volume, gradients = in_space(some, stiff_gradients, stiff_weights)
+        # Each gradient times √(w det J), so that one product of matrices integrates.
         weighted = (gradients * np.sqrt(volume)[:, :, None, None]).reshape(len(some), -1, k * 3)
         G = np.matmul(weighted.transpose(0, 2, 1), weighted).reshape(-1, k, 3, k, 3).transpose(0, 1, 3, 2, 4)
         G = G.reshape(-1, 3, 3)

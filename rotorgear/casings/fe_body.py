@@ -15,7 +15,7 @@ from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mechanisms import no_hinges, no_mechanism
 from rotorgear.casings.mesh_file import read_mesh
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
-from rotorgear.casings.reduced_body import node_dofs, rigid_motions
+from rotorgear.casings.reduced_body import mass_properties, node_dofs, rigid_motions
 from rotorgear.casings.settings import CasingSettings, MountSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
 from rotorgear.casings.split import split
@@ -172,16 +172,6 @@ def _strong(mount: MountSettings) -> tuple[np.ndarray, np.ndarray]:
     return values[strong], directions[:, strong]
 
 
-def mass_properties(rigid_mass: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, centre and inertia about the centre from the mass matrix (6, 6) of rigid motions about the origin."""
-    mass = float(rigid_mass[0, 0])
-    # Rotation about x moves the centre along y by -z_c, and so on: the coupling block is mass times the cross product with it.
-    coupling = rigid_mass[:3, 3:] / mass
-    centre = np.array([coupling[1, 2], coupling[2, 0], coupling[0, 1]])
-    offset = mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
-    return mass, centre, rigid_mass[3:, 3:] - offset
-
-
 def finite_element_body(settings: CasingSettings, progress: Progress = silent) -> FiniteElementBody:
     """Read, check and assemble the mesh of a casing.
 
@@ -269,19 +259,12 @@ def _one_body(joined: Joined, settings: CasingSettings) -> None:
     count, groups = connected_components(joint)
     if count == 1:
         return
-    body_of = groups[labels]
-    elements = np.bincount(body_of[mesh.cells[:, 0]], minlength=count)
-    order = np.argsort(-elements)
-    described = []
-    for number in order[:4]:
-        centre = mesh.points[body_of == number].mean(axis=0)
-        place = ", ".join(millimetres(x) for x in centre)
-        described.append(f"{elements[number]} elements about ({place})")
-    more = f" and {count - 4} more" if count > 4 else ""
+    body_of = groups[labels][mesh.cells[:, 0]]
+    elements = np.bincount(body_of)
     small = elements.min() < 0.01 * elements.max()
     remedy = "take free floating parts out of the mesh" if small else "join them: joins = [{ faces = ['A', 'B'] }]"
     raise AnalysisError(
-        f"{settings.address}.mesh: the mesh has {count} bodies that do not hang together: {'; '.join(described)}{more}. If they "
+        f"{settings.address}.mesh: the mesh has {count} bodies that do not hang together: {mesh.in_words(body_of)}. If they "
         f"touch, merge their nodes in the mesher; else {remedy}."
     )
 

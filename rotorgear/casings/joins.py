@@ -70,25 +70,25 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
         nodes = np.unique(first)
         if np.isin(nodes, second).any():
             raise AnalysisError(f"{here}: '{one.first}' and '{one.second}' have nodes in common: they are one already.")
-        where = _projected(mesh, second, mesh.points[nodes])
+        masters, weights, places, distance = _projected(mesh, second, mesh.points[nodes])
         size = _size(mesh, first)
-        near = where.distance <= _GAP * size
+        near = distance <= _GAP * size
         if not near.any():
             raise AnalysisError(
-                f"{here}: '{one.first}' and '{one.second}' do not touch: they are {millimetres(where.distance.min())} apart at "
+                f"{here}: '{one.first}' and '{one.second}' do not touch: they are {millimetres(distance.min())} apart at "
                 "least. Name the two faces of the joint."
             )
         if one.stiffness is None and (tied[nodes[near]].any() or tied[np.unique(second)].any()):
             raise AnalysisError(f"{here}: nodes of '{one.first}' or '{one.second}' are tied by another join already.")
         points = mesh.points.copy()
-        points[nodes[near]] = where.places[near]
+        points[nodes[near]] = places[near]
         mesh = replace(mesh, points=points)
         left = "" if near.all() else f"; {np.count_nonzero(~near)} nodes beyond its edge stay free"
         if one.stiffness is None:
             tied[nodes[near]] = True
             rows.append(np.repeat(nodes[near], second.shape[1]))
-            columns.append(where.nodes[near].ravel())
-            values.append(where.weights[near].ravel())
+            columns.append(masters[near].ravel())
+            values.append(weights[near].ravel())
             notes.append(f"'{one.first}' and '{one.second}' are tied at {np.count_nonzero(near)} nodes{left}.")
         else:
             springs = springs + one.stiffness * _spring(mesh, first, second, _GAP * size)
@@ -96,11 +96,8 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
     interpolation = None
     if tied.any():
         free = np.flatnonzero(~tied)
-        entries = (
-            np.concatenate([np.ones(len(free)), *values]),
-            (np.concatenate([free, *rows]), np.concatenate([free, *columns])),
-        )
-        interpolation = sp.csr_array(sp.coo_array(entries, shape=(n, n)))
+        places = (np.concatenate([free, *rows]), np.concatenate([free, *columns]))
+        interpolation = sp.csr_array((np.concatenate([np.ones(len(free)), *values]), places), shape=(n, n))
     mesh = replace(mesh, notes=(*mesh.notes, *notes))
     return Joined(mesh, interpolation, np.flatnonzero(tied), springs if springs.nnz else None)
 
@@ -108,9 +105,7 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
 def _faces(mesh: SolidMesh, set_name: str, address: str) -> np.ndarray:
     patch = by_set(mesh, set_name, address)
     if not patch.area:
-        raise AnalysisError(
-            f"{address}: the set '{set_name}' makes no face of the solids: name the nodes of a whole face."
-        )
+        raise AnalysisError(f"{address}: the set '{set_name}' makes no face of the solids: name all nodes of a face.")
     member = np.zeros(len(mesh.points), dtype=bool)
     member[patch.nodes] = True
     return mesh.boundary[member[mesh.boundary].all(axis=1)]
@@ -121,18 +116,12 @@ def _size(mesh: SolidMesh, faces: np.ndarray) -> float:
     return float(np.sqrt(face_areas(mesh, faces)[1].sum(axis=1).mean()))
 
 
-@dataclass(frozen=True)
-class _Places:
-    """Points on faces: nodes (n, m) and weights (n, m) of each, its place (n, 3) and distance (n,) from where it was asked."""
+def _projected(mesh: SolidMesh, faces: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The nearest points on curved faces, by Gauss and Newton's method on the faces whose middles are nearest.
 
-    nodes: np.ndarray
-    weights: np.ndarray
-    places: np.ndarray
-    distance: np.ndarray
-
-
-def _projected(mesh: SolidMesh, faces: np.ndarray, points: np.ndarray) -> _Places:
-    """The nearest points on curved faces, by Gauss and Newton's method on the faces whose middles are nearest."""
+    Returns:
+        Nodes (n, m) and weights (n, m) of each, its place (n, 3), and its distance (n,) from the point (n, 3) that was given.
+    """
     face = mesh.element.face
     tri = len(mesh.element.faces[0]) == 3
     corners = mesh.points[faces]
@@ -154,19 +143,19 @@ def _projected(mesh: SolidMesh, faces: np.ndarray, points: np.ndarray) -> _Place
     found = np.einsum("mn,nmi->ni", values, X)
     distance = np.linalg.norm(target - found, axis=1).reshape(-1, count)
     best = np.arange(len(points)) * count + np.argmin(distance, axis=1)
-    return _Places(faces[near[best]], values.T[best], found[best], distance.reshape(-1)[best])
+    return faces[near[best]], values.T[best], found[best], distance.reshape(-1)[best]
 
 
 def _spring(mesh: SolidMesh, first: np.ndarray, second: np.ndarray, gap: float) -> sp.csr_array:
     """(p, p): ∫ (N_s - N_m)ᵀ (N_s - N_m) dA over the part of the first face that touches the second one, in m^2."""
     values, areas = face_areas(mesh, first)
     gauss = np.einsum("mq,fmi->fqi", values, mesh.points[first]).reshape(-1, 3)
-    where = _projected(mesh, second, gauss)
-    weight = np.where(where.distance <= gap, areas.reshape(-1), 0.0)
-    count, m = where.nodes.shape
+    masters, weights, _, distance = _projected(mesh, second, gauss)
+    area = np.where(distance <= gap, areas.reshape(-1), 0.0)
+    count, m = masters.shape
     own = np.repeat(first, values.shape[1], axis=0)
     rows = np.repeat(np.arange(count), 2 * m)
-    columns = np.hstack([own, where.nodes]).ravel()
-    entries = np.hstack([np.tile(values.T, (len(first), 1)), -where.weights]).ravel()
+    columns = np.hstack([own, masters]).ravel()
+    entries = np.hstack([np.tile(values.T, (len(first), 1)), -weights]).ravel()
     B = sp.csr_array(sp.coo_array((entries, (rows, columns)), shape=(count, len(mesh.points))))
-    return sp.csr_array(B.T @ sp.diags_array(weight) @ B)
+    return sp.csr_array(B.T @ sp.diags_array(area) @ B)

@@ -21,22 +21,11 @@ from pathlib import Path
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping, rigid_coordinates
+from rotorgear.casings.reduced_body import ReducedBody, Surface, mass_properties, modal_damping, rigid_coordinates
 from rotorgear.errors import AnalysisError
 
-_KNOWN = (
-    "stiffness",
-    "mass",
-    "seats",
-    "positions",
-    "damping",
-    "rigid",
-    "weight",
-    "surface_points",
-    "surface_triangles",
-    "surface_basis",
-)
 _SURFACE = ("surface_points", "surface_triangles", "surface_basis")
+_KNOWN = ("stiffness", "mass", "seats", "positions", "damping", "rigid", "weight", *_SURFACE)
 # A rigid motion of the seats with more strain energy than this share of its parts is held by something.
 _STRAINED = 1e-8
 _UNKNOWN = (float("nan"), np.full(3, np.nan), np.full((3, 3), np.nan))
@@ -62,11 +51,10 @@ def read_matrices(
     """
     address = f"casings.{name_of_casing}.matrices"
     arrays = _arrays(path, address)
-    stiffness = _square(arrays, "stiffness", address)
-    mass = _square(arrays, "mass", address)
-    if stiffness is None or mass is None:
-        missing = "stiffness" if stiffness is None else "mass"
-        raise AnalysisError(f"{address}: '{path.name}' has no array '{missing}'; it has {', '.join(arrays) or 'none'}")
+    for name in ("stiffness", "mass"):
+        if name not in arrays:
+            raise AnalysisError(f"{address}: '{path.name}' has no array '{name}'; it has {', '.join(arrays) or 'none'}")
+    stiffness, mass = (_symmetric(arrays, name, address) for name in ("stiffness", "mass"))
     n = len(stiffness)
     if interface:
         seats = tuple(interface)
@@ -79,18 +67,16 @@ def read_matrices(
             f"{address}: '{path.name}' does not say where its seats are: give the arrays seats and positions in it, or "
             "interface = { input_left = ['-55 mm', '130 mm', '20 mm'] } beside matrices, in the order of the dofs"
         )
-    if points.shape != (len(seats), 3) or len(set(seats)) != len(seats):
-        raise AnalysisError(
-            f"{address}: {len(seats)} names of seats with {len(points)} reference points in '{path.name}'"
-        )
-    damping = _square(arrays, "damping", address)
-    for name, matrix in (("mass", mass), ("damping", damping)):
-        if matrix is not None and len(matrix) != n:
+    count = len(seats)
+    if points.shape != (count, 3) or len(set(seats)) != count:
+        raise AnalysisError(f"{address}: {count} names of seats with {len(points)} reference points in '{path.name}'")
+    for name, columns in (("mass", n), ("damping", n), ("weight", 3), ("rigid", 6)):
+        if name in arrays and arrays[name].shape != (n, columns):
             raise AnalysisError(
-                f"{address}: {name} is {len(matrix)} x {len(matrix)} in '{path.name}', stiffness {n} x {n}"
+                f"{address}: {name} is {arrays[name].shape} in '{path.name}', expected ({n}, {columns})"
             )
-    if n < 6 * len(seats):
-        raise AnalysisError(f"{address}: {n} dofs in '{path.name}', but {len(seats)} seats have {6 * len(seats)}")
+    if n < 6 * count:
+        raise AnalysisError(f"{address}: {n} dofs in '{path.name}', but {count} seats have {6 * count}")
     try:
         squares = la.eigvalsh(stiffness, mass)
     except la.LinAlgError:
@@ -99,10 +85,9 @@ def read_matrices(
         raise AnalysisError(
             f"{address}: the stiffness in '{path.name}' pushes some motion on instead of holding it (an eigenvalue is negative)"
         )
-    of_ratio = modal_damping(mass, stiffness, damping_ratio)
-    for key, columns in (("weight", 3), ("rigid", 6)):
-        if key in arrays and arrays[key].shape != (n, columns):
-            raise AnalysisError(f"{address}: {key} is {arrays[key].shape} in '{path.name}', expected ({n}, {columns})")
+    damping = modal_damping(mass, stiffness, damping_ratio)
+    if "damping" in arrays:
+        damping = damping + _symmetric(arrays, "damping", address)
     rigid = arrays.get("rigid", rigid_coordinates(n, points))
     strained = rigid.T @ stiffness @ rigid
     parts = np.einsum("nm,n,nm->m", rigid, np.abs(np.diagonal(stiffness)), rigid)
@@ -110,16 +95,16 @@ def read_matrices(
     force = mass @ rigid
     if "weight" in arrays or held:
         force = np.hstack([arrays.get("weight", np.full((n, 3), np.nan)), np.full((n, 3), np.nan)])
-    body_mass, centre, inertia = _inertia(rigid.T @ mass @ rigid) if not held else _UNKNOWN
-    inside = slice(6 * len(seats), None)
-    fixed = la.eigvalsh(stiffness[inside, inside], mass[inside, inside]) if n > 6 * len(seats) else np.zeros(0)
+    body_mass, centre, inertia = mass_properties(rigid.T @ mass @ rigid) if not held else _UNKNOWN
+    inside = slice(6 * count, None)
+    fixed = la.eigvalsh(stiffness[inside, inside], mass[inside, inside]) if n > 6 * count else np.zeros(0)
     return ReducedBody(
         name=name_of_casing,
         seats=seats,
         seat_points=points,
         mass=mass,
         stiffness=stiffness,
-        damping=of_ratio if damping is None else of_ratio + damping,
+        damping=damping,
         rigid=None if held else rigid,
         inertia_force=force,
         body_mass=body_mass,
@@ -129,16 +114,6 @@ def read_matrices(
         surface=_surface(arrays, n, path, address),
         held=held,
     )
-
-
-def _inertia(M: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, centre and inertia tensor about it from the mass matrix (6, 6) of the rigid motions about the origin.
-
-    M = [[m 1, -m c~], [m c~, J_0]] with c~ the matrix of c x, and J_0 = J_c + m (c.c 1 - c c^T).
-    """
-    mass = float(np.trace(M[:3, :3])) / 3.0
-    centre = np.array([M[5, 1] - M[4, 2], M[3, 2] - M[5, 0], M[4, 0] - M[3, 1]]) / (2.0 * mass)
-    return mass, centre, M[3:, 3:] - mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
 
 
 def _arrays(path: Path, address: str) -> dict[str, np.ndarray]:
@@ -157,18 +132,17 @@ def _arrays(path: Path, address: str) -> dict[str, np.ndarray]:
     except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         words = " ".join(str(error).split()) or "it is cut off"
         raise AnalysisError(f"{address}: '{path.name}' can't be read as a NumPy archive (.npz): {words}") from None
-    unknown = [name for name in arrays if name not in _KNOWN]
-    if unknown:
-        raise AnalysisError(
-            f"{address}: '{path.name}' has an array '{unknown[0]}' that means nothing here; known are {', '.join(_KNOWN)}"
-        )
+    for name in arrays:
+        if name not in _KNOWN:
+            known = ", ".join(_KNOWN)
+            raise AnalysisError(
+                f"{address}: '{path.name}' has an array '{name}' that means nothing here; known are {known}"
+            )
     return arrays
 
 
-def _square(arrays: Mapping[str, np.ndarray], name: str, address: str) -> np.ndarray | None:
+def _symmetric(arrays: Mapping[str, np.ndarray], name: str, address: str) -> np.ndarray:
     """A symmetric matrix of finite numbers, (n, n)."""
-    if name not in arrays:
-        return None
     A = arrays[name]
     if A.ndim != 2 or A.shape[0] != A.shape[1] or A.dtype.kind not in "fiu":
         raise AnalysisError(
@@ -183,13 +157,13 @@ def _square(arrays: Mapping[str, np.ndarray], name: str, address: str) -> np.nda
 
 
 def _surface(arrays: Mapping[str, np.ndarray], n: int, path: Path, address: str) -> Surface | None:
+    """What is drawn of the body, where the file has it."""
     there = [name for name in _SURFACE if name in arrays]
     if not there:
         return None
     if len(there) < len(_SURFACE):
-        raise AnalysisError(
-            f"{address}: '{path.name}' has {', '.join(there)} only; a surface needs {', '.join(_SURFACE)}"
-        )
+        named = ", ".join(_SURFACE)
+        raise AnalysisError(f"{address}: '{path.name}' has {', '.join(there)} only; a surface needs {named}")
     points, triangles, basis = (arrays[name] for name in _SURFACE)
     p = len(points)
     fits = points.shape == (p, 3) and triangles.ndim == 2 and triangles.shape[1] == 3 and basis.shape == (p, 3, n)

@@ -16,14 +16,12 @@ from rotorgear.casings.reduced_body import node_dofs, rigid_motions
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.solid_mesh import SolidMesh
 from rotorgear.errors import AnalysisError
-from rotorgear.quantity import millimetres
 
 _MOTIONS = tuple(f"{motion} {axis}" for motion in ("displacement along", "rotation about") for axis in "xyz")
 # So many parts without common faces are no body any more.
 _MOST_PARTS = 200
 # Squares of relative motions below this share of the largest are rounding of the file's coordinates.
 _ROUNDING = 1e-12
-_LISTED = 4
 
 
 def no_mechanism(settings: CasingSettings, mesh: SolidMesh, held: np.ndarray, springs: np.ndarray) -> None:
@@ -89,19 +87,13 @@ def no_hinges(settings: CasingSettings, joined: Joined, held: np.ndarray, spring
     count, part_of = _parts_by_faces(mesh)
     if count == 1:
         return
-    elements = np.bincount(part_of, minlength=count)
     if count <= _MOST_PARTS:
         squares = la.eigvalsh(_relative_motions(joined, part_of, held, springs))
         if np.count_nonzero(squares < _ROUNDING * squares[-1]) <= (0 if len(held) or springs.shape[1] else 6):
             return
-    described = []
-    for part in np.argsort(-elements)[:_LISTED]:
-        middle = mesh.points[np.unique(mesh.cells[part_of == part])].mean(axis=0)
-        described.append(f"{elements[part]} elements about ({', '.join(millimetres(x) for x in middle)})")
-    more = f" and {count - _LISTED} more" if count > _LISTED else ""
     raise AnalysisError(
         f"{settings.address}.mesh: parts of the mesh hang together by edges or single nodes only, and turn there like "
-        f"hinges: {'; '.join(described)}{more}. Let them meet in whole faces, or hold them together by joins."
+        f"hinges: {mesh.in_words(part_of)}. Let them meet in whole faces, or hold them together by joins."
     )
 
 

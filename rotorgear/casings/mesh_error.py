@@ -22,14 +22,12 @@ Frequencies err by half of it, relatively.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.casings.elements import Element
 from rotorgear.casings.fe_body import FiniteElementBody
-from rotorgear.casings.solid_mesh import STIFFNESS_DEGREE, element_corner_weights
+from rotorgear.casings.solid_mesh import STIFFNESS_DEGREE, element_corner_weights, in_space
 
 # Products of gradients of the functions of the next order, with some to spare, by the number of corners.
 _DEGREE = {4: 6, 8: 8}
@@ -52,17 +50,31 @@ def eigenvalue_errors(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np
     """
     if not shapes.shape[1]:
         return np.zeros(0)
-    system = _system(fe, eigenvalues, shapes)
-    free = system.free
-    r = system.residual * free[:, None, None]
+    number, sign, loose = _functions(fe)
+    elements, residual = _system(fe, eigenvalues, shapes, sign)
+    # Sums over the elements: of each function its residual r, and its own 3 x 3 block of K_cc, which conditions the steps.
+    m = number.shape[1]
+    gather = sp.csr_array((np.ones(number.size), (np.arange(number.size), number.ravel())))
+    free = loose[:, None, None]
+    r = np.asarray(gather.T @ residual.reshape(number.size, -1)).reshape(len(loose), 3, -1) * free
+    of_elements = elements.reshape(-1, m, 3, m, 3)
+    diagonal = np.stack([of_elements[:, a, :, a, :] for a in range(m)], axis=1).reshape(-1, 9).astype(float)
+    blocks = np.asarray(gather.T @ diagonal).reshape(-1, 3, 3)
+
+    def by_elements(x: np.ndarray) -> np.ndarray:
+        """Values (e, 3m, k) of the functions of each element, from those of all functions (g, 3, k)."""
+        found = np.asarray(gather @ x.reshape(len(x), -1)).reshape(len(elements), -1, x.shape[2])
+        return found.astype(np.float32)
+
     x = np.zeros_like(r)
-    step = system.preconditioned(r) * free[:, None, None]
+    step = np.linalg.solve(blocks, r) * free
     direction = step.copy()
     product = np.einsum("gik,gik->k", r, step)
     energy = np.zeros(r.shape[2])
     # Conjugate gradients for all modes side by side: the energy r·x grows towards the estimate with every step.
     for _ in range(_MOST_STEPS):
-        image = system.stiffness_times(direction) * free[:, None, None]
+        forces = (elements @ by_elements(direction)).reshape(number.size, -1)
+        image = np.asarray(gather.T @ forces).reshape(x.shape) * free
         length = product / np.maximum(np.einsum("gik,gik->k", direction, image), 1e-300)
         x += length * direction
         r -= length * image
@@ -70,11 +82,13 @@ def eigenvalue_errors(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np
         energy += gained
         if np.all(gained <= _ENOUGH * energy):
             break
-        step = system.preconditioned(r) * free[:, None, None]
+        step = np.linalg.solve(blocks, r) * free
         former = product
         product = np.einsum("gik,gik->k", r, step)
         direction = step + product / np.maximum(former, 1e-300) * direction
-    return np.asarray(np.sum(_all_orders(system.energies(x), _quadratic_energies(fe, shapes)), axis=0))
+    local = by_elements(x)
+    cubic = np.asarray(np.einsum("eak,eak->ek", local, elements @ local), dtype=float)
+    return np.asarray(np.sum(_all_orders(cubic, _quadratic_energies(fe, shapes)), axis=0))
 
 
 def _all_orders(cubic: np.ndarray, quadratic: np.ndarray) -> np.ndarray:
@@ -99,54 +113,24 @@ def _quadratic_energies(fe: FiniteElementBody, shapes: np.ndarray) -> np.ndarray
     energies = np.empty((len(mesh.cells), u.shape[2]))
     for start in range(0, len(mesh.cells), _CHUNK):
         cells = mesh.cells[start : start + _CHUNK]
-        J = np.einsum("eki,kjq->eqij", mesh.points[cells], gradients, optimize=True)
-        slopes = np.einsum("eqji,kjq->eqki", np.linalg.inv(J), gradients, optimize=True)
+        volume, slopes = in_space(mesh.points[cells], gradients, weights)
         own = np.einsum("kn,enim->ekim", beyond, u[cells], optimize=True)
         slope = np.einsum("eqki,ekjm->eqijm", slopes, own, optimize=True)
         strain = 0.5 * (slope + slope.transpose(0, 1, 3, 2, 4))
         density = 2.0 * shear * np.einsum("eqijm,eqijm->eqm", strain, strain, optimize=True)
         density += lame * np.einsum("eqiim->eqm", strain) ** 2
-        energies[start : start + len(cells)] = np.einsum("eqm,eq->em", density, np.linalg.det(J) * weights)
+        energies[start : start + len(cells)] = np.einsum("eqm,eq->em", density, volume)
     return energies
 
 
-@dataclass(frozen=True)
-class _System:
-    """K_cc by elements, and residuals (g, 3, k) of the g functions that the elements lack."""
-
-    elements: np.ndarray
-    gather: sp.csr_array
-    residual: np.ndarray
-    blocks: np.ndarray
-    free: np.ndarray
-
-    def stiffness_times(self, x: np.ndarray) -> np.ndarray:
-        """K_cc x for x (g, 3, k)."""
-        k = x.shape[2]
-        local = self._by_elements(x)
-        return np.asarray(self.gather.T @ (self.elements @ local).reshape(-1, 3 * k)).reshape(x.shape)
-
-    def energies(self, x: np.ndarray) -> np.ndarray:
-        """xᵀ K_cc x (e, k) by elements."""
-        local = self._by_elements(x)
-        return np.asarray(np.einsum("eak,eak->ek", local, self.elements @ local), dtype=float)
-
-    def _by_elements(self, x: np.ndarray) -> np.ndarray:
-        found = np.asarray(self.gather @ x.reshape(len(x), -1)).reshape(len(self.elements), -1, x.shape[2])
-        return found.astype(np.float32)
-
-    def preconditioned(self, r: np.ndarray) -> np.ndarray:
-        """The answer of each function's own 3 x 3 block."""
-        return np.asarray(np.linalg.solve(self.blocks, r))
-
-
-def _system(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np.ndarray) -> _System:
+def _system(
+    fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np.ndarray, sign: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """K_cc (e, 3m, 3m) and residuals (e, m, 3, k) of the m functions that each element lacks, of the signs (e, m)."""
     mesh = fe.mesh
     shape = mesh.element
-    number, sign, free = _functions(fe)
-    count = int(number.max()) + 1
+    m = sign.shape[1]
     k = shapes.shape[1]
-    m = number.shape[1]
     places, weights = shape.quadrature(_DEGREE[shape.corners])
     values, gradients = shape.shapes(places)
     # Values (m, q) and gradients (m, 3, q) of the functions of the next order, in the order of `_functions`.
@@ -163,11 +147,9 @@ def _system(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np.ndarray) 
     for start in range(0, len(mesh.cells), _CHUNK):
         cells = mesh.cells[start : start + _CHUNK]
         here = slice(start, start + len(cells))
-        J = np.einsum("eni,njq->eqij", mesh.points[cells], gradients, optimize=True)
-        volume = np.linalg.det(J) * weights
-        inverse = np.linalg.inv(J)
-        slope = np.einsum("eqji,njq->eqni", inverse, gradients, optimize=True)
-        own_slope = np.einsum("eqji,njq->eqni", inverse, own_gradients, optimize=True) * sign[here][:, None, :, None]
+        volume, slopes = in_space(mesh.points[cells], gradients, weights, np.vstack([gradients, own_gradients]))
+        slope = slopes[:, :, : len(gradients)]
+        own_slope = slopes[:, :, len(gradients) :] * sign[here][:, None, :, None]
         weighted = (own_slope * np.sqrt(volume)[:, :, None, None]).reshape(len(cells), -1, 3 * m)
         G = np.matmul(weighted.transpose(0, 2, 1), weighted).reshape(-1, m, 3, m, 3)
         trace = shear * np.einsum("eaibi->eab", G)
@@ -185,13 +167,7 @@ def _system(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np.ndarray) 
         u = np.einsum("nq,enik->eqik", values, moved[cells], optimize=True) * (density * volume)[:, :, None, None]
         inertia = np.einsum("eqik,nq->enik", u, own_values, optimize=True) * sign[here][:, :, None, None] * eigenvalues
         residual[here] = inertia - inner
-    rows = np.arange(number.size)
-    gather = sp.csr_array((np.ones(number.size), (rows, number.ravel())), shape=(number.size, count))
-    own = elements.reshape(-1, m, 3, m, 3)
-    diagonal = np.stack([own[:, a, :, a, :] for a in range(m)], axis=1).reshape(-1, 9).astype(float)
-    blocks = np.asarray(gather.T @ diagonal).reshape(count, 3, 3)
-    summed = np.asarray(gather.T @ residual.reshape(-1, 3 * k)).reshape(count, 3, k)
-    return _System(elements, gather, summed, blocks, free)
+    return elements, residual
 
 
 def _functions(fe: FiniteElementBody) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -90,80 +90,59 @@ def _by_meshio(path: Path) -> FileMesh:
 
 def _sets(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSet]:
     """Named sets of a file, wherever its format keeps them."""
-    sets: dict[str, NamedSet] = {}
-    for name, nodes in found.point_sets.items():
-        sets[name] = NamedSet(np.unique(np.asarray(nodes, dtype=np.int64)))
+
+    def of_cells(chosen: Iterable[np.ndarray]) -> NamedSet:
+        """The set of the cells that numbers or truths choose in each block."""
+        return set_of([(kind, cells[those]) for (kind, cells), those in zip(blocks, chosen, strict=False)])
+
+    sets = {name: NamedSet(np.unique(np.asarray(nodes, dtype=np.int64))) for name, nodes in found.point_sets.items()}
     for name, numbers in found.cell_sets.items():
         if not name.startswith("gmsh:"):
-            chosen = [
-                (kind, cells[np.asarray(those, dtype=np.int64)])
-                for (kind, cells), those in zip(blocks, numbers, strict=True)
-                if those is not None and len(those)
-            ]
-            sets[name] = set_of(chosen)
+            sets[name] = of_cells(np.asarray(() if those is None else those, dtype=np.int64) for those in numbers)
     # Gmsh 2.2: the name of a physical group stands in the header, its number with every cell.
     tags = found.cell_data.get("gmsh:physical")
     if tags is not None:
-        dimensions = {"line": 1, "line3": 1, "vertex": 0}
+        known = {"line": 1, "line3": 1, "vertex": 0}
+        dimensions = [known.get(kind, 2 if kind.startswith(("tri", "quad")) else 3) for kind, _ in blocks]
         for name, (number, dimension) in found.field_data.items():
-            chosen = [
-                (kind, cells[np.asarray(tag) == number])
-                for (kind, cells), tag in zip(blocks, tags, strict=True)
-                if dimensions.get(kind, 2 if kind.startswith(("tri", "quad")) else 3) == dimension
-            ]
-            if name not in sets:
-                sets[name] = set_of(chosen)
+            own = [(np.asarray(tag) == number) & (dim == dimension) for tag, dim in zip(tags, dimensions, strict=True)]
+            sets.setdefault(name, of_cells(own))
     # MED: families of points and cells, each with the names of the groups that it belongs to.
-    for families, per_block in (
-        (getattr(found, "point_tags", {}), [(None, found.point_data.get("point_tags"))]),
-        (getattr(found, "cell_tags", {}), list(zip(blocks, found.cell_data.get("cell_tags", []), strict=False))),
-    ):
-        members: dict[str, list[NamedSet]] = {}
-        for number, names in families.items():
-            for block, tag in per_block:
-                if tag is None:
-                    continue
-                chosen_here = np.asarray(tag) == number
-                part = (
-                    NamedSet(np.flatnonzero(chosen_here))
-                    if block is None
-                    else set_of([(block[0], block[1][chosen_here])])
-                )
-                for name in names:
-                    members.setdefault(name.strip("\0 "), []).append(part)
-        for name, parts in members.items():
-            nodes = np.unique(np.concatenate([part.nodes for part in parts]))
-            sets.setdefault(name, NamedSet(nodes, [face for part in parts for face in part.faces]))
+    for kind, data in (("point_tags", found.point_data), ("cell_tags", found.cell_data)):
+        families: dict[str, list[int]] = {}
+        for number, names in getattr(found, kind, {}).items() if kind in data else ():
+            for name in names:
+                families.setdefault(name.strip("\0 "), []).append(number)
+        for name, numbers in families.items():
+            if kind == "point_tags":
+                sets.setdefault(name, NamedSet(np.flatnonzero(np.isin(data[kind], numbers))))
+            else:
+                sets.setdefault(name, of_cells(np.isin(tag, numbers) for tag in data[kind]))
     # Sets that a format without sets (VTK) keeps as whole numbers of points or cells. Data of zeros and ones mark the members of
     # one set; data of -1 for none and 0, 1, ... for sets are named after them all, joined by "-", as meshio writes its sets where
     # a format has none.
     marked: dict[str, NamedSet] = {}
     for name, values in found.point_data.items():
-        for one, chosen_nodes in _members({"": np.asarray(values)}, name):
-            marked[one] = NamedSet(np.flatnonzero(chosen_nodes[""]))
+        marked |= {one: NamedSet(np.flatnonzero(own[0])) for one, own in _members([np.asarray(values)], name)}
     for name, of_blocks in found.cell_data.items():
-        for one, chosen_cells in _members({k: np.asarray(values) for k, values in enumerate(of_blocks)}, name):
-            marked[one] = set_of([(blocks[k][0], blocks[k][1][those]) for k, those in chosen_cells.items()])
+        marked |= {one: of_cells(own) for one, own in _members([np.asarray(values) for values in of_blocks], name)}
     for name, one_set in marked.items():
         sets.setdefault(name, one_set)
     return {name: one for name, one in sets.items() if name}
 
 
-def _members(data: dict[Any, np.ndarray], name: str) -> Iterator[tuple[str, dict[Any, np.ndarray]]]:
+def _members(data: list[np.ndarray], name: str) -> Iterator[tuple[str, list[np.ndarray]]]:
     """Yield each set that data (by block) mark, with who is in it."""
-    if (
-        ":" in name
-        or name in _TAGS
-        or any(values.ndim != 1 or values.dtype.kind not in "iub" for values in data.values())
-    ):
+    if ":" in name or name in _TAGS or any(values.ndim != 1 or values.dtype.kind not in "iub" for values in data):
         return
-    there = np.unique(np.concatenate([values.astype(np.int64) for values in data.values()] or [np.zeros(0, np.int64)]))
+    data = [values.astype(np.int64) for values in data]
+    there = np.unique(np.concatenate([*data, np.zeros(0, np.int64)]))
     if not there.size:
         return
     if there[0] >= 0 and there[-1] == 1:
-        yield name, {key: values.astype(np.int64) == 1 for key, values in data.items()}
+        yield name, [values == 1 for values in data]
     names = name.split("-")
     # A name of two parts with zeros and ones may be either: both are there to choose from.
     if there[0] >= -1 and len(names) == there[-1] + 1 and (len(names) > 1 or there[0] < 0):
         for number, one in enumerate(names):
-            yield one, {key: values == number for key, values in data.items()}
+            yield one, [values == number for values in data]

@@ -20,14 +20,10 @@ def rigid_motions(points: np.ndarray, about: np.ndarray | None = None) -> np.nda
     x, y, z = (points - (np.zeros(3) if about is None else about)).T
     zero = np.zeros(len(points))
     one = np.ones(len(points))
-    motions = np.array(
-        [
-            [one, zero, zero, zero, z, -y],
-            [zero, one, zero, -z, zero, x],
-            [zero, zero, one, y, -x, zero],
-        ]
-    )
-    return np.asarray(motions.transpose(2, 0, 1).reshape(-1, 6))
+    along_x = [one, zero, zero, zero, z, -y]
+    along_y = [zero, one, zero, -z, zero, x]
+    along_z = [zero, zero, one, y, -x, zero]
+    return np.array([along_x, along_y, along_z]).transpose(2, 0, 1).reshape(-1, 6)
 
 
 def node_dofs(nodes: np.ndarray) -> np.ndarray:
@@ -47,6 +43,16 @@ def rigid_coordinates(size: int, seat_points: np.ndarray) -> np.ndarray:
         coordinates[6 * number : 6 * number + 3] = rigid_motions(point[None, :])
         coordinates[6 * number + 3 : 6 * number + 6, 3:] = np.eye(3)
     return coordinates
+
+
+def mass_properties(rigid_mass: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass, centre and inertia about the centre from the mass matrix (6, 6) of rigid motions about the origin."""
+    mass = float(rigid_mass[0, 0])
+    # Rotation about x moves the centre along y by -z_c, and so on: the coupling block is mass times the cross product with it.
+    coupling = rigid_mass[:3, 3:] / mass
+    centre = np.array([coupling[1, 2], coupling[2, 0], coupling[0, 1]])
+    offset = mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    return mass, centre, rigid_mass[3:, 3:] - offset
 
 
 @dataclass(frozen=True)
@@ -149,11 +155,7 @@ class ReducedBody:
         """Coordinates (n, 6) in which all seats move as one rigid body, and the inside follows: `rigid` of a body that floats."""
         if self.rigid is not None:
             return self.rigid
-        motions = np.zeros((self.size, 6))
-        for first, (x, y, z) in zip(range(0, self.interface, 6), self.seat_points, strict=True):
-            motions[first : first + 6] = np.eye(6)
-            motions[first : first + 3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-        return motions
+        return rigid_coordinates(self.size, self.seat_points)
 
     def seat(self, name: str) -> slice:
         """Where the six motions x y z rx ry rz of a seat stand among the coordinates."""

@@ -38,6 +38,7 @@ from rotorgear.casings.reduced_body import (
     rigid_coordinates,
     rigid_motions,
 )
+from rotorgear.casings.split import TRIANGLES
 from rotorgear.progress import Progress, part_of, silent
 
 
@@ -60,9 +61,8 @@ def free_modes(
     """The lowest elastic modes of the body with nothing held; `body` is its factored stiffness, where there is one."""
     space = fe.free_space(held=False, rigid_seats=False)
     motions = rigid_motions(fe.mesh.points)
-    if body is None:
-        K = fe.stiffness_in(space.shapes)
-        body = ElasticBody(K, motions[space.dofs], f"{fe.settings.address}, free", progress)
+    name = f"{fe.settings.address}, free"
+    body = body or ElasticBody(fe.stiffness_in(space.shapes), motions[space.dofs], name, progress)
     # Elastic modes have no momentum: the rigid motions, weighted by the mass, are at rest in them.
     still = space.forces(fe.matrices.times_mass(motions))
     return _modes(fe, space, Constrained(body, still / np.linalg.norm(still, axis=0)), count)
@@ -73,9 +73,8 @@ def held_modes(
 ) -> MeshModes:
     """The lowest modes of the body as it is held and mounted."""
     space = fe.free_space(held=True, rigid_seats=False)
-    if body is None:
-        rigid = rigid_motions(fe.mesh.points)[space.dofs][:, : 0 if len(fe.held) else 6]
-        body = ElasticBody(fe.stiffness_in(space.shapes), rigid, f"{fe.settings.address}, held", progress)
+    rigid = rigid_motions(fe.mesh.points)[space.dofs][:, : 0 if len(fe.held) else 6]
+    body = body or ElasticBody(fe.stiffness_in(space.shapes), rigid, f"{fe.settings.address}, held", progress)
     springs, flexibility = fe.springs()
     return _modes(fe, space, Constrained(body, space.forces(springs), flexibility), count)
 
@@ -107,13 +106,6 @@ _COLUMNS = 16
 
 def reduce(
     fe: FiniteElementBody, modes_to: float | None, progress: Progress = silent
-) -> tuple[ReducedBody, ElasticBody]:
-    """Reduce a body, as `reduce_in_basis`: the reduced body, and the factored stiffness that it was found with."""
-    return reduce_in_basis(fe, modes_to, progress)[:2]
-
-
-def reduce_in_basis(
-    fe: FiniteElementBody, modes_to: float | None, progress: Progress = silent
 ) -> tuple[ReducedBody, ElasticBody, np.ndarray]:
     """Reduce a body.
 
@@ -136,20 +128,16 @@ def reduce_in_basis(
     space = fe.free_space(held=True, rigid_seats=not mean)
     R = rigid_motions(fe.mesh.points)
     floating = not len(fe.held) and not space.seats.shape[1]
-    body = ElasticBody(
-        fe.stiffness_in(space.shapes),
-        R[space.dofs] if floating else R[space.dofs][:, :0],
-        name,
-        part_of(progress, 0.0, 0.3),
-    )
+    rigid = R[space.dofs][:, : 6 if floating else 0]
+    body = ElasticBody(fe.stiffness_in(space.shapes), rigid, name, part_of(progress, 0.0, 0.3))
     seconds["factorisation"] = time.perf_counter() - started
 
     progress(0.3, f"{name}: static shapes of {len(fe.seats)} seats")
     started = time.perf_counter()
     springs, flexibility = fe.springs()
     seat_weights = fe.mean_weights(fe.seats) if mean else np.zeros((fe.dofs, 0))
-    held = np.concatenate([np.zeros(seat_weights.shape[1]), flexibility])
-    system = Constrained(body, space.forces(np.hstack([seat_weights, springs])), held)
+    compliance = np.concatenate([np.zeros(seat_weights.shape[1]), flexibility])
+    system = Constrained(body, space.forces(np.hstack([seat_weights, springs])), compliance)
     static = _static_shapes(fe, space, system, springs)
     seconds["static shapes"] = time.perf_counter() - started
 
@@ -175,13 +163,11 @@ def reduce_in_basis(
     internal = np.hstack([fixed, residual])
 
     # Internal coordinates of the inside's own pencil: its stiffness and mass become diagonal.
-    K_internal = internal.T @ fe.stiffness_times(internal) + _spring_part(internal, internal, springs, flexibility)
-    M_internal = internal.T @ fe.matrices.times_mass(internal)
-    squares, turn = la.eigh(symmetric(K_internal), symmetric(M_internal))
+    K_internal = _stiffness(fe, internal, springs, flexibility)
+    squares, turn = la.eigh(K_internal, symmetric(internal.T @ fe.matrices.times_mass(internal)))
     internal = internal @ turn
-    static_stiffness = static.T @ fe.stiffness_times(static) + _spring_part(static, static, springs, flexibility)
     # As theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal.
-    K = la.block_diag(symmetric(static_stiffness), np.diag(squares))
+    K = la.block_diag(_stiffness(fe, static, springs, flexibility), np.diag(squares))
     basis = np.hstack([static, internal])
     del fixed, residual, mass_fixed, mass_static, static, internal
     mass_basis = fe.matrices.times_mass(basis)
@@ -203,21 +189,21 @@ def reduce_in_basis(
     ground_damping = ground_damping + ground_mass @ la.solve(M, damping, assume_a="pos")
     # Dampers of the mounts in the coordinates of the basis.
     motions = fe.mean_weights(fe.mounts).T @ basis
-    C = np.zeros((basis.shape[1], basis.shape[1]))
+    C = np.zeros_like(M)
     for at, mount in enumerate(fe.settings.mounts):
         moved = motions[6 * at : 6 * at + 6]
         C += moved.T @ np.array(mount.damping) @ moved
-    damping = damping + C
     progress(1.0, f"{name}: reduced to {len(M)} coordinates")
     seat_points = np.array([patch.point for patch in fe.seats]).reshape(-1, 3)
+    held = bool(len(fe.held) or len(flexibility))
     reduced = ReducedBody(
         name=fe.settings.name,
         seats=tuple(seat for seat, _ in fe.settings.seats),
         seat_points=seat_points,
         mass=M,
         stiffness=K,
-        damping=damping,
-        rigid=None if len(fe.held) or len(flexibility) else rigid_coordinates(len(M), seat_points),
+        damping=damping + C,
+        rigid=None if held else rigid_coordinates(len(M), seat_points),
         inertia_force=basis.T @ fe.matrices.times_mass(R),
         body_mass=body_mass,
         centre=centre,
@@ -231,7 +217,7 @@ def reduce_in_basis(
         ground_damping=ground_damping,
         ground_mass=ground_mass,
         ground_weight=ground_weight,
-        held=bool(len(fe.held) or len(flexibility)),
+        held=held,
         notes=fe.mesh.notes,
         seconds=seconds,
     )
@@ -251,9 +237,10 @@ def _static_shapes(fe: FiniteElementBody, space: FreeSpace, system: Constrained,
     return np.asarray(space.shapes @ system.solve(forces, -(springs.T @ moved)) + moved)
 
 
-def _spring_part(left: np.ndarray, right: np.ndarray, springs: np.ndarray, flexibility: np.ndarray) -> np.ndarray:
-    """Stiffness of the mounts between shapes."""
-    return np.asarray((left.T @ springs) @ ((springs.T @ right) / flexibility[:, None]))
+def _stiffness(fe: FiniteElementBody, shapes: np.ndarray, springs: np.ndarray, flexibility: np.ndarray) -> np.ndarray:
+    """Φᵀ K Φ of shapes Φ, with the springs of mounts."""
+    of_mounts = (shapes.T @ springs) @ ((springs.T @ shapes) / flexibility[:, None])
+    return symmetric(shapes.T @ fe.stiffness_times(shapes) + of_mounts)
 
 
 def independent(shapes: np.ndarray, mass_shapes: np.ndarray) -> np.ndarray:
@@ -319,10 +306,8 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
 def surface_of(fe: FiniteElementBody, basis: np.ndarray) -> Surface:
     """The outer faces in flat triangles on all their nodes, so that curved shapes of quadratic elements are seen."""
     faces = fe.mesh.boundary
-    if len(fe.mesh.element.faces[0]) == 3:
-        split = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
-    else:
-        split = [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3), (4, 5, 7), (5, 6, 7)]
+    of_quad = [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3), (4, 5, 7), (5, 6, 7)]
+    split = TRIANGLES if len(fe.mesh.element.faces[0]) == 3 else of_quad
     triangles = faces[:, np.array(split)].reshape(-1, 3)
     nodes, local = np.unique(triangles, return_inverse=True)
     moved = basis.reshape(len(fe.mesh.points), 3, -1)[nodes]

@@ -16,12 +16,15 @@ from scipy.sparse.csgraph import connected_components
 from rotorgear.casings.elements import QUADRATIC, Element, element
 from rotorgear.casings.file_mesh import SOLID_BEGINNINGS, SOLIDS, FileMesh, NamedSet
 from rotorgear.errors import AnalysisError
+from rotorgear.quantity import millimetres
 
 # Degrees of the polynomials that the rules for stiffness and mass integrate: exact for straight tetrahedra and bricks, with
 # some to spare for curved ones, and with positive weights (the rule of degree 4 has a negative one).
 STIFFNESS_DEGREE = 5
 MASS_DEGREE = 6
-_NAMED = 5  # so many elements a sentence names
+# A sentence names this many elements, and this many parts.
+_NAMED = 5
+_LISTED = 4
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,15 @@ class SolidMesh:
         n = len(self.points)
         labels: np.ndarray = connected_components(sp.coo_array((np.ones(len(rows)), (rows, columns)), shape=(n, n)))[1]
         return labels
+
+    def in_words(self, part_of: np.ndarray) -> str:
+        """The largest parts of a mesh by their elements and where they are; `part_of` (e,) numbers the part of each element."""
+        elements = np.bincount(part_of)
+        named = []
+        for part in np.argsort(-elements)[:_LISTED]:
+            middle = self.points[np.unique(self.cells[part_of == part])].mean(axis=0)
+            named.append(f"{elements[part]} elements about ({', '.join(map(millimetres, middle))})")
+        return "; ".join(named) + (f" and {len(elements) - _LISTED} more" if len(elements) > _LISTED else "")
 
 
 def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
@@ -244,6 +256,23 @@ def _apart(cells: np.ndarray, shape: Element, address: str) -> None:
             f"{address}: {_elements(elements)} lie in one another: elements that stand twice in the file, or that are turned "
             "inside out by a node in the wrong place. Mesh the body anew, or delete the copies."
         )
+
+
+def in_space(
+    corners: np.ndarray, gradients: np.ndarray, weights: np.ndarray, others: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Volumes (e, q) that count for the Gauss points, and gradients (e, q, k, 3) in space of the shape functions.
+
+    Args:
+        corners: (e, k, 3) places of all nodes of elements.
+        gradients: (k, 3, q) of the shape functions on the reference cell.
+        weights: (q,).
+        others: (m, 3, q) gradients of other functions, whose gradients in space are wanted in place of those.
+    """
+    J = np.einsum("eki,kjq->eqij", corners, gradients, optimize=True)
+    # ∇N = J^-T ∇_ξ N.
+    wanted = gradients if others is None else others
+    return np.linalg.det(J) * weights, np.einsum("eqji,kjq->eqki", np.linalg.inv(J), wanted, optimize=True)
 
 
 def jacobians(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:

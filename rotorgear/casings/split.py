@@ -21,7 +21,7 @@ from rotorgear.casings.solid_mesh import SolidMesh, boundary_faces
 _CORNER_TETS = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3))
 _DIAGONALS = ((4, 9), (5, 7), (6, 8))
 _RINGS = ((5, 6, 7, 8), (6, 4, 8, 9), (4, 5, 9, 7))
-_TRIANGLES = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
+TRIANGLES = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
 _QUADS = ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3))
 
 
@@ -51,7 +51,7 @@ def split(mesh: SolidMesh) -> SolidMesh:
         of_sets[name] = np.zeros(len(points), dtype=bool)
         of_sets[name][one.nodes] = True
         of_sets[name][np.unique(faces)] = True
-        smaller = np.array(_TRIANGLES if len(whole.faces[0]) == 3 else _QUADS)
+        smaller = np.array(TRIANGLES if len(whole.faces[0]) == 3 else _QUADS)
         faces_of_sets[name] = [faces[:, smaller].reshape(-1, smaller.shape[1])] if one.faces else []
     members = {name: [flags] for name, flags in of_sets.items()}
     entities: list[np.ndarray] = [np.array(shape.edges)]

@@ -41,7 +41,7 @@ from rotorgear.casings.fe_body import FiniteElementBody
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.casings.reduction import USUAL, independent, surface_of, symmetric
-from rotorgear.casings.solid_mesh import MASS_DEGREE, STIFFNESS_DEGREE, SolidMesh
+from rotorgear.casings.solid_mesh import MASS_DEGREE, STIFFNESS_DEGREE, SolidMesh, in_space
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, silent
@@ -65,38 +65,26 @@ def spin_integrals(mesh: SolidMesh, material: Elastic, stretched: np.ndarray) ->
     stress_gradients = shape.shapes(stress_places)[1]
     lame, shear = material.lame
     moved = stretched.reshape(-1, 3)
-    parts: list[tuple[np.ndarray, np.ndarray]] = []
+    k = mesh.cells.shape[1]
+    transport, stiff = np.empty((2, len(mesh.cells), k, k))
     for start in range(0, len(mesh.cells), _CHUNK):
-        cells = mesh.cells[start : start + _CHUNK]
-        corners = mesh.points[cells]
-        volume, slopes = _slopes(corners, gradients, weights)
+        here = slice(start, start + _CHUNK)
+        corners = mesh.points[mesh.cells[here]]
+        volume, slopes = in_space(corners, gradients, weights)
         x, y = np.einsum("kq,eki->ieq", values, corners[:, :, :2])
-        turned = x[:, None] * slopes[:, :, 1] - y[:, None] * slopes[:, :, 0]  # ∂N/∂θ, (e, k, q)
-        transport = np.einsum("aq,ebq->eab", values, turned * (material.density * volume)[:, None])
-        volume, slopes = _slopes(corners, stress_gradients, stress_weights)
-        strain = np.einsum("eki,ekjq->eijq", moved[cells], slopes, optimize=True)
-        stress = shear * (strain + strain.transpose(0, 2, 1, 3))
-        stress += lame * np.einsum("eiiq->eq", strain)[:, None, None] * np.eye(3)[:, :, None]
-        pulled = np.einsum("eijq,ebjq->ebiq", stress * volume[:, None, None], slopes, optimize=True)
-        k = cells.shape[1]
-        flat = (len(cells), k, -1)
-        stiff = np.matmul(slopes.reshape(flat), pulled.reshape(flat).transpose(0, 2, 1))
-        parts.append((transport, stiff))
-    rows = np.repeat(mesh.cells, mesh.cells.shape[1], axis=1).ravel()
-    columns = np.tile(mesh.cells, (1, mesh.cells.shape[1])).ravel()
+        turned = x[:, :, None] * slopes[..., 1] - y[:, :, None] * slopes[..., 0]  # ∂N/∂θ, (e, q, k)
+        transport[here] = np.einsum("aq,eqb->eab", values, turned * (material.density * volume)[:, :, None])
+        volume, slopes = in_space(corners, stress_gradients, stress_weights)
+        strain = np.einsum("eki,eqkj->eqij", moved[mesh.cells[here]], slopes, optimize=True)
+        stress = shear * (strain + strain.transpose(0, 1, 3, 2))
+        stress += lame * np.einsum("eqii->eq", strain)[:, :, None, None] * np.eye(3)
+        pulled = np.einsum("eqij,eqbj->ebiq", stress * volume[:, :, None, None], slopes, optimize=True)
+        flat = (len(corners), k, -1)
+        stiff[here] = slopes.transpose(0, 2, 3, 1).reshape(flat) @ pulled.reshape(flat).transpose(0, 2, 1)
+    rows = np.repeat(mesh.cells, k, axis=1).ravel()
+    columns = np.tile(mesh.cells, (1, k)).ravel()
     size = (len(mesh.points), len(mesh.points))
-    found = []
-    for number in range(2):
-        entries = np.concatenate([part[number].ravel() for part in parts])
-        found.append(sp.csr_array(sp.coo_array((entries, (rows, columns)), shape=size)))
-    return found
-
-
-def _slopes(corners: np.ndarray, gradients: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Volumes (e, q) that count for the Gauss points, and gradients (e, k, 3, q) of the shape functions in space."""
-    J = np.einsum("eki,kjq->eqij", corners, gradients, optimize=True)
-    slopes = np.einsum("eqji,kjq->ekiq", np.linalg.inv(J), gradients, optimize=True)
-    return np.linalg.det(J) * weights, slopes
+    return [sp.csr_array(sp.coo_array((part.ravel(), (rows, columns)), shape=size)) for part in (transport, stiff)]
 
 
 # Two modes nearer than this (relative) may be a pair.
@@ -125,7 +113,8 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     """
     name = fe.settings.address
     bore, rim = fe.seats
-    _about_the_axis(fe)
+    of_rim = _Rim(fe)
+    _about_the_axis(fe, of_rim.radius)
     rigid_bore = fe.settings.connection == "rigid"
     clamped = replace(fe, held=bore.nodes if rigid_bore else fe.held, seats=(rim,))
     space = clamped.free_space(held=True, rigid_seats=False)
@@ -159,7 +148,7 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     outward = (fe.mesh.points * np.array([1.0, 1.0, 0.0])).reshape(-1, 1)  # centrifugal acceleration at 1 rad/s
     stretched = space.shapes @ system.solve(space.forces(fe.matrices.times_mass(outward)))
     transport, spin_stress = spin_integrals(fe.mesh, fe.settings.material, stretched[:, 0])
-    waves = _waves(fe, E, np.sqrt(squares), transport)
+    waves = _waves(fe, of_rim, E, np.sqrt(squares), transport)
     frequency = waves.frequency
     own = np.flatnonzero(waves.first < kept)
     averaged = float(np.abs(waves.shift[own]).max(initial=0.0))
@@ -181,7 +170,7 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     # Motion of a rigid body about the origin from that about the middle of the rim: v - θ x r.
     about_origin = np.vstack([rigid_motions(-rim.point[None, :]), np.eye(6)[3:]])
     rim_motion[:6, 6:] = about_origin @ (rim_weights.T @ E)
-    cosine, sine = _rim_waves(fe, E, waves.diameters)
+    cosine, sine = of_rim.waves(E, waves.diameters)
     mass, centre, inertia = fe.mass_properties
     progress(1.0, f"{name}: reduced to {len(frequency)} coordinates")
     return ReducedWheel(
@@ -199,7 +188,7 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
         rim_motion=waves.mean(rim_motion)[:6, 6:],
         rim_cosine=cosine,
         rim_sine=sine,
-        rim_radius=_radius(fe),
+        rim_radius=of_rim.radius,
         modes=len(own),
         left_frequency=left,
         averaged=averaged,
@@ -253,11 +242,10 @@ class _Waves:
 _RIGID_DIAMETERS = np.array([1, 1, 0, 1, 1, 0])
 
 
-def _waves(fe: FiniteElementBody, E: np.ndarray, rates: np.ndarray, transport: sp.csr_array) -> _Waves:
+def _waves(fe: FiniteElementBody, rim: _Rim, E: np.ndarray, rates: np.ndarray, transport: sp.csr_array) -> _Waves:
     """Modes E (3p, m) of the angular frequencies (m,) as waves; a mode whose partner is not among them is left out."""
     turned = _each_direction(transport, E) - E.T @ fe.matrices.times_mass(_across(E))
     turned = 0.5 * (turned - turned.T)
-    power = _RimPower(fe)
     found: list[tuple[float, int, int, list[np.ndarray], float]] = []
     single: list[int] = []
 
@@ -277,7 +265,7 @@ def _waves(fe: FiniteElementBody, E: np.ndarray, rates: np.ndarray, transport: s
             if value > _TURNS:
                 f = np.zeros(len(rates), dtype=complex)
                 f[start:stop] = np.sqrt(2.0) * part
-                add([f.real, f.imag], start, max(1, power.largest(E @ f)))
+                add([f.real, f.imag], start, max(1, rim.largest(E @ f)))
         still = parts[:, np.abs(values) <= _TURNS]
         if still.shape[1]:
             # Real shapes without waves keep their own frequencies: modes again, of the span.
@@ -295,11 +283,11 @@ def _waves(fe: FiniteElementBody, E: np.ndarray, rates: np.ndarray, transport: s
         k = single.pop(0)
         partner = max(single, key=lambda j: abs(turned[k, j]), default=None)
         alone = np.eye(len(rates))[k]
-        if partner is not None and abs(turned[k, partner]) > max(_TURNS, 0.5 * power.largest(E[:, k])):
+        if partner is not None and abs(turned[k, partner]) > max(_TURNS, 0.5 * rim.largest(E[:, k])):
             single.remove(partner)
             other = np.sign(turned[k, partner]) * np.eye(len(rates))[partner]
-            add([alone, other], k, max(1, power.largest(E @ (alone + 1j * other))))
-        elif power.largest(E[:, k]) == 0:
+            add([alone, other], k, max(1, rim.largest(E @ (alone + 1j * other))))
+        elif rim.largest(E[:, k]) == 0:
             add([alone], k, 0)
     found.sort(key=lambda one: (one[0], one[2]))
     sizes = [len(one[3]) for one in found]
@@ -312,62 +300,60 @@ def _waves(fe: FiniteElementBody, E: np.ndarray, rates: np.ndarray, transport: s
     )
 
 
-class _RimPower:
-    """How much of the rim's motion is of which number of nodal diameters."""
+class _Rim:
+    """The nodes of the rim about the axis.
+
+    Attributes:
+        angle, z: (r,) of the nodes in rad and m.
+        weight: (r,) area of each in m^2.
+        radius: mean radius in m.
+    """
 
     def __init__(self, fe: FiniteElementBody) -> None:
-        rim = fe.seats[1]
-        self.nodes = rim.nodes
-        x, y, _ = fe.mesh.points[rim.nodes].T
-        angle = np.arctan2(y, x)
-        self.frame = np.exp(-1j * angle)
-        most = max(2, len(np.unique(np.round(angle, 6))) // 4)
-        self.waves = np.exp(-1j * np.arange(most + 1)[:, None] * angle) * (rim.surface_mass @ np.ones(len(rim.nodes)))
+        self.nodes = fe.seats[1].nodes
+        x, y, self.z = fe.mesh.points[self.nodes].T
+        self.angle = np.arctan2(y, x)
+        self.weight = fe.seats[1].surface_mass @ np.ones(len(self.nodes))
+        self.radius = float(self.weight @ np.hypot(x, y) / self.weight.sum())
+        most = max(2, len(np.unique(np.round(self.angle, 6))) // 4)
+        self._harmonics = np.exp(-1j * np.arange(most + 1)[:, None] * self.angle) * self.weight
+
+    def along(self, fields: np.ndarray) -> np.ndarray:
+        """Displacements (3, r, k) along radius, circumference and axis of fields (3p, k)."""
+        x, y, z = fields.reshape(-1, 3, fields.shape[1])[self.nodes].transpose(1, 0, 2)
+        c = np.cos(self.angle)[:, None]
+        s = np.sin(self.angle)[:, None]
+        return np.stack([c * x + s * y, c * y - s * x, z])
 
     def largest(self, field: np.ndarray) -> int:
         """The n >= 0 of the largest wave exp(i n θ), or of cos and sin together of a real field (3p,)."""
-        u = field.reshape(-1, 3)[self.nodes]
-        c, s = self.frame.real, -self.frame.imag
-        parts = np.array([c * u[:, 0] + s * u[:, 1], c * u[:, 1] - s * u[:, 0], u[:, 2]])
-        return int(
-            np.argmax(
-                np.sum(np.abs(self.waves @ parts.T) ** 2, axis=1) * np.where(np.arange(len(self.waves)), 2.0, 1.0)
-            )
-        )
+        power = np.sum(np.abs(self._harmonics @ self.along(field[:, None])[:, :, 0].T) ** 2, axis=1)
+        power[1:] *= 2.0
+        return int(np.argmax(power))
 
+    def waves(self, fields: np.ndarray, diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Cos nθ and sin nθ parts (2, 3, k) of displacements along radius, circumference and axis: at z = 0, and per m of z.
 
-def _rim_waves(fe: FiniteElementBody, fields: np.ndarray, diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cos nθ and sin nθ parts (2, 3, k) of what the rim moves along radius, circumference and axis: at z = 0, and per m of z.
-
-    Nearest over the area of the rim to v(θ) + z w(θ); of pairs together, as f ~ exp(i n θ).
-    """
-    rim = fe.seats[1]
-    x, y, z = fe.mesh.points[rim.nodes].T
-    weight = rim.surface_mass @ np.ones(len(rim.nodes))
-    angle = np.arctan2(y, x)
-    c, s = np.cos(angle), np.sin(angle)
-    u = fields.reshape(-1, 3, fields.shape[1])[rim.nodes]
-    along = np.stack(
-        [c[:, None] * u[:, 0] + s[:, None] * u[:, 1], c[:, None] * u[:, 1] - s[:, None] * u[:, 0], u[:, 2]]
-    )
-    powers = np.array([np.ones(len(z)), z])
-    moments = np.linalg.inv((powers * weight) @ powers.T)
-    cosine = np.zeros((2, 3, fields.shape[1]))
-    sine = np.zeros_like(cosine)
-    k = 0
-    while k < len(diameters):
-        n = int(diameters[k])
-        f = along[:, :, k] + 1j * along[:, :, k + 1] if n else along[:, :, k]
-        A = moments @ ((powers * weight) @ (f * np.exp(-1j * n * angle)).T)
-        cosine[:, :, k] = A.real
-        if n:
-            # The pair is Re and Im of A exp(i n θ).
+        Nearest over the area of the rim to v(θ) + z w(θ); of pairs together, as f ~ exp(i n θ).
+        """
+        along = self.along(fields)
+        powers = np.array([np.ones(len(self.z)), self.z])
+        moments = np.linalg.inv((powers * self.weight) @ powers.T)
+        cosine = np.zeros((2, 3, fields.shape[1]))
+        sine = np.zeros_like(cosine)
+        k = 0
+        while k < len(diameters):
+            n = int(diameters[k])
+            f = along[:, :, k] + 1j * along[:, :, k + 1] if n else along[:, :, k]
+            A = moments @ ((powers * self.weight) @ (f * np.exp(-1j * n * self.angle)).T)
             cosine[:, :, k] = A.real
-            cosine[:, :, k + 1] = A.imag
-            sine[:, :, k] = -A.imag
-            sine[:, :, k + 1] = A.real
-        k += 2 if n else 1
-    return cosine, sine
+            if n:
+                # The pair is Re and Im of A exp(i n θ).
+                cosine[:, :, k + 1] = A.imag
+                sine[:, :, k] = -A.imag
+                sine[:, :, k + 1] = A.real
+            k += 2 if n else 1
+        return cosine, sine
 
 
 def _across(fields: np.ndarray) -> np.ndarray:
@@ -381,17 +367,9 @@ def _each_direction(scalar: sp.csr_array, fields: np.ndarray) -> np.ndarray:
     return np.asarray(fields.T @ (scalar @ fields.reshape(scalar.shape[0], -1)).reshape(fields.shape))
 
 
-def _radius(fe: FiniteElementBody) -> float:
-    """Mean radius of the rim."""
-    rim = fe.seats[1]
-    weight = rim.surface_mass @ np.ones(len(rim.nodes))
-    return float(weight @ np.linalg.norm(fe.mesh.points[rim.nodes, :2], axis=1) / weight.sum())
-
-
-def _about_the_axis(fe: FiniteElementBody) -> None:
+def _about_the_axis(fe: FiniteElementBody, radius: float) -> None:
     """The body turns about z, and its moments of inertia are those of a body of revolution."""
     name = fe.settings.address
-    radius = _radius(fe)
     _, centre, inertia = fe.mass_properties
     places = {"the middle of the bore": fe.seats[0].point, "the middle of the rim": fe.seats[1].point}
     for what, place in (*places.items(), ("its centre of mass", centre)):

@@ -97,7 +97,7 @@ def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress
     fe = finite_element_body(settings, part_of(tell, 0.0, 0.15))
     clocked("reading and assembly", since)
     since = time.perf_counter()
-    body, factor = reduce(fe, settings.modes_to or (BEYOND * fmax if fmax else None), part_of(tell, 0.15, 0.55))
+    body, factor = reduce(fe, settings.modes_to or (BEYOND * fmax if fmax else None), part_of(tell, 0.15, 0.55))[:2]
     clocked("reduction", since)
     since = time.perf_counter()
     count = min(count, len(fe.mesh.points))

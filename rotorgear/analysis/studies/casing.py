@@ -24,7 +24,7 @@ from rotorgear.casings.casing import keep
 from rotorgear.casings.constrained import lowest_modes
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce, reduce_in_basis
+from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce
 from rotorgear.casings.split import without_middles
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.casings import casing_settings
@@ -48,7 +48,7 @@ def reduced_modes(model: Model, name: str, count: int) -> tuple[np.ndarray, np.n
     """
     settings = casing_settings(model, name)
     fe = finite_element_body(settings)
-    body, _, basis = reduce_in_basis(fe, settings.modes_to)
+    body, _, basis = reduce(fe, settings.modes_to)
     keep(settings, body)
     system = flow_system(model)
     eigenvalues, shapes = la.eigh(system.stiffness().toarray(), system.mass.toarray())
@@ -220,7 +220,7 @@ def _of_casing(fe: FiniteElementBody, count: int, finer: int, progress: Progress
     whole = solved(fe)[1].frequency
 
     def reduced(options: dict[str, Any]) -> Judged:
-        body, _ = reduce(fe, options["modes_to"])
+        body = reduce(fe, options["modes_to"])[0]
         frequency, shapes = body.modes()
         elastic = np.flatnonzero(np.arange(body.size) >= (0 if body.held else 6))[:count]
         stated = [body.eigenvalue_error((2.0 * np.pi * frequency[k]) ** 2, shapes[:, k]) or 0.0 for k in elastic]

@@ -12,8 +12,9 @@ from scipy.optimize import brentq
 
 import rotorgear as rg
 from rotorgear.casings.assembly import Elastic
-from rotorgear.casings.fe_body import finite_element_body, mass_properties
+from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
+from rotorgear.casings.reduced_body import mass_properties
 from rotorgear.casings.reduction import free_modes, held_modes, reduce, rigid_residual
 from rotorgear.casings.settings import CasingSettings, JoinSettings, MountSettings
 from tests.unit.casings.blocks import block, write_inp
@@ -39,7 +40,7 @@ def errors(measured: np.ndarray, true: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("connection", ["mean", "rigid"])
 def test_a_body_that_floats_keeps_its_mass_and_its_rigid_motions(tmp_path: Path, connection: str) -> None:
     fe = finite_element_body(replace(settings(tmp_path), connection=connection))  # type: ignore[arg-type]
-    body, _ = reduce(fe, None)
+    body, *_ = reduce(fe, None)
     assert body.rigid is not None
     K = body.stiffness
     assert np.linalg.norm(K @ body.rigid) < 1e-10 * np.linalg.norm(K) * np.linalg.norm(body.rigid)
@@ -57,7 +58,7 @@ def test_a_body_that_floats_keeps_its_mass_and_its_rigid_motions(tmp_path: Path,
 @pytest.mark.parametrize("held", [False, True])
 def test_a_reduced_body_has_the_modes_of_its_mesh_within_the_error_that_it_states(tmp_path: Path, held: bool) -> None:
     fe = finite_element_body(held_at_its_foot(tmp_path) if held else settings(tmp_path))
-    body, factor = reduce(fe, 30e3)
+    body, factor, _ = reduce(fe, 30e3)
     whole = (held_modes if held else free_modes)(fe, 6, factor)
     frequency, shapes = body.modes()
     first = 0 if held else 6
@@ -75,7 +76,7 @@ def test_a_reduced_body_has_the_modes_of_its_mesh_within_the_error_that_it_state
 def test_residual_shapes_make_up_for_modes_that_are_left_out(tmp_path: Path) -> None:
     fe = finite_element_body(held_at_its_foot(tmp_path))
     whole = held_modes(fe, 3).frequency
-    few, _ = reduce(fe, 5e3)
+    few, *_ = reduce(fe, 5e3)
     assert len(few.fixed_frequency) < 3
     # Without them a basis of so few modes errs by per cents; with them by less than 1e-3.
     statics = slice(0, few.interface + len(few.fixed_frequency))
@@ -96,7 +97,7 @@ def test_a_rigid_seat_stiffens_its_face_and_a_mean_one_does_not(tmp_path: Path) 
 
 def test_modes_beyond_what_a_mesh_can_have_are_not_taken(tmp_path: Path) -> None:
     fe = finite_element_body(replace(held_at_its_foot(tmp_path, counts=(1, 1, 2)), damping_ratio=0.01))
-    body, _ = reduce(fe, 10e6)
+    body, *_ = reduce(fe, 10e6)
     free = fe.dofs - 3 * len(fe.held)
     assert len(body.fixed_frequency) == free // 4
     assert body.fixed_frequency[-1] < body.left_frequency < 10e6
@@ -105,7 +106,7 @@ def test_modes_beyond_what_a_mesh_can_have_are_not_taken(tmp_path: Path) -> None
 
 def test_a_mean_seat_on_a_bar_without_contraction_has_the_stiffness_of_the_bar(tmp_path: Path) -> None:
     one = held_at_its_foot(tmp_path, counts=(1, 1, 2), kind="hexahedron20")
-    body, _ = reduce(finite_element_body(replace(one, material=Elastic(206e9, 0.0, 7850.0))), 20e3)
+    body, *_ = reduce(finite_element_body(replace(one, material=Elastic(206e9, 0.0, 7850.0))), 20e3)
     width, depth, length = SIZE
     axial = 206e9 * width * depth / length
     bending = 206e9 * depth * width**3 / 12.0 / length
@@ -121,7 +122,7 @@ def test_a_body_on_soft_mounts_swings_as_a_rigid_one_and_is_damped_by_them(tmp_p
     rows = np.diag([stiffness] * 3 + [1e3] * 3)
     mount = MountSettings("low", tuple(map(tuple, rows)), tuple(map(tuple, rows * damping / stiffness)))
     fe = finite_element_body(replace(settings(tmp_path), mounts=(mount,), seats=(("one", "high"),)))
-    body, _ = reduce(fe, None)
+    body, *_ = reduce(fe, None)
     along_z = np.sqrt(stiffness / body.body_mass) / (2.0 * np.pi)
     frequency, shapes = body.modes()
     nearest = int(np.argmin(np.abs(frequency - along_z)))
@@ -134,7 +135,7 @@ def test_a_body_on_soft_mounts_swings_as_a_rigid_one_and_is_damped_by_them(tmp_p
 
 
 def test_every_elastic_mode_has_the_damping_ratio_of_the_file_and_no_rigid_one(tmp_path: Path) -> None:
-    body, _ = reduce(finite_element_body(replace(settings(tmp_path), damping_ratio=0.02)), None)
+    body, *_ = reduce(finite_element_body(replace(settings(tmp_path), damping_ratio=0.02)), None)
     frequency, shapes = body.modes()
     modal = shapes.T @ body.damping @ shapes
     np.testing.assert_allclose(np.diag(modal)[6:], 2.0 * 0.02 * 2.0 * np.pi * frequency[6:], rtol=1e-6)
@@ -142,7 +143,7 @@ def test_every_elastic_mode_has_the_damping_ratio_of_the_file_and_no_rigid_one(t
 
 
 def test_the_surface_moves_with_the_body(tmp_path: Path) -> None:
-    body, _ = reduce(finite_element_body(settings(tmp_path)), None)
+    body, *_ = reduce(finite_element_body(settings(tmp_path)), None)
     surface = body.surface
     assert surface is not None
     assert body.rigid is not None
@@ -167,7 +168,7 @@ def test_two_halves_that_are_tied_or_held_stiffly_are_one_body(tmp_path: Path, s
     finer = free_modes(finite_element_body(settings(tmp_path, counts=(3, 2, 4))), 3).frequency
     coarser = free_modes(finite_element_body(settings(tmp_path, counts=(2, 1, 4))), 3).frequency
     assert rigid_residual(halves)[0] < 1e-10
-    body, factor = reduce(halves, 30e3)
+    body, factor, _ = reduce(halves, 30e3)
     joined = free_modes(halves, 3, factor).frequency
     # One half is meshed as the finer whole, one as the coarser; the tie itself is a little stiff.
     assert np.all(joined > 0.999 * finer)
@@ -191,7 +192,7 @@ def test_a_joint_of_given_stiffness_per_area_adds_its_flexibility(tmp_path: Path
         seats=(("one", "upper.high"),),
         joins=(JoinSettings("lower.high", "upper.low", per_area),),
     )
-    body, _ = reduce(finite_element_body(one), 20e3)
+    body, *_ = reduce(finite_element_body(one), 20e3)
     area = SIZE[0] * SIZE[1]
     expected = SIZE[2] / (206e9 * area) + 1.0 / (per_area * area)
     assert np.linalg.inv(body.stiffness[:6, :6])[2, 2] == pytest.approx(expected, rel=1e-9)
@@ -221,7 +222,7 @@ def test_a_long_round_bar_has_the_modes_of_the_timoshenko_shaft(tmp_path: Path) 
     found.points[:, 1] = 0.5 * diameter * y * np.sqrt(1.0 - 0.5 * x**2)
     path = write_inp(tmp_path / "bar.inp", found)
     bar = CasingSettings("b", (("mesh", path),), 1.0, STEEL, seats=(("one", "high"), ("two", "low")))
-    body, _ = reduce(finite_element_body(bar), 40e3)
+    body, *_ = reduce(finite_element_body(bar), 40e3)
     shaft = rg.Model(
         materials={"m": {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 7850.0}},
         shafts={"s": {"material": "m", "sections": [{"length": length, "outer_diameter": diameter}]}},
