@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import TypeVar
 
-from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
+from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.reduced_body import ReducedBody, Surface
 from rotorgear.casings.reduction import reduce
 from rotorgear.casings.settings import BEYOND, CasingSettings
@@ -42,21 +41,12 @@ def reduced_casing(settings: CasingSettings, fmax: float | None = None, progress
     """
     if not settings.seats:
         raise AnalysisError(f"{settings.address}.seats: a casing without seats carries no bearing.")
-    modes_to = settings.modes_to or (BEYOND * fmax if fmax else None)
-
-    def computed(fe: FiniteElementBody, tell: Progress) -> ReducedBody:
-        return reduce(fe, modes_to, tell)[0]
-
-    return _kept(ReducedBody, settings, modes_to, computed, progress)
+    return _kept(ReducedBody, settings, settings.modes_to or (BEYOND * fmax if fmax else None), progress)
 
 
 def reduced_gear_body(settings: CasingSettings, progress: Progress = silent) -> ReducedWheel:
     """The reduced body of a gear, whose seats are its bore and its rim; errors as of `reduced_casing`."""
-
-    def computed(fe: FiniteElementBody, tell: Progress) -> ReducedWheel:
-        return reduce_wheel(fe, settings.modes_to, tell)
-
-    return _kept(ReducedWheel, settings, settings.modes_to, computed, progress)
+    return _kept(ReducedWheel, settings, settings.modes_to, progress)
 
 
 def keep(settings: CasingSettings, body: ReducedBody) -> None:
@@ -70,13 +60,7 @@ def key_of(settings: CasingSettings, modes_to: float | None) -> str:
     return f"{fingerprint(*_MAKERS)} {files} {modes_to!r} {replace(settings, files=())!r}"
 
 
-def _kept(
-    kind: type[Body],
-    settings: CasingSettings,
-    modes_to: float | None,
-    compute: Callable[[FiniteElementBody, Progress], Body],
-    progress: Progress,
-) -> Body:
+def _kept(kind: type[Body], settings: CasingSettings, modes_to: float | None, progress: Progress) -> Body:
     for _, path in settings.files:
         if not path.is_file():  # the reader says it with the nearest name
             finite_element_body(settings)
@@ -87,7 +71,8 @@ def _kept(
         stored = read_entry(path, key)
         if stored is None:
             fe = finite_element_body(settings, part_of(progress, 0.0, 0.3))
-            body = compute(fe, part_of(progress, 0.3, 1.0))
+            tell = part_of(progress, 0.3, 1.0)
+            body = reduce(fe, modes_to, tell)[0] if kind is ReducedBody else reduce_wheel(fe, modes_to, tell)
             values = {
                 one.name: getattr(body, one.name) for one in fields(body) if one.name not in ("seconds", "surface")
             }

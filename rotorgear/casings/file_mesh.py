@@ -22,6 +22,22 @@ class NamedSet:
     nodes: np.ndarray
     faces: list[np.ndarray] = field(default_factory=list)
 
+    def renumbered(self, numbers: np.ndarray) -> NamedSet:
+        """The set by new numbers (p,) of all nodes, without nodes of the number -1 and faces with such nodes."""
+        nodes = numbers[self.nodes]
+        faces = [numbers[face] for face in self.faces]
+        return NamedSet(nodes[nodes >= 0], [face[(face >= 0).all(axis=1)] for face in faces])
+
+    def faces_among(self, faces: np.ndarray, corners: int) -> np.ndarray:
+        """Which (f,) of faces (f, m), with their corners first, the set has: by its faces, or by its nodes where it has none."""
+        if self.faces:
+            own = {tuple(row) for listed in self.faces for row in np.sort(listed[:, :corners], axis=1).tolist()}
+            return np.array([tuple(row) in own for row in np.sort(faces[:, :corners], axis=1).tolist()], dtype=bool)
+        member = np.isin(faces, self.nodes)
+        # Some meshers list the corners of quadratic faces only.
+        whole = member.all(axis=1)
+        return np.asarray(whole if whole.any() else member[:, :corners].all(axis=1))
+
 
 @dataclass
 class FileMesh:

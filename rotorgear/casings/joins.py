@@ -106,9 +106,7 @@ def _faces(mesh: SolidMesh, set_name: str, address: str) -> np.ndarray:
     patch = by_set(mesh, set_name, address)
     if not patch.area:
         raise AnalysisError(f"{address}: the set '{set_name}' makes no face of the solids: name all nodes of a face.")
-    member = np.zeros(len(mesh.points), dtype=bool)
-    member[patch.nodes] = True
-    return mesh.boundary[member[mesh.boundary].all(axis=1)]
+    return mesh.boundary[np.isin(mesh.boundary, patch.nodes).all(axis=1)]
 
 
 def _size(mesh: SolidMesh, faces: np.ndarray) -> float:

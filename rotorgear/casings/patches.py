@@ -82,28 +82,17 @@ def by_set(mesh: SolidMesh, set_name: str, address: str) -> Patch:
         names = list(mesh.sets)
         guess = nearest(set_name, names)
         there = ", ".join(names[:_LISTED]) + (" ..." if len(names) > _LISTED else "")
-        none = "it has none: " + (
-            "give a place instead"
-            if ".seats." in address
-            else "Gmsh 4.1 and Abaqus files keep named sets, VTK files as data of zeros and ones"
-        )
-        hint = f"did you mean '{guess}'?" if guess else f"it has: {there}" if names else none
+        none = "Gmsh 4.1 and Abaqus files keep named sets, VTK files as data of zeros and ones"
+        if ".seats." in address:
+            none = "give a place instead"
+        hint = f"did you mean '{guess}'?" if guess else f"it has: {there}" if names else f"it has none: {none}"
         raise AnalysisError(f"{address}: the mesh has no set '{set_name}' ({hint}).")
     if not len(one.nodes):
         raise AnalysisError(f"{address}: the set '{set_name}' touches no node of the solids.")
     boundary = mesh.boundary
-    if one.faces:
-        corners = one.faces[0].shape[1]
-        own = {tuple(row) for faces in one.faces for row in np.sort(faces, axis=1).tolist()}
-        chosen = np.array([tuple(row) in own for row in np.sort(boundary[:, :corners], axis=1).tolist()])
-    else:
-        member = np.zeros(len(mesh.points), dtype=bool)
-        member[one.nodes] = True
-        chosen = member[boundary].all(axis=1)
-        if not chosen.any():  # some meshers list the corners of quadratic faces only
-            chosen = member[boundary[:, : len(mesh.element.faces[0])]].all(axis=1)
-        if len(one.nodes) > 0.5 * len(mesh.points) and chosen.all():
-            raise AnalysisError(f"{address}: the set '{set_name}' is the whole body; name a face of it.")
+    chosen = one.faces_among(boundary, len(mesh.element.faces[0]))
+    if not one.faces and len(one.nodes) > 0.5 * len(mesh.points) and chosen.all():
+        raise AnalysisError(f"{address}: the set '{set_name}' is the whole body; name a face of it.")
     return patch_of(mesh, boundary[chosen], one.nodes, f"{address} ('{set_name}')")
 
 
@@ -125,11 +114,8 @@ def cylinder_faces(mesh: SolidMesh, cylinder: Cylinder, address: str) -> np.ndar
         box = ", ".join(
             f"{axis} {millimetres(a)} to {millimetres(b)}" for axis, a, b in zip("xyz", low, high, strict=True)
         )
-        near = (
-            f"; faces in its range are {millimetres(radius[within].min())} or more from its axis"
-            if within.any()
-            else ""
-        )
+        least = millimetres(radius[within].min()) if within.any() else ""
+        near = f"; faces in its range are {least} or more from its axis" if least else ""
         raise AnalysisError(
             f"{address}: no face of the mesh lies on this cylinder (radius {millimetres(cylinder.radius)}){near}. The mesh "
             f"reaches over {box}."

@@ -97,26 +97,20 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
     notes = list(found.notes)
     cells = found.cells[kind]
     # Cells that are no solids may only mark faces of the solids: a wall of shells would be lost.
-    on_solids = np.zeros(len(found.points), dtype=bool)
-    on_solids[cells] = True
+    used = np.unique(cells)
     for other, faces in found.cells.items():
         if other not in SOLIDS and other != "vertex":
-            loose = int(np.count_nonzero(~on_solids[faces].all(axis=1)))
+            loose = int(np.count_nonzero(~np.isin(faces, used).all(axis=1)))
             if loose:
                 raise AnalysisError(
                     f"{address}: {loose} of {len(faces)} {other} cells are not on the solids: shells and beams are not computed. "
                     "Mesh these walls as solids, or leave them out of the file."
                 )
-    used = np.unique(cells)
     place = np.full(len(found.points), -1, dtype=np.int64)
     place[used] = np.arange(len(used))
     points = unit * found.points[used]
     cells = place[cells]
-    sets = {}
-    for name, one in found.sets.items():
-        nodes = place[one.nodes]
-        on_them = [place[face] for face in one.faces]
-        sets[name] = NamedSet(nodes[nodes >= 0], [face[(face >= 0).all(axis=1)] for face in on_them])
+    sets = {name: one.renumbered(place) for name, one in found.sets.items()}
     raised = QUADRATIC[kind] != kind
     shape = element(QUADRATIC[kind])
     if raised:
@@ -126,9 +120,7 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
         middle = points[keys].mean(axis=1)
         cells = np.hstack([cells, len(points) + inverse.reshape(len(cells), -1)])
         for one in sets.values():
-            member = np.zeros(len(points), dtype=bool)
-            member[one.nodes] = True
-            new = len(points) + np.flatnonzero(member[keys].all(axis=1))
+            new = len(points) + np.flatnonzero(np.isin(keys, one.nodes).all(axis=1))
             one.nodes = np.concatenate([one.nodes, new])
         points = np.vstack([points, middle])
         word = "tetrahedra" if kind == "tetra" else "hexahedra"
@@ -174,8 +166,7 @@ def _only_kind(found: FileMesh, address: str) -> str:
 
 def _straight(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
     """Places (e, k, 3) of the nodes if the edges were straight: those of the linear element on the corners."""
-    linear = element_corner_weights(shape)
-    return np.einsum("kc,eci->eki", linear, points[cells[:, : shape.corners]])
+    return np.einsum("kc,eci->eki", element_corner_weights(shape), points[cells[:, : shape.corners]])
 
 
 def element_corner_weights(shape: Element) -> np.ndarray:
@@ -192,12 +183,10 @@ def element_corner_weights(shape: Element) -> np.ndarray:
 
 def _order_by_position(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray | None:
     """The order of an element's nodes as their places tell, where it is not VTK's in most elements; else None."""
+    # The order is one for the whole file: some elements tell it.
+    cells = cells[np.linspace(0, len(cells) - 1, min(len(cells), 200)).astype(int)]
     straight = _straight(points, cells, shape)[:, shape.corners :]
     given = points[cells[:, shape.corners :]]
-    if len(cells) > 200:  # the order is one for the whole file
-        chosen = np.linspace(0, len(cells) - 1, 200).astype(int)
-        straight = straight[chosen]
-        given = given[chosen]
     nearest = np.argmin(np.linalg.norm(given[:, None, :, :] - straight[:, :, None, :], axis=3), axis=2)
     orders, counts = np.unique(nearest, axis=0, return_counts=True)
     order = orders[np.argmax(counts)]
@@ -279,11 +268,8 @@ def jacobians(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarr
     """det J (e, q) at the Gauss points of stiffness and mass."""
     places = np.hstack([shape.quadrature(degree)[0] for degree in (STIFFNESS_DEGREE, MASS_DEGREE)])
     gradients = shape.shapes(places)[1]
-    found = [
-        np.linalg.det(np.einsum("eki,kjq->eqij", points[some], gradients))
-        for some in np.array_split(cells, max(1, len(cells) // 4000))
-    ]
-    return np.vstack(found)
+    chunks = np.array_split(cells, max(1, len(cells) // 4000))
+    return np.vstack([np.linalg.det(np.einsum("eki,kjq->eqij", points[some], gradients)) for some in chunks])
 
 
 def _unfolded(mesh: SolidMesh, address: str) -> SolidMesh:
@@ -294,10 +280,7 @@ def _unfolded(mesh: SolidMesh, address: str) -> SolidMesh:
     ratio = jacobians(points, mesh.cells, shape) / reference[:, None]
     lowest = float(ratio.min())
     moved: set[int] = set()
-    while True:
-        folded = np.flatnonzero(ratio.min(axis=1) <= 0.0)
-        if not len(folded):
-            break
+    while len(folded := np.flatnonzero(ratio.min(axis=1) <= 0.0)):
         if moved.issuperset(folded.tolist()):
             raise AnalysisError(
                 f"{address}: {_elements(folded)} {'is' if len(folded) == 1 else 'are'} inside out, with straight edges too. "
@@ -309,20 +292,13 @@ def _unfolded(mesh: SolidMesh, address: str) -> SolidMesh:
         ratio = jacobians(points, mesh.cells, shape) / reference[:, None]
     if not moved:
         return replace(mesh, jacobian_low=lowest)
-    names = np.array(sorted(moved))
+    names = sorted(moved)
     note = (
-        f"{_elements(names)} {'was' if len(names) == 1 else 'were'} curved so far that {'its' if len(names) == 1 else 'their'} "
-        f"Jacobian is negative at Gauss points (down to {lowest:.2g} of the straight element's): the nodes in the middle of "
-        f"{'its' if len(names) == 1 else 'their'} edges were moved onto straight edges."
+        f"The Jacobian of {_elements(np.array(names))} is negative at Gauss points, down to {lowest:.2g} of that of straight "
+        "elements: the edges are curved too far, and the nodes in their middle were moved onto straight edges."
     )
-    return replace(
-        mesh,
-        points=points,
-        jacobian_low=lowest,
-        straightened=tuple(names.tolist()),
-        notes=(*mesh.notes, note),
-        _faces=[],
-    )
+    notes = (*mesh.notes, note)
+    return replace(mesh, points=points, jacobian_low=lowest, straightened=tuple(names), notes=notes, _faces=[])
 
 
 def _elements(numbers: np.ndarray) -> str:
@@ -356,22 +332,23 @@ def merged(meshes: dict[str, SolidMesh], address: str) -> SolidMesh:
     names = [name for mesh in meshes.values() for name in mesh.sets]
     notes: list[str] = []
     straightened: list[int] = []
-    first_point = 0
-    first_cell = 0
+    points: list[np.ndarray] = []
+    cells: list[np.ndarray] = []
     for part, mesh in meshes.items():
+        first_point = sum(map(len, points))
+        first_cell = sum(map(len, cells))
         for name, one in mesh.sets.items():
-            shifted = NamedSet(one.nodes + first_point, [face + first_point for face in one.faces])
+            shifted = one.renumbered(first_point + np.arange(len(mesh.points)))
             sets[f"{part}.{name}"] = shifted
             if names.count(name) == 1:
                 sets[name] = shifted
         notes += [f"{part}: {note}" for note in mesh.notes]
         straightened += [number + first_cell for number in mesh.straightened]
-        first_point += len(mesh.points)
-        first_cell += len(mesh.cells)
-    starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes.values())])[:-1]
+        points.append(mesh.points)
+        cells.append(mesh.cells + first_point)
     return SolidMesh(
-        np.vstack([mesh.points for mesh in meshes.values()]),
-        np.vstack([mesh.cells + start for mesh, start in zip(meshes.values(), starts, strict=True)]),
+        np.vstack(points),
+        np.vstack(cells),
         next(iter(kinds.values())),
         sets,
         tuple(notes),

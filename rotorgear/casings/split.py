@@ -46,12 +46,11 @@ def split(mesh: SolidMesh) -> SolidMesh:
     of_sets: dict[str, np.ndarray] = {}
     faces_of_sets: dict[str, list[np.ndarray]] = {}
     outer = boundary_faces(vertices, whole)
+    smaller = np.array(TRIANGLES if shape.corners == 4 else _QUADS)
     for name, one in mesh.sets.items():
-        faces = _chosen_faces(mesh, one, outer, whole)
-        of_sets[name] = np.zeros(len(points), dtype=bool)
-        of_sets[name][one.nodes] = True
-        of_sets[name][np.unique(faces)] = True
-        smaller = np.array(TRIANGLES if len(whole.faces[0]) == 3 else _QUADS)
+        # Nodes of the file's faces count, and not those in the middle of bricks' faces.
+        faces = outer[one.faces_among(outer[:, : shape.face_nodes.shape[1]], len(shape.faces[0]))]
+        of_sets[name] = np.isin(np.arange(len(points)), np.concatenate([one.nodes, faces.ravel()]))
         faces_of_sets[name] = [faces[:, smaller].reshape(-1, smaller.shape[1])] if one.faces else []
     members = {name: [flags] for name, flags in of_sets.items()}
     entities: list[np.ndarray] = [np.array(shape.edges)]
@@ -80,10 +79,7 @@ def without_middles(mesh: SolidMesh) -> SolidMesh:
     used, cells = np.unique(mesh.cells[:, : shape.corners], return_inverse=True)
     place = np.full(len(mesh.points), -1, dtype=np.int64)
     place[used] = np.arange(len(used))
-    sets = {}
-    for name, one in mesh.sets.items():
-        nodes = place[one.nodes]
-        sets[name] = NamedSet(nodes[nodes >= 0], [place[faces] for faces in one.faces])
+    sets = {name: one.renumbered(place) for name, one in mesh.sets.items()}
     corners = cells.reshape(-1, shape.corners)
     return replace(mesh, points=mesh.points[used], cells=corners, kind=kind, sets=sets, _faces=[])
 
@@ -127,15 +123,3 @@ def _mapped(mesh: SolidMesh, shape: Element, cells: np.ndarray, reference: np.nd
         here = np.flatnonzero(which.ravel() == number)
         found[here] = np.einsum("k,nki->ni", values[:, number], mesh.points[mesh.cells[cells[here]]])
     return found
-
-
-def _chosen_faces(mesh: SolidMesh, one: NamedSet, faces: np.ndarray, whole: Element) -> np.ndarray:
-    """Those of the outer faces that a set has, by its faces or by its nodes."""
-    corners = len(whole.faces[0])
-    if one.faces:
-        own = {tuple(row) for listed in one.faces for row in np.sort(listed[:, :corners], axis=1).tolist()}
-        return faces[[tuple(row) in own for row in np.sort(faces[:, :corners], axis=1).tolist()]]
-    member = np.zeros(len(mesh.points), dtype=bool)
-    member[one.nodes] = True
-    own_nodes = mesh.element.face_nodes.shape[1]
-    return faces[member[faces[:, :own_nodes]].all(axis=1)]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import MISSING, fields
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,21 +101,13 @@ def read(path: str | Path) -> Any:
             digest = digest_of(file)
             # A field that came later has its default in an older file; the version stands in every file.
             old = {"rotorgear_version": str(file.attrs["rotorgear_version"])}
-            stored = {name: get_value(file[name]) for name in stored_fields(cls) if name in file}
-            lacking = [
-                one.name
-                for one in fields(cls)
-                if one.init
-                and one.default is MISSING
-                and one.default_factory is MISSING
-                and one.name not in stored
-                and one.name in stored_fields(cls)
-            ]
+            names = stored_fields(cls)
+            stored = {name: get_value(file[name]) for name in names if name in file}
+            needed = [name for name, one in signature(cls).parameters.items() if one.default is one.empty]
+            lacking = ", ".join(name for name in needed if name in names and name not in stored)
             if lacking:
-                raise ReadError(
-                    path,
-                    f"it is damaged, or from a rotorgear that did not compute {', '.join(lacking)}; run the analysis again",
-                )
+                cause = f"it is damaged, or from a rotorgear that did not compute {lacking}; run the analysis again"
+                raise ReadError(path, cause)
             result = cls(**old | stored)
         except ModelError as error:
             raise ReadError(path, f"its model does not pass the checks of rotorgear {VERSION}\n{error}") from None
@@ -123,9 +115,8 @@ def read(path: str | Path) -> Any:
             raise ReadError(path, f"it is damaged ({error})") from None
         # Files of 0.1 have no digest.
         if file.attrs.get("sha256", digest) != digest:
-            raise ReadError(
-                path, "it is damaged: its values are not those that rotorgear wrote; run the analysis again"
-            )
+            cause = "it is damaged: its values are not those that rotorgear wrote; run the analysis again"
+            raise ReadError(path, cause)
         return result
 
 

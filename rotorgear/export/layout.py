@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 
@@ -160,12 +161,12 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
     """Place one shaft that is coupled to or in mesh with a placed one; whether there was one."""
     # Coupled shafts are in line where there is room, else they are placed by what they mesh with.
     for coupling in model.couplings.values():
-        for known, new in _both_ways(coupling.from_shaft, coupling.to_shaft):
+        for known, new in permutations((coupling.from_shaft, coupling.to_shaft)):
             if known in axes and new not in axes and _free(axes[known], new, axes, envelopes):
                 axes[new] = axes[known]
                 return True
     for mesh in model.meshes.values():
-        for one, other in _both_ways(mesh.pinion, mesh.gear):
+        for one, other in permutations((mesh.pinion, mesh.gear)):
             known = model.layout.gear(one).shaft
             new = model.layout.gear(other).shaft
             if known not in axes or new in axes:
@@ -179,10 +180,6 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
             axes[new] = next((at for at in places if given is not None or _free(at, new, axes, envelopes)), places[0])
             return True
     return False
-
-
-def _both_ways(one: str, other: str) -> tuple[tuple[str, str], tuple[str, str]]:
-    return (one, other), (other, one)
 
 
 def _free(at: Axis, new: str, axes: dict[str, Axis], envelopes: dict[str, list[BodySize]]) -> bool:

@@ -66,17 +66,15 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
         "input_units": result.input_units,
         "output_units": result.output_units,
     }
-    with replacing(target) as scratch:
+    with replacing(target) as scratch, open(scratch, "wb") as stream:
         if target.suffix.lower() == ".mat":
             from scipy.io import savemat
 
             cells = {key: np.array(texts, dtype=object) for key, texts in names.items()}
-            with open(scratch, "wb") as stream:
-                savemat(stream, {**values, **cells}, oned_as="column")
+            savemat(stream, values | cells, oned_as="column")
         else:
-            with open(scratch, "wb") as stream:
-                arrays = {**values, **{key: np.array(texts) for key, texts in names.items()}}
-                np.savez_compressed(stream, allow_pickle=False, **arrays)
+            arrays = values | {key: np.array(texts) for key, texts in names.items()}
+            np.savez_compressed(stream, allow_pickle=False, **arrays)
     return target
 
 
@@ -141,13 +139,9 @@ def write_matrices(
     units = []
     for k in range(system.n):
         column = slice(transform.indptr[k], transform.indptr[k + 1])
-        moved = [
-            int(row)
-            for row, entry in zip(transform.indices[column], transform.data[column], strict=True)
-            if entry == 1.0
-        ]
-        names.append(of_nodes[min(moved)] if moved else f"{system.dofs.describe(k, system.nodes)} [{k}]")
-        units.append("" if not moved else "rad" if min(moved) % 6 > 2 else "m")
+        moved = transform.indices[column][transform.data[column] == 1.0]
+        names.append(of_nodes[min(moved)] if len(moved) else f"{system.dofs.describe(k, system.nodes)} [{k}]")
+        units.append("" if not len(moved) else "rad" if min(moved) % 6 > 2 else "m")
     values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(of_nodes)}
     with replacing(target) as scratch, open(scratch, "wb") as stream:
         np.savez_compressed(stream, allow_pickle=False, **values)

@@ -294,6 +294,21 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
         yield Piece(f"couplings.{name}", "coupling", shafts[0], surface, _select(by_ends, to_second.astype(int)))
 
 
+def pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield the surfaces of all parts of a model."""
+    for of_kind in (
+        shaft_pieces,
+        gear_pieces,
+        disk_pieces,
+        point_mass_pieces,
+        bearing_pieces,
+        support_pieces,
+        coupling_pieces,
+        casing_pieces,
+    ):
+        yield from of_kind(model, skeleton, detail)
+
+
 def _select(choices: list[Attachment], which: np.ndarray) -> Attachment:
     """For each point one of several attachments."""
     rows = np.arange(len(which))

@@ -8,20 +8,7 @@ import numpy as np
 
 from rotorgear.export.attachment import Attachment, Skeleton, join_attachments
 from rotorgear.export.layout import display_axes
-from rotorgear.export.parts import (
-    FINE,
-    LIGHT,
-    Detail,
-    Piece,
-    bearing_pieces,
-    casing_pieces,
-    coupling_pieces,
-    disk_pieces,
-    gear_pieces,
-    point_mass_pieces,
-    shaft_pieces,
-    support_pieces,
-)
+from rotorgear.export.parts import FINE, LIGHT, Detail, pieces
 from rotorgear.export.surface import join
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable
@@ -96,39 +83,29 @@ def _largest(vectors: np.ndarray) -> float:
 def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Solids:
     """Return the surfaces of all parts of a model with the nodes of one of its results."""
     skeleton = Skeleton(model, nodes, display_axes(model))
-    makers = (
-        shaft_pieces,
-        gear_pieces,
-        disk_pieces,
-        point_mass_pieces,
-        bearing_pieces,
-        support_pieces,
-        coupling_pieces,
-        casing_pieces,
-    )
-    pieces = [piece for maker in makers for piece in maker(model, skeleton, detail)]
-    surface = join([piece.surface for piece in pieces])
-    part_names = tuple(dict.fromkeys(piece.part for piece in pieces))
+    found = list(pieces(model, skeleton, detail))
+    surface = join([piece.surface for piece in found])
+    part_names = tuple(dict.fromkeys(piece.part for piece in found))
     shaft_names = tuple(model.shafts)
+    # Cells are the quadrangles of all pieces, then their triangles.
+    counts = [len(piece.surface.quads) for piece in found] + [len(piece.surface.triangles) for piece in found]
+
+    def by_cell(numbers: list[int]) -> np.ndarray:
+        return np.repeat(np.array(numbers * 2, dtype=np.int16), counts)
+
     return Solids(
         points=surface.points,
         quads=surface.quads,
         triangles=surface.triangles,
-        part=_by_cell(pieces, [part_names.index(piece.part) for piece in pieces]),
-        kind=_by_cell(pieces, [KINDS.index(piece.kind) for piece in pieces]),
-        shaft=_by_cell(pieces, [shaft_names.index(piece.shaft) if piece.shaft else -1 for piece in pieces]),
+        part=by_cell([part_names.index(piece.part) for piece in found]),
+        kind=by_cell([KINDS.index(piece.kind) for piece in found]),
+        shaft=by_cell([shaft_names.index(piece.shaft) if piece.shaft else -1 for piece in found]),
         part_names=part_names,
         kind_names=KINDS,
         shaft_names=shaft_names,
-        attachment=join_attachments([piece.attachment for piece in pieces]),
+        attachment=join_attachments([piece.attachment for piece in found]),
         node_positions=skeleton.positions(),
     )
-
-
-def _by_cell(pieces: list[Piece], numbers: list[int]) -> np.ndarray:
-    """A number of each piece repeated for its quads, then for its triangles."""
-    counts = [len(piece.surface.quads) for piece in pieces] + [len(piece.surface.triangles) for piece in pieces]
-    return np.repeat(np.array(numbers * 2, dtype=np.int16), counts)
 
 
 __all__ = ["DEFAULT_AMPLITUDE", "FINE", "KINDS", "LARGEST_TURN", "LIGHT", "Detail", "Solids", "build_solids"]

@@ -17,21 +17,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult, NodeTable
 from rotorgear.results.response import ResponseResult
-from rotorgear.uff.datasets import (
-    ACCELERATION,
-    DISPLACEMENT,
-    FORCE,
-    FREQUENCY,
-    FREQUENCY_RESPONSE,
-    ORDER,
-    ORDER_FUNCTION,
-    RPM,
-    Function,
-    Nodes,
-    Shape,
-    TraceLine,
-    Units,
-)
+from rotorgear.uff import datasets
 from rotorgear.uff.write import function_set, line_sets, nodes_set, shape_set, units_set, universal_bytes
 
 _TRANSLATIONS = 3
@@ -71,33 +57,27 @@ def write_uff(
     else:
         sets = _order_functions(result, binary)
     with replacing(path) as scratch:
-        scratch.write_bytes(universal_bytes([units_set(Units()), *sets]))
+        scratch.write_bytes(universal_bytes([units_set(datasets.Units()), *sets]))
     return Path(path)
 
 
 def _modes(result: ModalResult, modes: Sequence[int] | None, rotations: bool | None) -> list[bytes]:
     count = len(result.eigenvalues)
-    chosen = list(range(count)) if modes is None else list(modes)
-    wrong = [k for k in chosen if not 0 <= k < count]
-    if wrong:
-        raise AnalysisError(f"modes: got {wrong[0]}, expected numbers from 0 to {count - 1}")
     is_complex = result.speed is not None
     six = not is_complex if rotations is None else rotations
     numbers = np.arange(1, len(result.nodes.shaft) + 1)
     sets = _geometry(result.nodes)
-    for k in chosen:
+    for k in range(count) if modes is None else modes:
+        if not 0 <= k < count:
+            raise AnalysisError(f"modes: got {k}, expected numbers from 0 to {count - 1}")
         s = complex(result.eigenvalues[k])
         hz = abs(s) / (2.0 * np.pi)
         damping = -s.real / abs(s) if abs(s) else 0.0
         values = result.shapes[:, : 6 if six else _TRANSLATIONS, k]
-        names = (
-            result.model.title or "rotorgear",
-            f"mode {k + 1}, {hz:.6g} Hz, damping ratio {damping:.6g}",
-            result.description[k],
-            "rotorgear",
-        )
+        title = f"mode {k + 1}, {hz:.6g} Hz, damping ratio {damping:.6g}"
+        names = (result.model.title or "rotorgear", title, result.description[k], "rotorgear")
         shape = values if is_complex else np.real(values)
-        sets.append(shape_set(Shape(hz, damping, s if is_complex else None, numbers, shape, names, k + 1)))
+        sets.append(shape_set(datasets.Shape(hz, damping, s if is_complex else None, numbers, shape, names, k + 1)))
     return sets
 
 
@@ -106,11 +86,11 @@ def _geometry(nodes: NodeTable) -> list[bytes]:
     shafts = list(dict.fromkeys(nodes.shaft))
     count = len(nodes.shaft)
     colours = np.array([shafts.index(name) + 1 for name in nodes.shaft])
-    sets = [nodes_set(Nodes(np.arange(1, count + 1), nodes.position, np.zeros(count, dtype=int), colours))]
+    sets = [nodes_set(datasets.Nodes(np.arange(1, count + 1), nodes.position, np.zeros(count, dtype=int), colours))]
     for number, name in enumerate((name for name in shafts if name), start=1):
         along = nodes.on_shaft(name) + 1
         if len(along) > 1:
-            sets += line_sets(TraceLine(number, name, along))
+            sets += line_sets(datasets.TraceLine(number, name, along))
     return sets
 
 
@@ -121,19 +101,19 @@ def _responses(result: FrequencyResponse, binary: bool) -> list[bytes]:
     spots = list(dict.fromkeys(place for place, _ in places))
     freedom = {text: (spots.index(place) + 1, dof + 1) for text, (place, dof) in zip(texts, places, strict=True)}
     zeros = np.zeros(len(spots), dtype=int)
-    sets = [nodes_set(Nodes(np.arange(1, len(spots) + 1), np.array(spots), zeros, zeros + 1))]
+    sets = [nodes_set(datasets.Nodes(np.arange(1, len(spots) + 1), np.array(spots), zeros, zeros + 1))]
     title = result.model.title or "rotorgear"
     for i, reference in enumerate(result.inputs):
         for o, response in enumerate(result.outputs):
-            function = Function(
-                FREQUENCY_RESPONSE,
+            function = datasets.Function(
+                datasets.FREQUENCY_RESPONSE,
                 freedom[response],
                 freedom[reference],
                 result.frequency_hz,
                 result.receptance[:, o, i],
-                FREQUENCY,
-                DISPLACEMENT,
-                FORCE,
+                datasets.FREQUENCY,
+                datasets.DISPLACEMENT,
+                datasets.FORCE,
                 names=(f"{response} over {reference}", title, "rotorgear"),
             )
             sets.append(function_set(function, binary=binary))
@@ -146,20 +126,18 @@ def _order_functions(result: ResponseResult, binary: bool) -> list[bytes]:
     sets = _geometry(result.nodes)
     for k, name in enumerate(result.points):
         node, direction = point_node(result.model, result.nodes, name)
-        freedom = (node + 1, direction + 1)
-        for order, ratio in zip(result.orders, result.ratio, strict=True):
-            at = result.orders.index(order)
-            function = Function(
-                ORDER_FUNCTION,
-                freedom,
+        for at, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True)):
+            function = datasets.Function(
+                datasets.ORDER_FUNCTION,
+                (node + 1, direction + 1),
                 (0, 0),
                 result.speeds * RPM_PER_RAD_S,
                 result.acceleration[at, :, k],
-                RPM,
-                ACCELERATION,
+                datasets.RPM,
+                datasets.ACCELERATION,
                 z=float(ratio),
                 names=(f"{name}, {order}", result.model.title or "rotorgear", "rotorgear"),
-                z_type=ORDER,
+                z_type=datasets.ORDER,
             )
             sets.append(function_set(function, binary=binary))
     return sets

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from rotorgear.errors import Problem
 from rotorgear.results.rexs_import import Assumption
-from rotorgear.rexs.document import FACTORS, LARGEST, Component, Value, factor_of
+from rotorgear.rexs.document import FACTORS, LARGEST, Component, factor_of
 
 _TRUE = ("true", "1", "yes")
 _FALSE = ("false", "0", "no")
@@ -29,8 +29,8 @@ class Account:
 
     def missing(self, where: Component | str, expected: str, hint: str = "") -> None:
         """Note what the file does not say and nothing can replace."""
-        source = where.attributes.get("data_source") if isinstance(where, Component) else None
-        if source is not None and source.raw and not hint:
+        source = where.given("data_source") if isinstance(where, Component) else None
+        if source is not None and not hint:
             # From 1.5 on a file may refer to a data base beside it.
             hint = f"its values are in '{source.raw}', which is not read: write a file that holds them itself"
         problem = Problem(str(where), "", expected, hint)
@@ -40,21 +40,16 @@ class Account:
     def number(self, component: Component, names: tuple[str, ...], kind: str) -> float | None:
         """The first of some attributes that is there, in SI; placeholders are not taken, and an unknown unit is a problem."""
         for name in names:
-            value = component.attributes.get(name)
-            if value is None or value.raw in (None, "", []):
+            value = component.given(name)
+            if value is None:
                 continue
             number = _as_number(value.raw)
             if number is None:
                 self.problems.append(Problem(f"{component}: {name}", f"'{value.raw}'", "a number"))
                 continue
-            factor = factor_of(kind, value.unit)
-            if factor is None:
-                self._unknown_unit(component, name, value, kind)
-                continue
-            # NaN and infinity are what programs write for "not set".
-            if math.isfinite(number) and abs(number * factor) <= LARGEST.get(kind, math.inf):
-                return number * factor
-            self._placeholder(component, name, value)
+            found = self._in_si(component, name, [number], kind)
+            if found is not None:
+                return found[0]
         return None
 
     def plain_number(self, component: Component, name: str) -> float | None:
@@ -64,22 +59,31 @@ class Account:
 
     def numbers(self, component: Component, name: str, kind: str, count: int) -> list[float] | None:
         """An array of `count` numbers in SI; None where it is not there."""
-        value = component.attributes.get(name)
-        if value is None or value.raw in (None, "", []):
+        value = component.given(name)
+        if value is None:
             return None
         found = [_as_number(entry) for entry in value.raw] if isinstance(value.raw, list) else []
         numbers = [entry for entry in found if entry is not None]
         if len(numbers) != count or len(found) != count:
             self.problems.append(Problem(f"{component}: {name}", f"{value.raw}", f"{count} numbers"))
             return None
+        return self._in_si(component, name, numbers, kind)
+
+    def _in_si(self, component: Component, name: str, numbers: list[float], kind: str) -> list[float] | None:
+        """Numbers of an attribute in SI; None where their unit is not known, and for a placeholder."""
+        value = component.attributes[name]
         factor = factor_of(kind, value.unit)
         if factor is None:
-            self._unknown_unit(component, name, value, kind)
+            known = ", ".join(unit for unit in FACTORS[kind] if unit) or "none"
+            self.problems.append(Problem(f"{component}: {name}", f"the unit '{value.unit}'", f"one of {known}"))
             return None
-        if not all(math.isfinite(entry) and abs(entry * factor) <= LARGEST.get(kind, math.inf) for entry in numbers):
-            self._placeholder(component, name, value)
-            return None
-        return [entry * factor for entry in numbers]
+        # NaN and infinity are what programs write for "not set".
+        if all(math.isfinite(one) and abs(one * factor) <= LARGEST.get(kind, math.inf) for one in numbers):
+            return [one * factor for one in numbers]
+        note = f"{component}: {name} = {value.raw} {value.unit}".rstrip() + " stands for no value and is not taken"
+        if note not in self.warnings:
+            self.warnings.append(note)
+        return None
 
     def truth(self, component: Component, name: str) -> bool | None:
         """A truth; None where it is not said."""
@@ -88,20 +92,8 @@ class Account:
 
     def text(self, component: Component, *names: str) -> str:
         """The first of some attributes that is not empty, as text; "" where none is."""
-        for name in names:
-            value = component.attributes.get(name)
-            if value is not None and value.raw not in (None, "", []):
-                return str(value.raw).strip()
-        return ""
-
-    def _placeholder(self, component: Component, name: str, value: Value) -> None:
-        note = f"{component}: {name} = {value.raw} {value.unit}".rstrip() + " stands for no value and is not taken"
-        if note not in self.warnings:
-            self.warnings.append(note)
-
-    def _unknown_unit(self, component: Component, name: str, value: Value, kind: str) -> None:
-        known = ", ".join(unit for unit in FACTORS[kind] if unit) or "none"
-        self.problems.append(Problem(f"{component}: {name}", f"the unit '{value.unit}'", f"one of {known}"))
+        found = (value for name in names if (value := component.given(name)) is not None)
+        return next((str(value.raw).strip() for value in found), "")
 
 
 def _as_number(raw: object) -> float | None:

@@ -22,7 +22,7 @@ from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.shafts import ShaftPart
 from rotorgear.rexs.structure import Structure
-from rotorgear.rexs.toml_text import Names, Table, quantity, row
+from rotorgear.rexs.toml_text import Names, Table, quantity, row, text
 
 _BALL = 13e6
 _ROLLER = 1.0e9
@@ -138,32 +138,27 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure) 
     """Inner and outer side of a bearing or a coupling."""
     account = structure.account
     found: list[Seat] = []
+    at = "u_coordinate_on_shaft"
     for roles, names in (
-        (
-            ("inner_part", "side_1", "assembly"),
-            ("u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_side_1", "u_coordinate_on_shaft"),
-        ),
-        (("outer_part", "side_2"), ("u_coordinate_on_shaft_outer_side", "u_coordinate_on_shaft_side_2")),
+        (("inner_part", "side_1", "assembly"), (f"{at}_inner_side", f"{at}_side_1", at)),
+        (("outer_part", "side_2"), (f"{at}_outer_side", f"{at}_side_2")),
     ):
-        owner = structure.shaft_of(part, *roles)
-        shaft = shafts.get(owner.id) if owner is not None else None
+        shaft = shafts.get(structure.shaft_of(part, *roles))
         if shaft is None:
             found.append(None)
             continue
         u = account.number(part, names, "length")
         frame = structure.frame(part)
-        if u is not None:
-            z = shaft.axis.z(u)
-            if frame is not None and not found and abs(z - (by_vector := structure.place(frame)[0])) > _ONE_PLACE:
-                account.warnings.append(
-                    f"{part}: its support_vector is at {1e3 * by_vector:.6g} mm along the gear unit, its coordinate on the "
-                    f"shaft at {1e3 * z:.6g} mm, which counts"
-                )
-        elif frame is not None:
-            z = float(structure.place(frame)[0])
-        else:
+        by_vector = None if frame is None else float(structure.place(frame)[0])
+        z = by_vector if u is None else shaft.axis.z(u)
+        if z is None:
             account.missing(part, f"its place on {shaft.component} is needed: {names[0]} or support_vector")
             z = shaft.start
+        elif by_vector is not None and not found and abs(z - by_vector) > _ONE_PLACE:
+            account.warnings.append(
+                f"{part}: its support_vector is at {1e3 * by_vector:.6g} mm along the gear unit, its coordinate on the "
+                f"shaft at {1e3 * z:.6g} mm, which counts"
+            )
         found.append((shaft, shaft.place(part, z, account)))
     return found
 
@@ -173,45 +168,40 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
     account = structure.account
     inner, outer = _sides(part, shafts, structure)
     name = names.of(part.name, "bearing", part.id)
-    both = inner is not None and outer is not None
-    address = f"{'couplings' if both else 'bearings'}.{name}"
-    if inner is None and outer is None:
+    seat = inner or outer
+    if seat is None:
         account.missing(part, "it must sit on a shaft, by a side relation with an inner_part or an outer_part")
         return None
-    seat = inner or outer
-    assert seat is not None
-    remark = str(part)
     designation = account.text(part, "catalogue_designation", "name", "designation", "bearing_designation")
-    table = Table(address, f"{remark}, {designation}" if designation and designation != part.name else remark)
+    remark = f"{part}, {designation}" if designation and designation != part.name else str(part)
     if inner is not None and outer is not None:
-        _add_ends(table, inner, outer)
+        table = _between(f"couplings.{name}", remark, inner, outer)
     else:
-        table.add("shaft", f'"{seat[0].name}"')
-        table.add("at", quantity(seat[1], "length"))
-    # Stiffness by direction; the comment says which of it the file did not give.
+        table = seat[0].table(f"bearings.{name}", remark, seat[1])
     radial = _given(part, ("radial_stiffness",), "stiffness", account)
     axial = _given(part, ("axial_stiffness",), "stiffness", account)
     tilt = _given(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
     takes_radial = account.truth(part, "radial_force_absorption") is not False
     takes_axial = _takes_axial(part, designation, structure)
+    guessed = (0.0, 0.0, "")
+    if (takes_radial and radial is None) or (takes_axial and axial is None):
+        guessed = _guess(part, seat, designation, structure)
+    one_way = account.text(part, "axial_force_absorption") in ("positive", "negative")
+    of_radial = "2 tan²(alpha) of the radial one" + ("; held both ways, not one" if one_way else "")
+    # Stiffness by direction; the comment says which of it the file did not give.
     stiffness: dict[str, str] = {}
     reasons: list[str] = []
-    if (takes_radial and radial is None) or (takes_axial and axial is None):
-        guess_radial, guess_axial, words = _guess(part, seat, designation, structure)
-        if takes_radial and radial is None:
-            radial = float(f"{guess_radial:.3g}")
-            reasons.append(
-                account.assume(f"{address}.stiffness.radial", f"{radial:.3g} N/m", f"none in the file: {words}")
-            )
-        if takes_axial and axial is None:
-            axial = float(f"{guess_axial:.3g}")
-            one_way = account.text(part, "axial_force_absorption") in ("positive", "negative")
-            why = "none in the file: 2 tan²(alpha) of the radial one" + ("; held both ways, not one" if one_way else "")
-            reasons.append(account.assume(f"{address}.stiffness.axial", f"{axial:.3g} N/m", why))
-    if takes_radial and radial is not None:
-        stiffness["radial"] = quantity(radial, "stiffness")
-    if takes_axial and axial is not None:
-        stiffness["axial"] = quantity(axial, "stiffness")
+    for key, takes, value, guess, why in (
+        ("radial", takes_radial, radial, guessed[0], guessed[2]),
+        ("axial", takes_axial, axial, guessed[1], of_radial),
+    ):
+        if not takes:
+            continue
+        if value is None:
+            value = float(f"{guess:.3g}")
+            address = f"{table.header}.stiffness.{key}"
+            reasons.append(account.assume(address, f"{value:.3g} N/m", f"none in the file: {why}"))
+        stiffness[key] = quantity(value, "stiffness")
     if tilt is not None:
         stiffness["tilt"] = quantity(tilt, "rotational_stiffness")
     if not stiffness:
@@ -221,11 +211,13 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
     return table
 
 
-def _add_ends(table: Table, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> None:
-    table.add("from_shaft", f'"{first[0].name}"')
-    table.add("from_at", quantity(first[1], "length"))
-    table.add("to_shaft", f'"{second[0].name}"')
-    table.add("to_at", quantity(second[1], "length"))
+def _between(header: str, remark: str, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> Table:
+    """The table of what joins two shafts."""
+    table = Table(header, remark)
+    for side, (shaft, z) in (("from", first), ("to", second)):
+        table.add(f"{side}_shaft", text(shaft.name))
+        table.add(f"{side}_at", quantity(z, "length"))
+    return table
 
 
 def _given(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:
@@ -248,11 +240,9 @@ def _takes_axial(part: Component, designation: str, structure: Structure) -> boo
     rows = structure.parts_of(part, "rolling_bearing_row")
     words = [account.text(part, "axial_force_absorption")]
     words += [account.text(row_, "axial_force_absorption_of_row") for row_ in rows]
-    for said in words:
-        if said.lower() in _FREE_WORDS:
-            return False
-        if said.lower() in _HELD_WORDS:
-            return True
+    for word in map(str.lower, words):
+        if word in (*_FREE_WORDS, *_HELD_WORDS):
+            return word in _HELD_WORDS
     # Nothing said: what the kind of bearing does. Cylindrical rollers N and NU and needles move freely along the shaft.
     return _kind(part, designation, structure) == "ball" or "tapered" in account.text(part, "bearing_type")
 
@@ -267,12 +257,10 @@ def _kind(part: Component, designation: str, structure: Structure) -> str:
     if any(word in words for word in _ROLLER_WORDS):
         return "roller"
     letters = designation.upper().replace("NOT A CATALOGUE BEARING:", "").strip()
-    first_digit = next((letter for letter in letters if letter.isdigit()), "")
-    if letters.startswith(("N", "K", "HK", "RN")) or (
-        letters[:1].isdigit() and first_digit in "23" and len(letters) > 4
-    ):
+    first = letters[:1]
+    if letters.startswith(("N", "K", "HK", "RN")) or (first in ("2", "3") and len(letters) > 4):
         return "roller"
-    return "ball" if first_digit in ("6", "7", "1") and letters[:1].isdigit() else "unknown"
+    return "ball" if first in ("6", "7", "1") else "unknown"
 
 
 def _guess(
@@ -281,13 +269,14 @@ def _guess(
     """Radial and axial stiffness in N/m and how they were come by."""
     account = structure.account
     kind = _kind(part, designation or part.name, structure)
-    if kind in ("plain", "unknown") and size_of_designation(designation or part.name) is None:
+    by_designation = size_of_designation(designation or part.name)
+    if kind in ("plain", "unknown") and by_designation is None:
         return _UNKNOWN, _UNKNOWN / 10.0, f"a placeholder of {_UNKNOWN:.0e} N/m for a bearing of unknown size and kind"
     bore = account.number(part, ("inner_diameter", "bore_diameter"), "length")
     outer = account.number(part, ("outer_diameter",), "length")
     sizes = [
         BearingSize(bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None,
-        size_of_designation(designation or part.name),
+        by_designation,
         size_of_designation(part.name),
     ]
     d = seat[0].diameter(seat[1])
@@ -311,33 +300,23 @@ def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], 
     if account.truth(part, "is_engaged") is False or account.truth(part, "is_closed") is False:
         account.left_out.append(f"{part}: it is open")
         return None
-    name = names.of(part.name, "coupling", part.id)
-    address = f"couplings.{name}"
-    table = Table(address, str(part))
-    _add_ends(table, inner, outer)
-    keys = (
-        ("radial", "stiffness", ("radial_stiffness",)),
-        ("axial", "stiffness", ("axial_stiffness",)),
-        ("tilt", "rotational_stiffness", ("bending_stiffness",)),
-        ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness")),
-    )
+    table = _between(f"couplings.{names.of(part.name, 'coupling', part.id)}", str(part), inner, outer)
     # A stub of steel, as long as thick, in place of what is rigid or not said: K = G I_p / d, E I / d, E A / d, 12 E I / d^3.
     d = min(inner[0].diameter(inner[1]), outer[0].diameter(outer[1]))
     inertia = math.pi * d**4 / 64.0
-    stub = {
-        "radial": 12.0 * 206e9 * inertia / d**3,
-        "axial": 206e9 * math.pi * d / 4.0,
-        "tilt": 206e9 * inertia / d,
-        "torsion": 79e9 * 2.0 * inertia / d,
-    }
+    reason = f"none in the file: a steel stub of {1e3 * d:.4g} mm, as long as thick"
     values = {}
     notes = []
-    for key, kind, attributes in keys:
+    for key, kind, attributes, stub in (
+        ("radial", "stiffness", ("radial_stiffness",), 12.0 * 206e9 * inertia / d**3),
+        ("axial", "stiffness", ("axial_stiffness",), 206e9 * math.pi * d / 4.0),
+        ("tilt", "rotational_stiffness", ("bending_stiffness",), 206e9 * inertia / d),
+        ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness"), 79e9 * 2.0 * inertia / d),
+    ):
         found = _given(part, attributes, kind, account)
         if found is None:
-            found = float(f"{stub[key]:.4g}")
-            reason = f"none in the file: a steel stub of {1e3 * d:.4g} mm, as long as thick"
-            notes.append(account.assume(f"{address}.stiffness.{key}", f"{found:.3g}", reason))
+            found = float(f"{stub:.4g}")
+            notes.append(account.assume(f"{table.header}.stiffness.{key}", f"{found:.3g}", reason))
         values[key] = quantity(found, kind)
     table.add("stiffness", row(**values), notes[0] if notes else "")
     return table

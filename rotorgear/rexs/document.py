@@ -26,6 +26,11 @@ class Component:
     name: str
     attributes: dict[str, Value] = field(default_factory=dict)
 
+    def given(self, name: str) -> Value | None:
+        """The value of an attribute; None where it is not there, or empty."""
+        value = self.attributes.get(name)
+        return None if value is None or value.raw in (None, "", []) else value
+
     def __str__(self) -> str:
         return f"{self.type} '{self.name}' (id {self.id})" if self.name else f"{self.type} (id {self.id})"
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from rotorgear.gears.geometry.geometry import involute
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
-from rotorgear.rexs.shafts import ShaftPart
+from rotorgear.rexs.shafts import CENTRE_DISTANCE, ShaftPart
 from rotorgear.rexs.structure import Pair, Structure
-from rotorgear.rexs.toml_text import Table, number, quantity
+from rotorgear.rexs.toml_text import Table, number, quantity, text
 
 # Attribute names over the versions.
 _SHIFT = ("profile_shift_coefficient", "addendum_modification_coefficient")
@@ -63,11 +63,10 @@ def read_gear(
 ) -> GearPart | None:
     """A gear with its data wherever the version keeps them; None, and problems on the account, where it can't be made."""
     account = structure.account
-    owner = structure.shaft_of(gear)
-    if owner is None or owner.id not in shafts:
+    shaft = shafts.get(structure.shaft_of(gear))
+    if shaft is None:
         account.missing(gear, "it must be on a shaft, by an assembly relation")
         return None
-    shaft = shafts[owner.id]
     data = structure.data_of(gear)
     comments: dict[str, str] = {}
     teeth = account.number(gear, ("number_of_teeth",), "ratio")
@@ -167,68 +166,55 @@ def shift_sum(first: GearPart, second: GearPart, distance: float) -> float | Non
 
 def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> tuple[GearPart, GearPart] | None:
     """Two gears of a stage with opposite hands and shifts that fit their axes; None where they can't mesh."""
+    stage = pair.stage
     if abs(first.module - second.module) > 1e-9 or abs(abs(first.helix_angle) - abs(second.helix_angle)) > 1e-6:
-        account.missing(pair.stage, "its two gears must have one normal module and one helix angle, and have not")
+        account.missing(stage, "its two gears must have one normal module and one helix angle, and have not")
         return None
     if abs(first.pressure_angle - second.pressure_angle) > 1e-6:
-        account.missing(pair.stage, "its two gears must have one normal pressure angle, and have not")
+        account.missing(stage, "its two gears must have one normal pressure angle, and have not")
         return None
     if first.helix_angle * second.helix_angle > _SPUR:
-        reason = f"both helix angles of {pair.stage} have one sign, and external gears have opposite hands"
+        reason = f"both helix angles of {stage} have one sign, and external gears have opposite hands"
         note = account.assume(f"gears.{second.name}.hand", "left" if second.helix_angle > 0.0 else "right", reason)
         second = replace(second, helix_angle=-second.helix_angle, comments={**second.comments, "hand": note})
-    axes = first.shaft.axis
-    other = second.shaft.axis
-    distance = math.hypot(axes.x - other.x, axes.y - other.y)
-    stated = account.number(pair.stage, ("center_distance", "centre_distance"), "length")
+    distance = math.hypot(first.shaft.axis.x - second.shaft.axis.x, first.shaft.axis.y - second.shaft.axis.y)
+    stated = account.number(stage, CENTRE_DISTANCE, "length")
     if stated is not None and abs(stated - distance) > 1e-5:
         account.warnings.append(
-            f"{pair.stage} states a centre distance of {1e3 * stated:.6g} mm; its shafts are {1e3 * distance:.6g} mm apart, "
+            f"{stage} states a centre distance of {1e3 * stated:.6g} mm; its shafts are {1e3 * distance:.6g} mm apart, "
             "which counts"
         )
     needed = shift_sum(first, second, distance) if distance > 0.0 else None
     if needed is None or abs(needed) > 3.0:
-        account.missing(
-            pair.stage, f"its shafts are {1e3 * distance:.6g} mm apart, where gears of this size can't mesh"
-        )
+        account.missing(stage, f"its shafts are {1e3 * distance:.6g} mm apart, where gears of this size can't mesh")
         return None
-    return _shifted(first, second, needed, pair, account)
 
+    # The profile shifts that are given, or what the centre distance leaves for those that are not.
+    def given(part: GearPart, shift: float, reason: str) -> GearPart:
+        note = account.assume(f"gears.{part.name}.profile_shift", f"{shift:.6g}", reason)
+        return replace(part, shift=shift, comments={**part.comments, "profile_shift": note})
 
-def _shifted(
-    first: GearPart, second: GearPart, needed: float, pair: Pair, account: Account
-) -> tuple[GearPart, GearPart] | None:
-    """Both gears with the profile shifts that are given, or what the centre distance leaves for those that are not."""
-
-    def given(part: GearPart, value: float, reason: str) -> GearPart:
-        note = account.assume(f"gears.{part.name}.profile_shift", f"{value:.6g}", reason)
-        return replace(part, shift=value, comments={**part.comments, "profile_shift": note})
-
+    rest = f"the file gives none: what the axes of {stage} need"
     if first.shift is None and second.shift is None:
-        half = needed / 2.0
-        reason = f"the file gives none: half of what the axes of {pair.stage} need"
-        return given(first, half, reason), given(second, half, reason)
+        reason = f"the file gives none: half of what the axes of {stage} need"
+        return given(first, needed / 2.0, reason), given(second, needed / 2.0, reason)
     if first.shift is None:
-        return given(
-            first, needed - (second.shift or 0.0), f"the file gives none: what the axes of {pair.stage} need"
-        ), second
+        return given(first, needed - (second.shift or 0.0), rest), second
     if second.shift is None:
-        return first, given(second, needed - first.shift, f"the file gives none: what the axes of {pair.stage} need")
+        return first, given(second, needed - first.shift, rest)
     off = needed - first.shift - second.shift
     # da_w is about m_n dx: near the reference distance a shift moves the axes by itself.
     if abs(off) <= _FIT:
         return first, second
+    total = first.shift + second.shift
     if abs(off) > _MENDED:
-        account.missing(
-            pair.stage,
-            f"profile shifts {first.shift:.6g} and {second.shift:.6g} sum to {first.shift + second.shift:.4g}, "
-            f"its axes need {needed:.4g}",
-        )
+        shifts = f"profile shifts {first.shift:.6g} and {second.shift:.6g} sum to {total:.4g}"
+        account.missing(stage, f"{shifts}, its axes need {needed:.4g}")
         return None
-    old = second.shift
-    reason = f"the file says {old:.6g}; with that the gears of {pair.stage} do not fit their axes"
-    account.warnings.append(f"gears.{second.name}.profile_shift: {reason}; {old + off:.6g} is written")
-    return first, given(second, old + off, reason)
+    reason = f"the file says {second.shift:.6g}; with that the gears of {stage} do not fit their axes"
+    mended = second.shift + off
+    account.warnings.append(f"gears.{second.name}.profile_shift: {reason}; {mended:.6g} is written")
+    return first, given(second, mended, reason)
 
 
 def gear_table(part: GearPart, structure: Structure, material: tuple[str, str]) -> Table:
@@ -236,33 +222,34 @@ def gear_table(part: GearPart, structure: Structure, material: tuple[str, str]) 
     account = structure.account
     table = Table(f"gears.{part.name}", str(part.component))
     helical = abs(part.helix_angle) > _SPUR
-    note = part.comments.get
-    table.add("shaft", f'"{part.shaft.name}"')
-    table.add("at", quantity(part.z, "length"), note("at", ""))
-    table.add("kind", '"helical"' if helical else '"spur"', note("kind", ""))
-    table.add("teeth", str(part.teeth))
-    table.add("normal_module", quantity(part.module, "length"))
-    table.add("normal_pressure_angle", quantity(part.pressure_angle, "angle"), note("normal_pressure_angle", ""))
+    comments = {"hand": "a positive helix angle is a right hand, ISO 21771"} | part.comments
+    values = {
+        "shaft": text(part.shaft.name),
+        "at": quantity(part.z, "length"),
+        "kind": '"helical"' if helical else '"spur"',
+        "teeth": str(part.teeth),
+        "normal_module": quantity(part.module, "length"),
+        "normal_pressure_angle": quantity(part.pressure_angle, "angle"),
+    }
     if helical:
-        hand = "right" if part.helix_angle > 0.0 else "left"
-        table.add("helix_angle", quantity(abs(part.helix_angle), "angle"))
-        table.add("hand", f'"{hand}"', note("hand", "a positive helix angle is a right hand, ISO 21771"))
-    table.add("width", quantity(part.width, "length"))
+        values["helix_angle"] = quantity(abs(part.helix_angle), "angle")
+        values["hand"] = '"right"' if part.helix_angle > 0.0 else '"left"'
+    values["width"] = quantity(part.width, "length")
     if part.shift is None:
         reason = "the file gives none, and no stage asks for one"
-        table.add("profile_shift", "0", account.assume(f"gears.{part.name}.profile_shift", "0", reason))
-    else:
-        table.add("profile_shift", number(part.shift), note("profile_shift", ""))
+        comments["profile_shift"] = account.assume(f"{table.header}.profile_shift", "0", reason)
+    values["profile_shift"] = number(part.shift or 0.0)
+    for key, value in values.items():
+        table.add(key, value, comments.get(key, ""))
     _add_heights(table, part, structure.data_of(part.component), account)
     if part.shaft.diameter(part.z) >= part.reference_diameter:
         # A pinion whose shaft is drawn with the diameter of its teeth: its mass is that of the section.
         reason = "the section of the shaft there is as large as the reference circle and has the mass"
-        comment = account.assume(f"gears.{part.name}.mass", "0 kg", reason)
-        table.add("mass", quantity(0.0, "mass"), comment)
-        table.add("polar_inertia", quantity(0.0, "inertia"), comment)
-        table.add("diametral_inertia", quantity(0.0, "inertia"), comment)
+        comment = account.assume(f"{table.header}.mass", "0 kg", reason)
+        for key, kind in (("mass", "mass"), ("polar_inertia", "inertia"), ("diametral_inertia", "inertia")):
+            table.add(key, quantity(0.0, kind), comment)
     if material[0]:
-        table.add("material", f'"{material[0]}"', material[1])
+        table.add("material", text(material[0]), material[1])
     return table
 
 
@@ -271,17 +258,16 @@ def _add_heights(table: Table, part: GearPart, data: list[Component], account: A
     tip = _first(data, ("tip_diameter",), "length", account)
     d = part.reference_diameter
     shift = part.shift or 0.0
-    if tip is not None:
-        addendum = ((tip - d) / 2.0) / part.module - shift
-        if _ADDENDUM[0] <= addendum <= _ADDENDUM[1] or _ADDENDUM[0] <= addendum + shift <= _ADDENDUM[1]:
-            table.add("tip_diameter", quantity(tip, "length"))
-        else:
-            reason = f"the file says {1e3 * tip:.6g} mm, which no tooth of this gear has: by ISO 53"
-            value = f"{1e3 * (d + 2.0 * part.module * (1.0 + shift)):.6g} mm"
-            table.add("addendum_factor", "1", account.assume(f"gears.{part.name}.tip_diameter", value, reason))
-    else:
+    addendum = math.nan if tip is None else ((tip - d) / 2.0) / part.module - shift
+    if tip is None:
         reason = "the file gives no tip diameter: addendum of one module, ISO 53"
-        table.add("addendum_factor", "1", account.assume(f"gears.{part.name}.addendum_factor", "1", reason))
+        table.add("addendum_factor", "1", account.assume(f"{table.header}.addendum_factor", "1", reason))
+    elif any(_ADDENDUM[0] <= height <= _ADDENDUM[1] for height in (addendum, addendum + shift)):
+        table.add("tip_diameter", quantity(tip, "length"))
+    else:
+        reason = f"the file says {1e3 * tip:.6g} mm, which no tooth of this gear has: by ISO 53"
+        value = f"{1e3 * (d + 2.0 * part.module * (1.0 + shift)):.6g} mm"
+        table.add("addendum_factor", "1", account.assume(f"{table.header}.tip_diameter", value, reason))
     root = _first(data, ("root_diameter", "root_circle_diameter"), "length", account)
     dedendum = None if root is None else (d - root) / (2.0 * part.module) + shift
     comment = "from the root diameter of the file"
@@ -295,18 +281,18 @@ def _add_heights(table: Table, part: GearPart, data: list[Component], account: A
                     dedendum = found
                     comment = f"addendum of {tool}"
     if dedendum is None:
+        dedendum = 1.25
         reason = "the file gives no root diameter and no tool: dedendum of 1.25 modules, ISO 53"
-        table.add("dedendum_factor", "1.25", account.assume(f"gears.{part.name}.dedendum_factor", "1.25", reason))
-    else:
-        table.add("dedendum_factor", number(dedendum), comment)
+        comment = account.assume(f"{table.header}.dedendum_factor", "1.25", reason)
+    table.add("dedendum_factor", number(dedendum), comment)
 
 
 def mesh_table(pair: Pair, name: str, first: GearPart, second: GearPart, account: Account) -> Table:
     """The table of a mesh; the gear with fewer teeth is its pinion."""
     pinion, wheel = (first, second) if first.teeth <= second.teeth else (second, first)
     table = Table(f"meshes.{name}", str(pair.stage))
-    table.add("pinion", f'"{pinion.name}"')
-    table.add("gear", f'"{wheel.name}"')
+    table.add("pinion", text(pinion.name))
+    table.add("gear", text(wheel.name))
     reason = "REXS has no mesh stiffness: c_gamma_alpha of ISO 6336-1 by the geometry"
-    table.add("stiffness", '"iso"', account.assume(f"meshes.{name}.stiffness", "iso", reason))
+    table.add("stiffness", '"iso"', account.assume(f"{table.header}.stiffness", "iso", reason))
     return table

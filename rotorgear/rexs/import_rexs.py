@@ -17,7 +17,7 @@ from rotorgear.rexs.document import Document
 from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read_gear
 from rotorgear.rexs.loads import MASS, load_tables, mass_tables
 from rotorgear.rexs.read import read_document
-from rotorgear.rexs.shafts import Materials, ShaftPart, read_pieces, shaft_axes, shaft_table
+from rotorgear.rexs.shafts import Materials, ShaftPart, read_sections, shaft_axes, shaft_table
 from rotorgear.rexs.structure import GEAR, Structure, refuse_other_kinds
 from rotorgear.rexs.toml_text import Names, Table, comment_line, text
 
@@ -127,16 +127,16 @@ def _with_load_case(
 def _tables(document: Document, version: tuple[int, int], account: Account) -> tuple[list[Table], dict[str, int]]:
     """All tables of the model file in its order, and how many parts of each kind there are."""
     structure = Structure(document, account)
-    materials = Materials(structure, account)
+    materials = Materials(structure)
     pairs = structure.pairs()
     axes = shaft_axes(structure, pairs)
     shafts: dict[str, ShaftPart] = {}
     names = Names()
     for component in document.of_type("shaft"):
-        pieces = read_pieces(component, structure, account)
-        if component.id in axes and pieces:
+        sections = read_sections(component, structure)
+        if component.id in axes and sections:
             name = names.of(component.name, "shaft", component.id)
-            shafts[component.id] = ShaftPart(component, name, axes[component.id], pieces)
+            shafts[component.id] = ShaftPart(component, name, axes[component.id], sections)
     if not document.of_type("shaft"):
         account.missing("the file", "a gearbox needs at least one component of the type shaft")
     shaft_tables = [shaft_table(part, *materials.of(part.component, f"shafts.{part.name}")) for part in shafts.values()]

@@ -15,7 +15,7 @@ from rotorgear.rexs.document import Component
 from rotorgear.rexs.gears import GearPart
 from rotorgear.rexs.shafts import ShaftPart
 from rotorgear.rexs.structure import Structure
-from rotorgear.rexs.toml_text import Names, Table, quantity
+from rotorgear.rexs.toml_text import Names, Table, quantity, text
 
 MASS = "additional_mass"
 # Moments about v and w that differ by less are those of a body of revolution, written with few digits.
@@ -29,8 +29,7 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
     A mass m with its centre off the axis by e has the unbalance m e.
     """
     account = structure.account
-    owner = structure.shaft_of(part)
-    shaft = shafts.get(owner.id) if owner is not None else None
+    shaft = shafts.get(structure.shaft_of(part))
     if shaft is None:
         account.left_out.append(f"{part}: it is on no shaft")
         return []
@@ -40,19 +39,20 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
         return []
     u = account.number(part, ("u_coordinate_on_shaft",), "length")
     frame = structure.frame(part)
-    if u is None and frame is None:
+    if u is not None:
+        along = shaft.axis.z(u)
+    elif frame is not None:
+        along = float(structure.place(frame)[0])
+    else:
         account.missing(part, "its place is needed: u_coordinate_on_shaft or support_vector")
         return []
-    along = shaft.axis.z(u or 0.0) if u is not None or frame is None else float(structure.place(frame)[0])
     z = shaft.place(part, along, account)
     tables = [_body(part, names.of(part.name, "mass", part.id), shaft, z, mass, structure)]
     eccentricity = account.numbers(part, "eccentricity_vector", "length", 3)
     if eccentricity is not None and math.hypot(*eccentricity[1:]) > 0.0:
         axes = frame.axes if frame is not None else structure.model.axes
         _, x, y = structure.model.axes @ (np.array(eccentricity) @ axes)
-        table = Table(f"unbalances.{tables[0].header.partition('.')[2]}", f"eccentricity of {part}")
-        table.add("shaft", f'"{shaft.name}"')
-        table.add("at", quantity(z, "length"))
+        table = shaft.table(f"unbalances.{tables[0].header.partition('.')[2]}", f"eccentricity of {part}", z)
         table.add("magnitude", quantity(mass * math.hypot(x, y), "unbalance"))
         table.add("phase", quantity(math.atan2(y, x), "angle"))
         tables.append(table)
@@ -65,18 +65,15 @@ def _body(part: Component, name: str, shaft: ShaftPart, z: float, mass: float, s
     polar = max(moments[0], 0.0)
     across = [max(value, 0.0) for value in moments[1:]]
     kind = "disks" if polar or any(across) else "point_masses"
-    table = Table(f"{kind}.{name}", str(part))
-    table.add("shaft", f'"{shaft.name}"')
-    table.add("at", quantity(z, "length"))
+    table = shaft.table(f"{kind}.{name}", str(part), z)
     table.add("mass", quantity(mass, "mass"))
     if kind == "point_masses":
         return table
     diametral = 0.5 * sum(across)
     comment = ""
     if abs(across[0] - across[1]) > _ALIKE * diametral:
-        reason = (
-            f"a shaft's bodies are round here; the file says {across[0]:.6g} about v, {across[1]:.6g} kg m^2 about w"
-        )
+        said = f"{across[0]:.6g} about v, {across[1]:.6g} kg m^2 about w"
+        reason = f"a shaft's bodies are round here; the file says {said}"
         comment = account.assume(f"{table.header}.diametral_inertia", f"{diametral:.6g} kg m^2", reason)
     table.add("polar_inertia", quantity(polar, "inertia"))
     table.add("diametral_inertia", quantity(diametral, "inertia"), comment)
@@ -97,15 +94,11 @@ def ratios(start: str, meshes: list[tuple[GearPart, GearPart]], joined: list[tup
     """Speed of each shaft over that of one, by number: -z_1/z_2 over a mesh, 1 over a coupling; only what the train reaches."""
     found = {start: 1.0}
     steps = [(a.shaft.component.id, b.shaft.component.id, -a.teeth / b.teeth) for a, b in meshes]
+    steps += [(a, b, 1.0) for a, b in joined]
     steps += [(b, a, 1.0 / ratio) for a, b, ratio in steps]
-    steps += [(a, b, 1.0) for pair in joined for a, b in (pair, pair[::-1])]
-    grown = True
-    while grown:
-        grown = False
-        for a, b, ratio in steps:
-            if a in found and b not in found:
-                found[b] = found[a] * ratio
-                grown = True
+    while step := next(((a, b, ratio) for a, b, ratio in steps if a in found and b not in found), None):
+        a, b, ratio = step
+        found[b] = found[a] * ratio
     return found
 
 
@@ -121,11 +114,10 @@ def load_tables(
     loads = []
     torques = []
     for load in structure.document.of_type("external_load"):
-        owner = structure.shaft_of(load)
-        if owner is None or owner.id not in shafts:
+        shaft = shafts.get(structure.shaft_of(load))
+        if shaft is None:
             account.left_out.append(f"{load}: it is on no shaft")
             continue
-        shaft = shafts[owner.id]
         u = account.number(load, ("u_coordinate_on_shaft",), "length")
         z = shaft.place(load, shaft.start if u is None else shaft.axis.z(u), account)
         torque = account.number(load, ("torque_around_u_axis", "torque_acting_on_shaft_u", "torque"), "torque")
@@ -143,75 +135,68 @@ def load_tables(
         if own:
             defines = account.truth(shaft.component, "defines_speed")
             known.append((0 if defines else 1 if defines is None else 2, own * shaft.axis.sense, shaft))
-    _, speed, reference = min(known, key=lambda item: item[0], default=(0, None, None))
-    torques = [item for item in torques if item.torque is not None] + [item for item in torques if item.torque is None]
+    _, speed, reference = min(known, key=lambda item: item[0], default=(0, 0.0, None))
+    torques.sort(key=lambda item: item.torque is None)
     if reference is None and not torques:
         account.assume("operation", "none", "the file gives neither speed nor torque: analyses are at standstill")
         return None, loads
-    return _operation(speed, reference, torques, meshes, joined, names, account, loads)
+    start = reference or torques[0].shaft
+    ratio = ratios(start.component.id, meshes, joined)
+    operation, of_torques = _operation(speed, start, torques, ratio, names, account)
+    return operation, [*loads, *of_torques]
 
 
 def _operation(
-    speed: float | None,
-    reference: ShaftPart | None,
-    torques: list[Torque],
-    meshes: list[tuple[GearPart, GearPart]],
-    joined: list[tuple[str, str]],
-    names: Names,
-    account: Account,
-    loads: list[Table],
-) -> tuple[Table | None, list[Table]]:
+    speed: float, start: ShaftPart, torques: list[Torque], ratio: dict[str, float], names: Names, account: Account
+) -> tuple[Table, list[Table]]:
     """Which torque drives follows from its power: torque times the speed of its shaft."""
-    start = reference or torques[0].shaft
-    found = ratios(start.component.id, meshes, joined)
-    if speed is None:
-        speed = 0.0
     sense = speed or (torques[0].torque or 1.0)
     power = {
-        item.component.id: item.torque * found[item.shaft.component.id] * sense
+        item.component.id: item.torque * ratio[item.shaft.component.id] * sense
         for item in torques
-        if item.torque is not None and item.shaft.component.id in found
+        if item.torque is not None and item.shaft.component.id in ratio
     }
     drives = [item for item in torques if power.get(item.component.id, 0.0) > 0.0]
     takes = [item for item in torques if power.get(item.component.id, 0.0) < 0.0]
-    open_ends = [item for item in torques if item.torque is None and item.shaft.component.id in found]
+    open_ends = [item for item in torques if item.torque is None and item.shaft.component.id in ratio]
     table = Table("operation")
     if not drives and takes and open_ends:
         # Only what is taken is known: the other end drives.
         drives = open_ends[:1]
         open_ends = open_ends[1:]
     driver = drives[0].shaft if drives else start
-    table.add("input_shaft", f'"{driver.name}"')
-    own = speed * found.get(driver.component.id, 1.0)
+    table.add("input_shaft", text(driver.name))
+    own = speed * ratio.get(driver.component.id, 1.0)
     if speed:
         note = "" if driver is start else f"{start.component} defines {speed * 30.0 / math.pi:.6g} rpm"
         table.add("speed", quantity(own, "speed"), note)
     else:
         account.assume("operation.speed", "none", "the file gives no rotational speed: analyses are at standstill")
-    known_ends = [*drives, *takes, *open_ends]
-    if not drives or len(known_ends) < 2 or not speed:
+    if not drives or len([*drives, *takes, *open_ends]) < 2 or not speed:
         if torques:
             account.left_out.append("torques: a speed, a torque that drives and one that takes are needed")
-        return table, loads
+        return table, []
     if len(open_ends) > 1:
         reason = f"{len(open_ends)} ends have no torque: {open_ends[0].component} takes the rest"
         account.assume("loads", "0 N m", reason)
         open_ends = open_ends[:1]
     all_given = not open_ends and all(item.torque is not None for item in drives)
+    loads = []
     for kind, items in (("input", drives), ("output", [*takes, *open_ends])):
         for item in items:
-            entry = Table(f"loads.{names.of(item.component.name, 'load', item.component.id)}", str(item.component))
-            entry.add("shaft", f'"{item.shaft.name}"')
-            entry.add("kind", f'"{kind}"')
-            entry.add("at", quantity(item.z, "length"))
-            if item.torque is not None and not (all_given and kind == "output" and item is takes[-1]):
-                entry.add("torque", quantity(abs(item.torque), "torque"))
-            elif item.torque is not None:
-                given = abs(item.torque)
-                note = account.assume(
-                    f"{entry.header}.torque", "the rest", f"the file says {given:.6g} N m; torques must balance"
-                )
-                entry.rows[-1] = (*entry.rows[-1][:2], note)
+            name = names.of(item.component.name, "load", item.component.id)
+            entry = Table(f"loads.{name}", str(item.component))
+            given = "" if item.torque is None else quantity(abs(item.torque), "torque")
+            rest = ""
+            if item.torque is not None and all_given and kind == "output" and item is takes[-1]:
+                reason = f"the file says {abs(item.torque):.6g} N m; torques must balance"
+                rest = account.assume(f"{entry.header}.torque", "the rest", reason)
+                given = ""
+            entry.add("shaft", text(item.shaft.name))
+            entry.add("kind", text(kind))
+            entry.add("at", quantity(item.z, "length"), rest)
+            if given:
+                entry.add("torque", given)
             loads.append(entry)
     return table, loads
 
@@ -220,18 +205,14 @@ def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, acco
     """A force, and a moment across the shaft, which the file gives along u, v, w of the shaft."""
     rotation = np.array(shaft.axis.rotation)
     force = rotation @ [account.number(load, (f"force_{axis}_direction",), "force") or 0.0 for axis in "uvw"]
-    moment = rotation @ [
-        0.0,
-        *(account.number(load, (f"torque_around_{axis}_axis",), "torque") or 0.0 for axis in "vw"),
-    ]
+    across = [account.number(load, (f"torque_around_{axis}_axis",), "torque") or 0.0 for axis in "vw"]
+    moment = rotation @ [0.0, *across]
     if not np.any(force) and not np.any(moment):
         return None
     # What the turning of axes leaves of a zero is none.
     force = np.where(np.abs(force) < _ROUNDING * np.abs(force).max(), 0.0, force)
     moment = np.where(np.abs(moment) < _ROUNDING * np.abs(moment).max(), 0.0, moment)
-    table = Table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load))
-    table.add("shaft", f'"{shaft.name}"')
-    table.add("at", quantity(z, "length"))
+    table = shaft.table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load), z)
     for key, kind, (along, x, y) in (("force", "force", force), ("moment", "torque", moment)):
         if any((along, x, y)):
             table.add(key, "[" + ", ".join(quantity(value, kind) for value in (x, y, along)) + "]")

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.structure import Axis, Frame, Pair, Structure, axis_in
-from rotorgear.rexs.toml_text import Names, Table, number, quantity, row
+from rotorgear.rexs.toml_text import Names, Table, number, quantity, row, text
 
 # Ends of neighbouring sections closer than this are one place: files write differences of rounded coordinates.
 _SAME_PLACE = 1e-6
 # Decimals of a place in m that follows from an angle: the sine of 180 deg is no length.
 _PICOMETRE = 12
+CENTRE_DISTANCE = ("center_distance", "centre_distance")
 # Numbers of a material: key, attributes, kind, bounds beyond which a value is a placeholder, the value of steel and its text.
 _OF_STEEL = (
     (
@@ -30,7 +31,7 @@ _OF_STEEL = (
 
 
 @dataclass(frozen=True)
-class Piece:
+class Section:
     """A section of a shaft from u to u + length: outer and inner diameters at its begin and its end, all in m."""
 
     u: float
@@ -44,10 +45,6 @@ class Piece:
         """u of its end."""
         return self.u + self.length
 
-    def reversed(self) -> Piece:
-        """The same section looked at from the other end."""
-        return replace(self, outer=self.outer[::-1], inner=self.inner[::-1])
-
 
 @dataclass(frozen=True)
 class ShaftPart:
@@ -56,86 +53,93 @@ class ShaftPart:
     component: Component
     name: str
     axis: Axis
-    pieces: tuple[Piece, ...]
+    sections: tuple[Section, ...]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest z."""
+        low, high = sorted((self.axis.z(self.sections[0].u), self.axis.z(self.sections[-1].end)))
+        return low, high
 
     @property
     def start(self) -> float:
         """Smallest z."""
-        return min(self.axis.z(self.pieces[0].u), self.axis.z(self.pieces[-1].end))
-
-    @property
-    def end(self) -> float:
-        """Largest z."""
-        return max(self.axis.z(self.pieces[0].u), self.axis.z(self.pieces[-1].end))
+        return self.ends[0]
 
     def diameter(self, z: float) -> float:
         """The largest outer diameter of the sections at a place."""
         u = (z - self.axis.origin) * self.axis.sense
-        there = [max(p.outer) for p in self.pieces if p.u - _SAME_PLACE <= u <= p.end + _SAME_PLACE]
-        return max(there, default=max(self.pieces[-1].outer))
+        there = [max(p.outer) for p in self.sections if p.u - _SAME_PLACE <= u <= p.end + _SAME_PLACE]
+        return max(there, default=max(self.sections[-1].outer))
+
+    def table(self, header: str, remark: str, z: float) -> Table:
+        """The table of a part that is on the shaft at z."""
+        return Table(header, remark, [("shaft", text(self.name), ""), ("at", quantity(z, "length"), "")])
 
     def place(self, component: Component, z: float, account: Account) -> float:
         """A z that lies on the shaft; outside by no more than rounding it is drawn in, else a problem."""
-        inside = min(max(z, self.start), self.end)
+        low, high = self.ends
+        inside = min(max(z, low), high)
         if abs(inside - z) > _SAME_PLACE:
-            account.missing(
-                component,
-                f"its place, {1e3 * (z - self.axis.origin) * self.axis.sense:.6g} mm from the origin of {self.component}, "
-                "lies off that shaft's sections",
-            )
+            u = f"{1e3 * (z - self.axis.origin) * self.axis.sense:.6g} mm"
+            off = f"its place, {u} from the origin of {self.component}, lies off that shaft's sections"
+            account.missing(component, off)
         return inside
 
 
-def read_pieces(shaft: Component, structure: Structure, account: Account) -> tuple[Piece, ...]:
+def read_sections(shaft: Component, structure: Structure) -> tuple[Section, ...]:
     """The sections of a shaft by rising u, without gaps; a gap is filled with the section before it, and told."""
-    pieces: list[Piece] = []
-    before = 0.0
-    sections = structure.parts_of(shaft, "shaft_section")
-    for section in sections or [shaft]:
-        length = account.number(section, ("length",), "length")
-        begin = account.number(section, ("outer_diameter_begin", "outer_diameter", "outer_diameter_end"), "length")
+    account = structure.account
+    given: list[Section] = []
+    u = 0.0
+    components = structure.parts_of(shaft, "shaft_section")
+    for part in components or [shaft]:
+        length = account.number(part, ("length",), "length")
+        begin = account.number(part, ("outer_diameter_begin", "outer_diameter", "outer_diameter_end"), "length")
         if length is None or begin is None:
             what = "length and outer_diameter_begin"
             account.missing(
-                section, f"{what} are needed" if sections else f"a shaft needs shaft_section parts with {what}"
+                part, f"{what} are needed" if components else f"a shaft needs shaft_section parts with {what}"
             )
             continue
         if length < -_SAME_PLACE:
-            account.missing(section, "its length must not be negative")
+            account.missing(part, "its length must not be negative")
         if length <= _SAME_PLACE:
             continue
-        u = account.number(section, ("u_coordinate_on_shaft",), "length") if sections else 0.0
-        u = before if u is None else u
-        end = account.number(section, ("outer_diameter_end",), "length") or begin
-        bore = account.number(section, ("inner_diameter_begin", "inner_diameter"), "length") or 0.0
-        bore_end = account.number(section, ("inner_diameter_end",), "length")
+        stated = account.number(part, ("u_coordinate_on_shaft",), "length") if components else 0.0
+        # A section without a place follows the one before it.
+        u = u if stated is None else stated
+        end = account.number(part, ("outer_diameter_end",), "length") or begin
+        bore = account.number(part, ("inner_diameter_begin", "inner_diameter"), "length") or 0.0
+        bore_end = account.number(part, ("inner_diameter_end",), "length")
         inner = (bore, bore if bore_end is None else bore_end)
-        before = u + length
         if begin <= inner[0] or end <= inner[1] or min(inner) < 0.0:
-            account.missing(section, "outer diameters must be larger than inner ones, and both not negative")
-            continue
-        pieces.append(Piece(u, length, (begin, end), inner))
-    pieces.sort(key=lambda piece: piece.u)
-    out: list[Piece] = []
-    for piece in pieces:
-        gap = piece.u - out[-1].end if out else 0.0
+            account.missing(part, "outer diameters must be larger than inner ones, and both not negative")
+        else:
+            given.append(Section(u, length, (begin, end), inner))
+        u += length
+    given.sort(key=lambda section: section.u)
+    sections = given[:1]
+    for section in given[1:]:
+        last = sections[-1]
+        gap = section.u - last.end
+        range_of_u = f"from u = {1e3 * last.end:.6g} to {1e3 * section.u:.6g} mm"
         if gap < -_SAME_PLACE:
-            account.missing(shaft, f"its sections overlap at u = {1e3 * piece.u:.6g} mm; they must follow one another")
-        if gap > sum(item.length for item in pieces):
             account.missing(
-                shaft,
-                f"its sections must follow one another; there is none from u = {1e3 * out[-1].end:.6g} to {1e3 * piece.u:.6g} mm",
+                shaft, f"its sections overlap at u = {1e3 * section.u:.6g} mm; they must follow one another"
             )
+            sections.append(section)
+            continue
+        if gap > sum(item.length for item in given):
+            account.missing(shaft, f"its sections must follow one another; there is none {range_of_u}")
         elif gap > _SAME_PLACE:
-            last = out[-1]
-            reason = f"no section of {shaft} from u = {1e3 * last.end:.6g} to {1e3 * piece.u:.6g} mm: as the one before"
+            reason = f"no section of {shaft} {range_of_u}: as the one before"
             sizes = f"{1e3 * last.outer[1]:.6g} mm"
             remark = account.assume("shafts.sections.outer_diameter", sizes, reason)
-            out.append(Piece(last.end, gap, (last.outer[1],) * 2, (last.inner[1],) * 2, remark))
-        out.append(
-            replace(piece, u=out[-1].end, length=piece.end - out[-1].end) if out and gap >= -_SAME_PLACE else piece
-        )
-    return tuple(out)
+            sections.append(Section(last.end, gap, (last.outer[1],) * 2, (last.inner[1],) * 2, remark))
+        start = sections[-1].end
+        sections.append(replace(section, u=start, length=section.end - start))
+    return tuple(sections)
 
 
 def shaft_axes(structure: Structure, pairs: list[Pair]) -> dict[str, Axis]:
@@ -155,9 +159,7 @@ def shaft_axes(structure: Structure, pairs: list[Pair]) -> dict[str, Axis]:
         if shaft.id in placed:
             axis = axis_in(placed[shaft.id], structure.model)
             if axis is None:
-                account.missing(
-                    shaft, "its axis is not parallel to that of the first shaft; all shafts must be parallel"
-                )
+                account.missing(shaft, "its axis must be parallel to that of the first shaft, and is not")
             axes[shaft.id] = axis or Axis(0.0, 0.0, 0.0, 1)
     if shafts and not axes:
         axes[shafts[0].id] = Axis(0.0, 0.0, 0.0, 1)
@@ -178,18 +180,15 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair]) -
         rest = []
         for pair in waiting:
             owners = [structure.shaft_of(gear) for gear in pair.members]
-            known = [owner is not None and owner.id in axes for owner in owners]
-            if all(known) or None in owners:
+            known = [owner in axes for owner in owners]
+            if all(known) or "" in owners:
                 continue
             if not any(known):
                 rest.append(pair)
                 continue
             k = known.index(True)
-            old = owners[k]
-            new = owners[1 - k]
-            assert old is not None
-            assert new is not None
-            a = account.number(pair.stage, ("center_distance", "centre_distance"), "length")
+            new = structure.document.components[owners[1 - k]]
+            a = account.number(pair.stage, CENTRE_DISTANCE, "length")
             if not a or a < 0.0:
                 continue
             phi = account.number(pair.stage, ("rotating_angle_around_neg_u_axis",), "angle")
@@ -198,15 +197,14 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair]) -
                 phi = math.pi / 2.0
                 where = f"{new} has no support_vector, {pair.stage} no angle: beside the other shaft, faces aligned"
             turn = 1.0 if k == 0 else -1.0
-            base = axes[old.id]
+            base = axes[owners[k]]
             places = [account.number(gear, ("u_coordinate_on_shaft",), "length") or 0.0 for gear in pair.members]
             shift = places[k] - places[1 - k]
             x = round(base.x + turn * a * math.sin(phi), _PICOMETRE)
             y = round(base.y + turn * a * math.cos(phi), _PICOMETRE)
             axes[new.id] = Axis(x, y, base.origin + base.sense * shift, base.sense, base.rotation)
-            account.assume(
-                f"shafts.{new.name or new.id}.position", f"x = {1e3 * x:.6g} mm, y = {1e3 * y:.6g} mm", where
-            )
+            shown = f"x = {1e3 * x:.6g} mm, y = {1e3 * y:.6g} mm"
+            account.assume(f"shafts.{new.name or new.id}.position", shown, where)
         if len(rest) == len(waiting):
             return
         waiting = rest
@@ -215,24 +213,23 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair]) -
 def shaft_table(part: ShaftPart, material: str, comment: str) -> Table:
     """The table of a shaft."""
     table = Table(f"shafts.{part.name}", str(part.component))
-    position = f"[{quantity(part.axis.x, 'length')}, {quantity(part.axis.y, 'length')}]"
-    table.add("position", position)
-    table.add(
-        "start", quantity(part.start, "length"), "" if part.axis.sense > 0 else "u of the file runs against z here"
-    )
+    forward = part.axis.sense > 0
+    table.add("position", f"[{quantity(part.axis.x, 'length')}, {quantity(part.axis.y, 'length')}]")
+    table.add("start", quantity(part.start, "length"), "" if forward else "u of the file runs against z here")
     if material:
-        table.add("material", f'"{material}"', comment)
-    pieces = part.pieces if part.axis.sense > 0 else tuple(piece.reversed() for piece in part.pieces[::-1])
+        table.add("material", text(material), comment)
     lines = ["["]
-    for piece in pieces:
-        values = {"length": quantity(piece.length, "length"), "outer_diameter": quantity(piece.outer[0], "length")}
-        if piece.outer[1] != piece.outer[0]:
-            values["outer_diameter_end"] = quantity(piece.outer[1], "length")
-        if piece.inner[0] or piece.inner[1]:
-            values["bore"] = quantity(piece.inner[0], "length")
-        if piece.inner[1] != piece.inner[0]:
-            values["bore_end"] = quantity(piece.inner[1], "length")
-        lines.append(f"    {row(**values)}," + (f"  # {piece.remark}" if piece.remark else ""))
+    for section in part.sections if forward else part.sections[::-1]:
+        # Both ends from left to right.
+        outer, inner = (ends if forward else ends[::-1] for ends in (section.outer, section.inner))
+        values = {"length": quantity(section.length, "length"), "outer_diameter": quantity(outer[0], "length")}
+        if outer[1] != outer[0]:
+            values["outer_diameter_end"] = quantity(outer[1], "length")
+        if inner[0] or inner[1]:
+            values["bore"] = quantity(inner[0], "length")
+        if inner[1] != inner[0]:
+            values["bore_end"] = quantity(inner[1], "length")
+        lines.append(f"    {row(**values)}," + (f"  # {section.remark}" if section.remark else ""))
     table.add("sections", "\n".join([*lines, "]"]))
     return table
 
@@ -240,28 +237,26 @@ def shaft_table(part: ShaftPart, material: str, comment: str) -> Table:
 class Materials:
     """Tables of the materials that shafts and gears refer to, each written once."""
 
-    def __init__(self, structure: Structure, account: Account) -> None:
+    def __init__(self, structure: Structure) -> None:
         self.structure = structure
-        self.account = account
         self.tables: list[Table] = []
         self._names = Names()
         self._known: dict[str, str] = {}
 
     def of(self, owner: Component, address: str) -> tuple[str, str]:
         """Name of a part's material and a comment; "" where it is steel of the library."""
-        material = self.structure.referenced(owner, "material")
+        structure = self.structure
+        parts = [owner, *structure.parts_of(owner, "shaft_section")]
+        material = next(filter(None, (structure.referenced(part, "material") for part in parts)), None)
         if material is None:
-            for section in self.structure.parts_of(owner, "shaft_section"):
-                material = material or self.structure.referenced(section, "material")
-        if material is None:
-            return "steel", self.account.assume(f"{address}.material", "steel", "the file names no material")
+            return "steel", structure.account.assume(f"{address}.material", "steel", "the file names no material")
         if material.id not in self._known:
             self._known[material.id] = self._written(material)
         return self._known[material.id], ""
 
     def _written(self, material: Component) -> str:
-        account = self.account
-        name = self._names.of(f"{material.name or 'material'}", "material", material.id)
+        account = self.structure.account
+        name = self._names.of(material.name or "material", "material", material.id)
         table = Table(f"materials.{name}", str(material))
         for key, names, kind, bounds, steel, shown in _OF_STEEL:
             value = account.number(material, names, kind)

@@ -6,6 +6,8 @@ v = w x u. Model files have z along u, x along v and y along w of the gear unit.
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +26,9 @@ class Frame:
 
     origin: np.ndarray
     axes: np.ndarray
+
+
+SPACE = Frame(np.zeros(3), np.eye(3))
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,7 @@ _REFUSED = {
     "general_stage": "a stage of no stated kind",
     "general_gear": "a gear of no stated kind",
 }
-# Parts that carry no stiffness or mass of their own here: data of other parts, results, lubrication, strength.
+# Parts that carry no stiffness or mass of their own here: data of other parts, results, lubrication.
 _SILENT = {
     "gear_unit",
     "gear_casing",
@@ -87,18 +92,9 @@ _SILENT = {
     STAGE,
     "root",
     "load_spectrum",
-    "flank_geometry",
-    "cylindrical_gear_flank",
-    "stage_gear_data",
-    "cylindrical_stage_gear_data",
-    "cylindrical_gear_manufacturing_settings",
-    "rack_shaped_tool",
-    "gear_shaped_tool",
-    "cylindrical_gear_tool",
-    "tool",
     "general_stage_data",
 }
-# Words in the type of a component that holds contact or strength data of a part and is none itself.
+# Words in the type of a component that holds contact, strength or tool data of a part and is none itself.
 _DATA_WORDS = (
     "data_set",
     "flank",
@@ -111,16 +107,16 @@ _DATA_WORDS = (
     "notch",
     "groove",
 )
-_ON_SHAFT = ("assembly", "ordered_assembly", "side", "connection", "coupling")
-_DATA = (
-    "flank",
-    "stage_gear_data",
-    "reference",
-    "ordered_reference",
-    "manufacturing_step",
-    "assembly",
-    "ordered_assembly",
+_ASSEMBLIES = ("assembly", "ordered_assembly")
+_REFERENCES = ("reference", "ordered_reference")
+_ON_SHAFT = (*_ASSEMBLIES, "side", "connection", "coupling")
+_TOOLS = (
+    "rack_shaped_tool",
+    "cylindrical_gear_tool",
+    "gear_shaped_tool",
+    "cylindrical_gear_manufacturing_settings",
 )
+_DATA = (*_REFERENCES, *_ASSEMBLIES, "flank", "stage_gear_data", "manufacturing_step")
 
 
 @dataclass(frozen=True)
@@ -165,8 +161,8 @@ class Structure:
         self.document = document
         self.account = account
         self._frames: dict[str, Frame | None] = {}
-        units = [frame for unit in document.of_type("gear_unit") if (frame := self.frame(unit)) is not None]
-        self.model = units[0] if units else Frame(np.zeros(3), np.eye(3))
+        frames = map(self.frame, document.of_type("gear_unit"))
+        self.model = next(filter(None, frames), SPACE)
 
     def frame(self, component: Component, below: tuple[str, ...] = ()) -> Frame | None:
         """Frame of a component; None where the file gives it no support vector."""
@@ -178,18 +174,17 @@ class Structure:
         if support is not None:
             base = None
             number = account.text(component, "reference_component_for_position").removesuffix(".0")
+            reference = self.document.components.get(number)
             # A gear unit refers to itself, and its frame is that of the space.
-            if number and number != component.id and number not in below:
-                reference = self.document.components.get(number)
-                base = self.frame(reference, (*below, component.id)) if reference is not None else None
-            base = base or Frame(np.zeros(3), np.eye(3))
+            if reference is not None and number != component.id and number not in below:
+                base = self.frame(reference, (*below, component.id))
+            base = base or SPACE
             axes = np.eye(3)
             u = np.array(account.numbers(component, "u_axis_vector", "length", 3) or (1e-3, 0.0, 0.0))
             w = np.array(account.numbers(component, "w_axis_vector", "length", 3) or (0.0, 0.0, 1e-3))
             if np.linalg.norm(u) and np.linalg.norm(np.cross(w, u)):
                 u = u / np.linalg.norm(u)
-                v = np.cross(w, u)
-                v = v / np.linalg.norm(v)
+                v = np.cross(w, u) / np.linalg.norm(np.cross(w, u))
                 axes = np.array([u, v, np.cross(u, v)])
             else:
                 account.missing(component, "its axes u and w must be two directions, and are not")
@@ -201,60 +196,44 @@ class Structure:
         """z, x and y (3,) of the origin of a frame in the model, in m."""
         return np.asarray(self.model.axes @ (frame.origin - self.model.origin))
 
-    def shaft_of(self, component: Component, *roles: str) -> Component | None:
-        """The shaft that a component is on (in some of the roles of that shaft, where they are given)."""
+    def shaft_of(self, component: Component, *roles: str) -> str:
+        """Number of the shaft that a component is on (in some of the roles of that shaft, where they are given), or ""."""
         wanted = roles or ("assembly", "inner_part", "shaft", "side_1")
         for relation in self.document.relations:
             if relation.type in _ON_SHAFT and component.id in (number for _, number in relation.refs):
-                for number in relation.at(*wanted):
-                    owner = self.document.components.get(number)
-                    if owner is not None and owner.type == "shaft" and owner.id != component.id:
-                        return owner
-        return None
+                for owner in self._known(relation.at(*wanted)):
+                    if owner.type == "shaft" and owner.id != component.id:
+                        return owner.id
+        return ""
+
+    def _known(self, numbers: Iterable[str]) -> list[Component]:
+        """The components that the file has of some numbers."""
+        return [self.document.components[number] for number in numbers if number in self.document.components]
+
+    def _linked(self, owner: Component, types: tuple[str, ...], role: str, other: str) -> list[Component]:
+        """The components in one role of relations of some types in which a component has another role."""
+        relations = [one for one in self.document.relations if one.type in types and owner.id in one.at(role)]
+        return self._known(dict.fromkeys(number for relation in relations for number in relation.at(other)))
 
     def parts_of(self, owner: Component, *types: str) -> list[Component]:
         """The components of some types that a component is put together from, in the order of the file."""
-        found: dict[str, Component] = {}
-        for relation in self.document.relations:
-            if relation.type in ("assembly", "ordered_assembly") and owner.id in relation.at("assembly"):
-                for number in relation.at("part"):
-                    part = self.document.components.get(number)
-                    if part is not None and part.type in types:
-                        found[part.id] = part
-        return list(found.values())
+        return [part for part in self._linked(owner, _ASSEMBLIES, "assembly", "part") if part.type in types]
 
     def referenced(self, owner: Component, kind: str) -> Component | None:
         """The component of a type that another one refers to."""
-        for relation in self.document.relations:
-            if relation.type in ("reference", "ordered_reference") and owner.id in relation.at("origin"):
-                for number in relation.at("referenced"):
-                    found = self.document.components.get(number)
-                    if found is not None and found.type == kind:
-                        return found
-        return None
+        found = self._linked(owner, _REFERENCES, "origin", "referenced")
+        return next((component for component in found if component.type == kind), None)
 
     def data_of(self, gear: Component) -> list[Component]:
         """The gear and all that holds data of it, nearest first: versions moved attributes between these components."""
         near: dict[str, Component] = {gear.id: gear}
         for relation in self.document.relations:
-            numbers = [number for _, number in relation.refs]
-            if relation.type in _DATA and gear.id in numbers:
-                for role, number in relation.refs:
-                    found = self.document.components.get(number)
-                    if (
-                        found is None
-                        or role in ("stage", "assembly", "origin")
-                        or found.type in ("material", "shaft", STAGE)
-                    ):
-                        continue
-                    near[number] = found
+            if relation.type in _DATA and gear.id in (number for _, number in relation.refs):
+                others = [number for role, number in relation.refs if role not in ("stage", "assembly", "origin")]
+                known = self._known(others)
+                near |= {part.id: part for part in known if part.type not in ("material", "shaft", STAGE)}
         for component in list(near.values())[1:]:
-            for kind in (
-                "rack_shaped_tool",
-                "cylindrical_gear_tool",
-                "gear_shaped_tool",
-                "cylindrical_gear_manufacturing_settings",
-            ):
+            for kind in _TOOLS:
                 tool = self.referenced(component, kind)
                 if tool is not None:
                     near[tool.id] = tool
@@ -268,7 +247,7 @@ class Structure:
             for relation in self.document.relations:
                 if relation.type in ("stage", "stage_gear_data") and stage.id in relation.at("stage"):
                     gears |= dict.fromkeys(relation.at("gear_1", "gear_2", "gear"))
-            known = [self.document.components[number] for number in gears if number in self.document.components]
+            known = self._known(gears)
             if len(known) == 2 and all(gear.type == GEAR for gear in known):
                 found.append(Pair(stage, (known[0], known[1])))
             else:
@@ -277,11 +256,7 @@ class Structure:
 
     def note_left_out(self, taken: set[str]) -> None:
         """Name the parts of the file that the model has not."""
-        counts: dict[str, int] = {}
-        for component in self.document.components.values():
-            kind = component.type
-            if component.id in taken or kind in _SILENT or any(word in kind for word in _DATA_WORDS):
-                continue
-            counts[kind] = counts.get(kind, 0) + 1
-        for kind, count in counts.items():
-            self.account.left_out.append(f"{count} x {kind}" if count > 1 else kind)
+        kinds = Counter(part.type for part in self.document.components.values() if part.id not in taken)
+        for kind, count in kinds.items():
+            if kind not in _SILENT and not any(word in kind for word in _DATA_WORDS):
+                self.account.left_out.append(f"{count} x {kind}" if count > 1 else kind)

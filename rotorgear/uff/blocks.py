@@ -119,12 +119,9 @@ def _text_lines(cursor: _Cursor, number: int, name: str) -> tuple[str, ...]:
 def _binary(cursor: _Cursor, identifier: str, name: str) -> Block:
     """A set 58b with the cursor behind its identifier."""
     first = cursor.line
-    fields = identifier[identifier.lower().index("b") + 1 :].split()
-    numbers = [int(field) if field.isdigit() else 0 for field in fields]
-    stated = numbers[3] if len(numbers) > 3 else 0
+    _, _, count, stated = binary_fields(identifier)
     # Fields that have run together say any number.
-    count = numbers[2] if len(numbers) > 2 and 0 < numbers[2] <= _MOST_HEADER_LINES else _HEADER_LINES
-    lines = tuple(cursor.next_line() for _ in range(count))
+    lines = tuple(cursor.next_line() for _ in range(count if 0 < count <= _MOST_HEADER_LINES else _HEADER_LINES))
     start = cursor.at
     for size in (stated, *sizes_of(lines)):
         closing = _CLOSES.match(cursor.data, start + size) if 0 < size < len(cursor.data) else None
@@ -138,6 +135,12 @@ def _binary(cursor: _Cursor, identifier: str, name: str) -> Block:
     cursor.at = closing.end()
     cursor.line += 1
     return Block(name, 58, first, identifier, lines, cursor.data[start : start + size])
+
+
+def binary_fields(identifier: str) -> list[int]:
+    """Byte order, format of numbers, lines of the header and bytes of a set 58b; 0 for what its identifier does not say."""
+    fields = identifier[identifier.lower().index("b") + 1 :].split()
+    return ([int(field) if field.isdigit() else 0 for field in fields] + [0, 0, 0, 0])[:4]
 
 
 def sizes_of(lines: tuple[str, ...]) -> tuple[int, ...]:

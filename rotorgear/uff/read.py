@@ -18,24 +18,19 @@ from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
 from rotorgear.quantity import GRAVITY
-from rotorgear.uff.blocks import Block, blocks_of, columns, is_whole, numbers_in, numbers_of, sizes_of, whole_in
-from rotorgear.uff.datasets import (
-    ACCELERATION,
-    DISPLACEMENT,
-    FORCE,
-    FREQUENCY,
-    REACTION,
-    VELOCITY,
-    Function,
-    Nodes,
-    Shape,
-    TraceLine,
-    Units,
-    UniversalFile,
+from rotorgear.uff import datasets
+from rotorgear.uff.blocks import (
+    Block,
+    binary_fields,
+    blocks_of,
+    columns,
+    is_whole,
+    numbers_in,
+    numbers_of,
+    sizes_of,
+    whole_in,
 )
 
-_REAL_SINGLE = 2
-_REAL_DOUBLE = 4
 _COMPLEX = (5, 6)
 _KINDS = (2, 4, 5, 6)
 _LITTLE = 1
@@ -62,11 +57,11 @@ _LABELS = {
     "in/s": 0.0254,
     "in/s2": 0.0254,
 }
-_LENGTHS = (DISPLACEMENT, VELOCITY, ACCELERATION)
-_FORCES = (REACTION, FORCE)
+_LENGTHS = (datasets.DISPLACEMENT, datasets.VELOCITY, datasets.ACCELERATION)
+_FORCES = (datasets.REACTION, datasets.FORCE)
 
 
-def read_function(block: Block, units: Units) -> tuple[Function, list[str]]:
+def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Function, list[str]]:
     """Return a function in SI, and sentences on what had to be guessed.
 
     Raises:
@@ -104,24 +99,14 @@ def read_function(block: Block, units: Units) -> tuple[Function, list[str]]:
         of_file = 1.0 / units.length if quantity in _LENGTHS else 1.0 / units.force if quantity in _FORCES else 1.0
         known = _LABELS.get(plain)
         if label and known is None and quantity in (*_LENGTHS, *_FORCES):
-            notes.append(
-                f"the unit '{label}' of a function is not known: its values are taken in the units of the file"
-            )
+            notes.append(f"the unit '{label}' of a function is not known: its values are taken in the file's units")
         factor *= (of_file if known is None else known) ** power
-    found = Function(
-        kind,
-        response,
-        reference,
-        at * (1000.0 if axes[0][0] == FREQUENCY and axes[0][1].lower() == "khz" else 1.0),
-        values * factor,
-        axes[0][0],
-        axes[1][0],
-        axes[2][0],
-        z,
-        tuple(text.strip() for text in lines[:5]),
-        axes[3][0],
-    )
-    return found, notes
+    x_type, numerator, denominator, z_type = (quantity for quantity, _ in axes)
+    if x_type == datasets.FREQUENCY and axes[0][1].lower() == "khz":
+        at = 1000.0 * at
+    names = tuple(text.strip() for text in lines[:5])
+    y = values * factor
+    return datasets.Function(kind, response, reference, at, y, x_type, numerator, denominator, z, names, z_type), notes
 
 
 # Function type, ids, then name, node and direction of response and of reference, where the names have no blanks.
@@ -165,12 +150,11 @@ def _parted(
     if parts == 2 and even and len(numbers) == count:
         count //= 2
         rest = numbers[:0]
+    said = f"the header says {count} values, but"
     if len(numbers) < count * each:
-        raise block.problem(
-            12, f"the header says {count} values, but only {len(numbers) // each} are there: the set is cut"
-        )
+        raise block.problem(12, f"{said} only {len(numbers) // each} are there: the set is cut")
     if len(rest) > 6 or rest.any():
-        raise block.problem(12, f"the header says {count} values, but {len(numbers) / each:g} are there")
+        raise block.problem(12, f"{said} {len(numbers) / each:g} are there")
     table = numbers[: count * each].reshape(count, each)
     values = table[:, -2] + 1j * table[:, -1] if parts == 2 else table[:, -1]
     return (None if even else table[:, 0].copy()), values
@@ -181,20 +165,21 @@ def _from_bytes(
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | NDArray[np.complex128], list[str]]:
     """The same from binary data, with sentences on what had to be guessed."""
     data = block.data or b""
-    fields = block.identifier[block.identifier.lower().index("b") + 1 :].split()
-    order, form = ([int(field) if field.isdigit() else 0 for field in fields[:2]] + [0, 0])[:2]
+    order, form, *_ = binary_fields(block.identifier)
     if form in _OTHER_FLOATS:
         raise block.problem(0, f"IEEE numbers (format 2); the file has those of {_OTHER_FLOATS[form]}")
     size = "f8" if kind in (4, 6) else "f4"
     parts = 2 if kind in _COMPLEX else 1
     each = parts * int(size[1])
     sizes = sizes_of(block.lines)
-    length = next((size_ for size_ in sizes if len(data.rstrip(b"\r\n")) <= size_ <= len(data)), None)
-    length = length or next((size_ for size_ in sizes if size_ <= len(data)), None)
-    if length is None:
-        if not sizes:
-            raise block.problem(7, "ordinate type, number of values and spacing as whole numbers")
+    if not sizes:
+        raise block.problem(7, "ordinate type, number of values and spacing as whole numbers")
+    # The size that fills the data, but for line ends, before one that leaves a rest.
+    least = len(data.rstrip(b"\r\n"))
+    fitting = sorted((size_ for size_ in sizes if size_ <= len(data)), key=lambda size_: size_ < least)
+    if not fitting:
         raise block.problem(11, f"{min(sizes)} bytes by the header, but only {len(data)} are there: the set is cut")
+    length = fitting[0]
     found = []
     for mark in ("<", ">") if order == _LITTLE else (">", "<"):
         layout = np.dtype([("y", mark + size, (parts,))])
@@ -236,7 +221,7 @@ _CODES = {
 }
 
 
-def read_universal(path: str | Path) -> UniversalFile:
+def read_universal(path: str | Path) -> datasets.UniversalFile:
     """Return what a universal file holds.
 
     Args:
@@ -258,12 +243,12 @@ def read_universal(path: str | Path) -> UniversalFile:
     if not blocks:
         raise ModelError([Problem(str(file), "", "a universal file (UFF) with datasets", "it has none")], str(file))
     stated = [_units(block) for block in blocks if block.number == 164]
-    units = stated[0] if stated else Units()
+    units = stated[0] if stated else datasets.Units()
     notes = [] if stated else [f"{file.name} states no units (dataset 164): taken as m and N"]
-    nodes: list[Nodes] = []
-    lines: list[TraceLine] = []
-    shapes: list[Shape] = []
-    functions: list[Function] = []
+    nodes: list[datasets.Nodes] = []
+    lines: list[datasets.TraceLine] = []
+    shapes: list[datasets.Shape] = []
+    functions: list[datasets.Function] = []
     others: Counter[int] = Counter()
     for block in blocks:
         match block.number:
@@ -281,18 +266,12 @@ def read_universal(path: str | Path) -> UniversalFile:
                 notes += unsure
             case number:
                 others[number] += 1
-    return UniversalFile(
-        units,
-        _joined(nodes, file.name),
-        tuple(lines),
-        tuple(shapes),
-        tuple(functions),
-        dict(others),
-        tuple(dict.fromkeys(notes)),
-    )
+    whole = _joined(nodes, file.name)
+    told = tuple(dict.fromkeys(notes))
+    return datasets.UniversalFile(units, whole, tuple(lines), tuple(shapes), tuple(functions), dict(others), told)
 
 
-def _units(block: Block) -> Units:
+def _units(block: Block) -> datasets.Units:
     if len(block.lines) < 2:
         raise block.problem(0, "a units code, and factors of length and force")
     code, description = columns(block.lines[0], (10, 20))
@@ -304,16 +283,13 @@ def _units(block: Block) -> Units:
     known = _CODES.get(int(code))
     if known and not np.allclose(given, known, rtol=0.01):
         # One of the two is wrong, and nobody here can tell which: a thousand times is not to be guessed.
-        raise block.problem(
-            2,
-            f"the factors {known[0]:g} and {known[1]:g} that units code {code} means; correct one of the two, or make it 9 "
-            "(the user's own)",
-            f"{given[0]:g} and {given[1]:g}",
-        )
-    return Units(*given, description, int(code))
+        meant = f"the factors {known[0]:g} and {known[1]:g} that units code {code} means"
+        remedy = "correct one of the two, or make it 9 (the user's own)"
+        raise block.problem(2, f"{meant}; {remedy}", f"{given[0]:g} and {given[1]:g}")
+    return datasets.Units(*given, description, int(code))
 
 
-def _nodes(block: Block, units: Units) -> Nodes:
+def _nodes(block: Block, units: datasets.Units) -> datasets.Nodes:
     """Datasets 15, a line a node, and 2411, two lines a node."""
     rows = [numbers_in(text, block, k) for k, text in enumerate(block.lines, start=1) if text.strip()]
     if block.number == 2411:
@@ -332,28 +308,23 @@ def _nodes(block: Block, units: Units) -> Nodes:
     if not all(map(is_whole, table[:, :3].ravel())):
         raise block.problem(0, "whole numbers of nodes, coordinate systems and colours")
     whole = table[:, :3].astype(int)
-    return Nodes(whole[:, 0], table[:, 3:] / units.length, whole[:, 1], whole[:, 2])
+    return datasets.Nodes(whole[:, 0], table[:, 3:] / units.length, whole[:, 1], whole[:, 2])
 
 
-def _joined(nodes: list[Nodes], file: str) -> Nodes | None:
+def _joined(nodes: list[datasets.Nodes], file: str) -> datasets.Nodes | None:
     if not nodes:
         return None
-    found = Nodes(
-        np.concatenate([part.numbers for part in nodes]),
-        np.concatenate([part.positions for part in nodes]),
-        np.concatenate([part.systems for part in nodes]),
-        np.concatenate([part.colours for part in nodes]),
-    )
-    numbers, first = np.unique(found.numbers, return_index=True)
-    for number in numbers:
-        places = found.positions[found.numbers == number]
-        if np.ptp(places, axis=0).max() > 0.0:
-            raise ModelError([Problem(f"{file}: node {number}", "", "one place; it has several")], file)
+    found = datasets.Nodes(*map(np.concatenate, zip(*(vars(part).values() for part in nodes), strict=True)))
+    _, first, which = np.unique(found.numbers, return_index=True, return_inverse=True)
+    elsewhere = np.flatnonzero((found.positions != found.positions[first[which]]).any(axis=1))
+    if len(elsewhere):
+        number = found.numbers[elsewhere].min()
+        raise ModelError([Problem(f"{file}: node {number}", "", "one place; it has several")], file)
     keep = np.sort(first)
-    return Nodes(found.numbers[keep], found.positions[keep], found.systems[keep], found.colours[keep])
+    return datasets.Nodes(*(column[keep] for column in vars(found).values()))
 
 
-def _line(block: Block) -> TraceLine:
+def _line(block: Block) -> datasets.TraceLine:
     if len(block.lines) < 2:
         raise block.problem(0, "number and name of a trace line, and its nodes")
     number, count = whole_in(block.lines[0], block, 1, 2)[:2]
@@ -364,10 +335,10 @@ def _line(block: Block) -> TraceLine:
     nodes = numbers.astype(int)
     if len(nodes) < count:
         raise block.problem(3, f"{count} nodes of the trace line, {len(nodes)} are there: the set is cut")
-    return TraceLine(number, block.lines[1].strip(), nodes[:count])
+    return datasets.TraceLine(number, block.lines[1].strip(), nodes[:count])
 
 
-def _shape(block: Block) -> Shape:
+def _shape(block: Block) -> datasets.Shape:
     lines = block.lines
     if len(lines) < 8:
         raise block.problem(0, "eight header lines of a shape, and rows of nodes: the set is cut")
@@ -378,28 +349,19 @@ def _shape(block: Block) -> Shape:
     facts = numbers_in(lines[7], block, 8)
     eigenvalue = None
     if analysis == _NORMAL:
-        frequency = facts[0] if facts else math.nan
-        damping = facts[2] if len(facts) > 2 else 0.0
+        frequency, _, damping = [*facts[:3], *(math.nan, 0.0, 0.0)[len(facts) :]]
     elif analysis in _COMPLEX_MODES and len(facts) > 1:
-        eigenvalue = complex(facts[0], facts[1])
-        size = abs(eigenvalue)
-        frequency = size / (2.0 * math.pi)
-        damping = -eigenvalue.real / size if size > 0.0 else 0.0
+        eigenvalue = complex(*facts[:2])
+        frequency = abs(eigenvalue) / (2.0 * math.pi)
+        damping = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
     else:
         raise block.problem(6, "a normal (2) or complex (3, 7) mode", f"analysis type {analysis}")
     nodes, values = _node_values(lines[8:], each * (2 if kind == 5 else 1), block)
     if kind == 5:
         values = values[:, 0::2] + 1j * values[:, 1::2]
-    return Shape(
-        frequency,
-        damping,
-        eigenvalue,
-        nodes,
-        values[:, :6] if each >= 6 else values[:, :3],
-        tuple(text.strip() for text in lines[:5]),
-        mode,
-        data_type,
-    )
+    names = tuple(text.strip() for text in lines[:5])
+    motions = values[:, : 6 if each >= 6 else 3]
+    return datasets.Shape(frequency, damping, eigenvalue, nodes, motions, names, mode, data_type)
 
 
 def _node_values(lines: tuple[str, ...], each: int, block: Block) -> tuple[np.ndarray, np.ndarray]:
@@ -409,20 +371,20 @@ def _node_values(lines: tuple[str, ...], each: int, block: Block) -> tuple[np.nd
         raise block.problem(9, "the shape has no nodes")
     nodes: list[int] = []
     values: list[list[float]] = []
-    at = 0
-    while at < len(rows):
-        row, head = rows[at]
+    rest = iter(rows)
+    for row, head in rest:
         if len(head) != 1 or not is_whole(head[0]):
             raise block.problem(row, "the number of a node in a line of its own", f"{len(head)} numbers")
-        at += 1
+        node = int(head[0])
+        last = row
         found: list[float] = []
-        while len(found) < each and at < len(rows):
-            found += rows[at][1]
-            at += 1
+        while len(found) < each and (following := next(rest, None)):
+            last = following[0]
+            found += following[1]
         if len(found) != each:
-            raise block.problem(rows[at - 1][0], f"{each} values at node {int(head[0])}", str(len(found)))
-        if int(head[0]) in nodes and found != values[nodes.index(int(head[0]))]:
-            raise block.problem(row, "every node once", f"node {int(head[0])} again, with other values")
-        nodes.append(int(head[0]))
+            raise block.problem(last, f"{each} values at node {node}", str(len(found)))
+        if node in nodes and found != values[nodes.index(node)]:
+            raise block.problem(row, "every node once", f"node {node} again, with other values")
+        nodes.append(node)
         values.append(found)
     return np.array(nodes), np.array(values)
