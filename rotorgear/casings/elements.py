@@ -79,11 +79,15 @@ class Element(Reference):
     face_nodes: np.ndarray
     face: Reference
 
+    @property
+    def linear(self) -> Element:
+        """The linear element on the same corners."""
+        return element("tetra" if self.corners == 4 else "hexahedron")
 
-def _matched(nodes: np.ndarray, finite: Any) -> np.ndarray:
-    """For each node the function of scikit-fem that stands on its place."""
-    distance = np.linalg.norm(nodes[:, None, :] - np.asarray(finite.doflocs)[None, :, :], axis=2)
-    return np.asarray(np.argmin(distance, axis=1))
+
+def matched(places: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """For each place (m, d) the number of the other place that stands there."""
+    return np.asarray(np.argmin(np.linalg.norm(places[:, None] - others, axis=2), axis=1))
 
 
 @cache
@@ -108,13 +112,11 @@ def element(kind: str) -> Element:
         nodes += [corners[list(face)].mean(axis=0) for face in faces]
         nodes.append(corners.mean(axis=0))
     places = np.array(nodes)
-    on_edge = {frozenset(edge): len(corners) + number for number, edge in enumerate(edges)}
-    face_nodes = []
-    for number, face in enumerate(faces):
-        sides = [frozenset((face[i], face[(i + 1) % len(face)])) for i in range(len(face))]
-        rim = [on_edge[side] for side in sides if edges]
-        middle = [len(corners) + len(edges) + number] if kind == "hexahedron27" else []
-        face_nodes.append([*face, *rim, *middle])
+    # Nodes of a face by weights of its corners: these, the middles between them, and the middle of all.
+    unit = np.eye(len(faces[0]))
+    middles = 0.5 * (unit + np.roll(unit, -1, axis=0)) if edges else unit[:0]
+    centre = unit.mean(axis=0, keepdims=True) if kind == "hexahedron27" else unit[:0]
+    weights = np.vstack([unit, middles, centre])
     inside, on_face = {
         "tetra": (skfem.ElementTetP1, skfem.ElementTriP1),
         "tetra10": (skfem.ElementTetP2, skfem.ElementTriP2),
@@ -124,20 +126,18 @@ def element(kind: str) -> Element:
     }[kind]
     finite = inside()
     rim_corners = np.array([[0, 0], [1, 0], [0, 1]] if tet else [[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
-    middles = 0.5 * (rim_corners + np.roll(rim_corners, -1, axis=0)) if edges else rim_corners[:0]
-    centre = rim_corners.mean(axis=0, keepdims=True) if kind == "hexahedron27" else rim_corners[:0]
-    rim_nodes = np.vstack([rim_corners, middles, centre])
+    rim_nodes = weights @ rim_corners
     finite_face = on_face()
     return Element(
         nodes=places,
         skfem=finite,
-        order=_matched(places, finite),
+        order=matched(places, np.asarray(finite.doflocs)),
         kind=kind,
         corners=len(corners),
         edges=edges,
         faces=faces,
-        face_nodes=np.array(face_nodes),
-        face=Reference(rim_nodes, finite_face, _matched(rim_nodes, finite_face)),
+        face_nodes=np.array([matched(weights @ corners[list(face)], places) for face in faces]),
+        face=Reference(rim_nodes, finite_face, matched(rim_nodes, np.asarray(finite_face.doflocs))),
     )
 
 

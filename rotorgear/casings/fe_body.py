@@ -16,7 +16,7 @@ from rotorgear.casings.mechanisms import no_hinges, no_mechanism
 from rotorgear.casings.mesh_file import read_mesh
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
 from rotorgear.casings.reduced_body import mass_properties, node_dofs, rigid_motions
-from rotorgear.casings.settings import CasingSettings, MountSettings
+from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
 from rotorgear.casings.split import split
 from rotorgear.errors import AnalysisError
@@ -147,29 +147,22 @@ class FiniteElementBody:
             W[dofs, 6 * number : 6 * number + 6] = patch.weights(self.mesh.points)
         return W
 
-    @property
-    def mount_of_spring(self) -> np.ndarray:
-        """Number (m,) of the mount that each of the `springs` belongs to."""
-        counts = [len(_strong(mount)[0]) for mount in self.settings.mounts]
-        return np.repeat(np.arange(len(counts)), counts)
+    def springs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Directions (3p, m) of the springs of all mounts, W V, their flexibilities (m,), and the number (m,) of their mount.
 
-    def springs(self) -> tuple[np.ndarray, np.ndarray]:
-        """Directions (3p, m) of the springs of all mounts, W V, and their flexibilities (m,): D = V diag(1/C) Vᵀ."""
+        The mounts' stiffness is D = V diag(1/C) Vᵀ.
+        """
         W = self.mean_weights(self.mounts)
-        columns = []
+        columns = [W[:, :0]]
         flexibility: list[float] = []
+        mounts: list[int] = []
         for number, mount in enumerate(self.settings.mounts):
-            values, directions = _strong(mount)
-            columns.append(W[:, 6 * number : 6 * number + 6] @ directions)
-            flexibility += (1.0 / values).tolist()
-        return (np.hstack(columns) if columns else np.zeros((self.dofs, 0))), np.array(flexibility)
-
-
-def _strong(mount: MountSettings) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness (k,) of a mount along the directions (6, k) that it resists."""
-    values, directions = np.linalg.eigh(np.array(mount.stiffness))
-    strong = values > 1e-12 * max(values.max(), 1e-300)
-    return values[strong], directions[:, strong]
+            values, directions = np.linalg.eigh(np.array(mount.stiffness))
+            strong = values > 1e-12 * max(values.max(), 1e-300)  # along these it resists at all
+            columns.append(W[:, 6 * number : 6 * number + 6] @ directions[:, strong])
+            flexibility += (1.0 / values[strong]).tolist()
+            mounts += [number] * int(strong.sum())
+        return np.hstack(columns), np.array(flexibility), np.array(mounts, dtype=int)
 
 
 def finite_element_body(settings: CasingSettings, progress: Progress = silent) -> FiniteElementBody:
@@ -274,27 +267,20 @@ def _apart(body: FiniteElementBody) -> None:
     settings = body.settings
     seats = body.seats
     held = body.held
-    tied = body.joined.tied
+    held_sets = ", ".join(settings.held)
     for patch in body.mounts:
         if np.isin(patch.nodes, held).all():
-            raise AnalysisError(
-                f"{patch.name}: all its nodes are held ({', '.join(settings.held)}), which no spring moves: mount it or hold it."
-            )
+            raise AnalysisError(f"{patch.name}: all its nodes are held ({held_sets}): mount it or hold it.")
     for number, (name, _) in enumerate(settings.seats):
         nodes = seats[number].nodes
         address = f"{settings.address}.seats.{name}"
         if np.isin(nodes, held).any():
-            raise AnalysisError(
-                f"{address}: nodes of this seat are held ({', '.join(settings.held)}): a seat is free to move."
-            )
-        if settings.connection == "rigid" and np.isin(nodes, tied).any():
-            raise AnalysisError(
-                f"{address}: nodes of this seat are tied by a join, and the seat is rigid: leave a gap between them."
-            )
+            raise AnalysisError(f"{address}: nodes of this seat are held ({held_sets}): a seat is free to move.")
+        if settings.connection == "rigid" and np.isin(nodes, body.joined.tied).any():
+            why = "nodes of this seat are tied by a join, and the seat is rigid: leave a gap between them"
+            raise AnalysisError(f"{address}: {why}.")
         for other, (other_name, _) in enumerate(settings.seats[:number]):
             common = int(np.count_nonzero(np.isin(nodes, seats[other].nodes)))
             # Bearings side by side in one bore share the nodes between them, which mean motions may do.
             if common and (settings.connection == "rigid" or common == min(len(nodes), len(seats[other].nodes))):
-                raise AnalysisError(
-                    f"{address}: the seat shares nodes with the seat {other_name}: give each its own face."
-                )
+                raise AnalysisError(f"{address}: the seat shares nodes with {other_name}: give each its own face.")

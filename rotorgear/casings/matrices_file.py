@@ -72,9 +72,8 @@ def read_matrices(
         raise AnalysisError(f"{address}: {count} names of seats with {len(points)} reference points in '{path.name}'")
     for name, columns in (("mass", n), ("damping", n), ("weight", 3), ("rigid", 6)):
         if name in arrays and arrays[name].shape != (n, columns):
-            raise AnalysisError(
-                f"{address}: {name} is {arrays[name].shape} in '{path.name}', expected ({n}, {columns})"
-            )
+            expected = f"expected ({n}, {columns})"
+            raise AnalysisError(f"{address}: {name} is {arrays[name].shape} in '{path.name}', {expected}")
     if n < 6 * count:
         raise AnalysisError(f"{address}: {n} dofs in '{path.name}', but {count} seats have {6 * count}")
     try:
@@ -145,9 +144,7 @@ def _symmetric(arrays: Mapping[str, np.ndarray], name: str, address: str) -> np.
     """A symmetric matrix of finite numbers, (n, n)."""
     A = arrays[name]
     if A.ndim != 2 or A.shape[0] != A.shape[1] or A.dtype.kind not in "fiu":
-        raise AnalysisError(
-            f"{address}: {name} is an array {A.shape} of {A.dtype}, expected a square matrix of numbers"
-        )
+        raise AnalysisError(f"{address}: {name} is an array {A.shape} of {A.dtype}, not a square matrix of numbers")
     A = np.asarray(A, float)
     if not np.all(np.isfinite(A)):
         raise AnalysisError(f"{address}: {name} has entries that are no finite numbers")

@@ -27,7 +27,7 @@ import scipy.sparse as sp
 
 from rotorgear.casings.elements import Element
 from rotorgear.casings.fe_body import FiniteElementBody
-from rotorgear.casings.solid_mesh import STIFFNESS_DEGREE, element_corner_weights, in_space
+from rotorgear.casings.solid_mesh import STIFFNESS_DEGREE, in_space
 
 # Products of gradients of the functions of the next order, with some to spare, by the number of corners.
 _DEGREE = {4: 6, 8: 8}
@@ -107,7 +107,7 @@ def _quadratic_energies(fe: FiniteElementBody, shapes: np.ndarray) -> np.ndarray
     gradients = shape.shapes(places)[1]
     # Of displacements of the nodes those that are left when the corners' linear ones are taken off.
     beyond = np.eye(len(shape.nodes))
-    beyond[:, : shape.corners] -= element_corner_weights(shape)
+    beyond[:, : shape.corners] -= shape.linear.shapes(shape.nodes.T)[0].T
     lame, shear = fe.settings.material.lame
     u = shapes.reshape(len(mesh.points), 3, -1)
     energies = np.empty((len(mesh.cells), u.shape[2]))

@@ -75,7 +75,7 @@ def held_modes(
     space = fe.free_space(held=True, rigid_seats=False)
     rigid = rigid_motions(fe.mesh.points)[space.dofs][:, : 0 if len(fe.held) else 6]
     body = body or ElasticBody(fe.stiffness_in(space.shapes), rigid, f"{fe.settings.address}, held", progress)
-    springs, flexibility = fe.springs()
+    springs, flexibility, _ = fe.springs()
     return _modes(fe, space, Constrained(body, space.forces(springs), flexibility), count)
 
 
@@ -134,7 +134,7 @@ def reduce(
 
     progress(0.3, f"{name}: static shapes of {len(fe.seats)} seats")
     started = time.perf_counter()
-    springs, flexibility = fe.springs()
+    springs, flexibility, _ = fe.springs()
     seat_weights = fe.mean_weights(fe.seats) if mean else np.zeros((fe.dofs, 0))
     compliance = np.concatenate([np.zeros(seat_weights.shape[1]), flexibility])
     system = Constrained(body, space.forces(np.hstack([seat_weights, springs])), compliance)
@@ -266,7 +266,7 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
     they are. Damping of modes, C = M Φ Z Φᵀ M, acts like accelerations M⁻¹ C v of the coordinates.
     """
     R = rigid_motions(fe.mesh.points)
-    springs, flexibility = fe.springs()
+    springs, flexibility, mount_of = fe.springs()
     seats = fe.mean_weights(fe.seats) if fe.settings.connection == "mean" else np.zeros((fe.dofs, 0))
     mounts = fe.mean_weights(fe.mounts)
     dampers = la.block_diag(np.zeros((0, 0)), *(np.array(mount.damping) for mount in fe.settings.mounts))
@@ -276,7 +276,7 @@ def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis:
 
     def add(moved: np.ndarray, own: np.ndarray) -> None:
         """Of held nodes that are moved (3p, 6), and of mounts (mounts,) whose far ends are."""
-        drawn = own[fe.mount_of_spring][:, None] * (springs.T @ R)
+        drawn = own[mount_of][:, None] * (springs.T @ R)
         motions = np.vstack([-seats.T @ moved, drawn - springs.T @ moved])
         shapes = moved + space.shapes @ system.solve(-space.forces(fe.stiffness_times(moved)), motions)
         stretched = (springs.T @ shapes - drawn) / flexibility[:, None]

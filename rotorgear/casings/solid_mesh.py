@@ -7,13 +7,14 @@ codes that integrate |det J| then go on with wrong numbers. Here such elements a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from rotorgear.casings.elements import QUADRATIC, Element, element
+from rotorgear.casings.elements import QUADRATIC, Element, element, matched
 from rotorgear.casings.file_mesh import SOLID_BEGINNINGS, SOLIDS, FileMesh, NamedSet
 from rotorgear.errors import AnalysisError
 from rotorgear.quantity import millimetres
@@ -50,19 +51,16 @@ class SolidMesh:
     jacobian_low: float = 1.0
     straightened: tuple[int, ...] = ()
     raised: bool = False
-    _faces: list[np.ndarray] = field(default_factory=list, repr=False, compare=False)
 
     @property
     def element(self) -> Element:
         """The kind of its elements."""
         return element(self.kind)
 
-    @property
+    @cached_property
     def boundary(self) -> np.ndarray:
         """Nodes (f, m) of the outer faces, counter-clockwise seen from outside: corners first."""
-        if not self._faces:
-            self._faces.append(boundary_faces(self.cells, self.element))
-        return self._faces[0]
+        return boundary_faces(self.cells, self.element)
 
     def parts(self) -> np.ndarray:
         """Number (p,) of the connected part that each node belongs to."""
@@ -132,9 +130,7 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
         order = _order_by_position(points, cells, shape)
         if order is not None:
             cells = cells[:, order]
-            notes.append(
-                "The nodes on the edges were numbered in another order than the format's; they were put right."
-            )
+            notes.append("The nodes on the edges were numbered in another order than the format's; this was put right.")
     cells = _right_handed(points, cells, shape, address)
     _apart(cells, shape, address)
     mesh = SolidMesh(points, cells, shape.kind, sets, tuple(notes), raised=raised)
@@ -166,19 +162,7 @@ def _only_kind(found: FileMesh, address: str) -> str:
 
 def _straight(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
     """Places (e, k, 3) of the nodes if the edges were straight: those of the linear element on the corners."""
-    return np.einsum("kc,eci->eki", element_corner_weights(shape), points[cells[:, : shape.corners]])
-
-
-def element_corner_weights(shape: Element) -> np.ndarray:
-    """Weights (k, c) of the corners in the place of each node of a straight element."""
-    x, y, z = shape.nodes.T
-    if shape.corners == 4:
-        return np.stack([1.0 - x - y - z, x, y, z], axis=1)
-    corners = shape.nodes[:8]
-    factors = [
-        np.where(corners[:, i] == 1.0, shape.nodes[:, i : i + 1], 1.0 - shape.nodes[:, i : i + 1]) for i in range(3)
-    ]
-    return np.asarray(factors[0] * factors[1] * factors[2])
+    return np.einsum("ck,eci->eki", shape.linear.shapes(shape.nodes.T)[0], points[cells[:, : shape.corners]])
 
 
 def _order_by_position(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray | None:
@@ -198,19 +182,9 @@ def _order_by_position(points: np.ndarray, cells: np.ndarray, shape: Element) ->
 
 def _corner_volumes(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
     """det J (e,) of the straight elements in their middle."""
-    corners = points[cells[:, : shape.corners]]
-    if shape.corners == 4:
-        edges = corners[:, 1:] - corners[:, :1]
-    else:
-        edges = 0.25 * np.stack(
-            [
-                corners[:, [1, 2, 5, 6]].sum(axis=1) - corners[:, [0, 3, 4, 7]].sum(axis=1),
-                corners[:, [2, 3, 6, 7]].sum(axis=1) - corners[:, [0, 1, 4, 5]].sum(axis=1),
-                corners[:, 4:].sum(axis=1) - corners[:, :4].sum(axis=1),
-            ],
-            axis=1,
-        )
-    return np.linalg.det(edges)
+    middle = shape.linear.nodes.mean(axis=0)[:, None]
+    gradients = shape.linear.shapes(middle)[1][:, :, 0]
+    return np.linalg.det(np.einsum("eki,kj->eji", points[cells[:, : shape.corners]], gradients))
 
 
 def _right_handed(points: np.ndarray, cells: np.ndarray, shape: Element, address: str) -> np.ndarray:
@@ -225,8 +199,7 @@ def _right_handed(points: np.ndarray, cells: np.ndarray, shape: Element, address
         )
     if not np.any(volume < 0.0):
         return cells
-    mirrored = shape.nodes[:, [1, 0, 2]]
-    swap = np.argmin(np.linalg.norm(mirrored[:, None, :] - shape.nodes[None, :, :], axis=2), axis=1)
+    swap = matched(shape.nodes[:, [1, 0, 2]], shape.nodes)
     return np.where((volume < 0.0)[:, None], cells[:, swap], cells)
 
 
@@ -298,7 +271,7 @@ def _unfolded(mesh: SolidMesh, address: str) -> SolidMesh:
         "elements: the edges are curved too far, and the nodes in their middle were moved onto straight edges."
     )
     notes = (*mesh.notes, note)
-    return replace(mesh, points=points, jacobian_low=lowest, straightened=tuple(names), notes=notes, _faces=[])
+    return replace(mesh, points=points, jacobian_low=lowest, straightened=tuple(names), notes=notes)
 
 
 def _elements(numbers: np.ndarray) -> str:

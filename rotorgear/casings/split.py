@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.casings.elements import Element, element
+from rotorgear.casings.elements import Element, element, matched
 from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.solid_mesh import SolidMesh, boundary_faces
 
@@ -36,7 +36,7 @@ def split(mesh: SolidMesh) -> SolidMesh:
         parts = _tetrahedra(mesh)
     else:
         middles = 0.5 * (whole.nodes[:8, None] + whole.nodes[None, :8])
-        eighths = np.argmin(np.linalg.norm(middles[:, :, None] - whole.nodes, axis=3), axis=2)
+        eighths = matched(middles.reshape(-1, 3), whole.nodes).reshape(8, 8)
         parts = np.broadcast_to(eighths, (len(vertices), 8, 8))
     corners = np.take_along_axis(vertices, parts.reshape(len(vertices), -1), axis=1).reshape(-1, shape.corners)
     local = parts.reshape(corners.shape)
@@ -69,7 +69,7 @@ def split(mesh: SolidMesh) -> SolidMesh:
     sets = {
         name: NamedSet(np.flatnonzero(np.concatenate(flags)), faces_of_sets[name]) for name, flags in members.items()
     }
-    return replace(mesh, points=np.vstack(places), cells=np.hstack(columns), sets=sets, straightened=(), _faces=[])
+    return replace(mesh, points=np.vstack(places), cells=np.hstack(columns), sets=sets, straightened=())
 
 
 def without_middles(mesh: SolidMesh) -> SolidMesh:
@@ -81,7 +81,7 @@ def without_middles(mesh: SolidMesh) -> SolidMesh:
     place[used] = np.arange(len(used))
     sets = {name: one.renumbered(place) for name, one in mesh.sets.items()}
     corners = cells.reshape(-1, shape.corners)
-    return replace(mesh, points=mesh.points[used], cells=corners, kind=kind, sets=sets, _faces=[])
+    return replace(mesh, points=mesh.points[used], cells=corners, kind=kind, sets=sets)
 
 
 def _with_middles(mesh: SolidMesh, whole: Element) -> tuple[np.ndarray, np.ndarray]:

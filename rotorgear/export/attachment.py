@@ -118,11 +118,19 @@ class Skeleton:
 
     def along(self, shaft: str, points: np.ndarray) -> Attachment:
         """Each point rides on the cross-section at its own z; beyond the ends on that of the end."""
-        return self._ride(shaft, points[:, 2], points)
+        return self.rigid(shaft, points[:, 2], points)
 
-    def rigid(self, shaft: str, z: float, points: np.ndarray) -> Attachment:
-        """All points ride on the cross-section at z."""
-        return self._ride(shaft, np.full(len(points), z), points)
+    def rigid(self, shaft: str, z: float | np.ndarray, points: np.ndarray) -> Attachment:
+        """All points ride on the cross-section at z, or each on that at its value of z."""
+        numbers = self._numbers[shaft]
+        places = self.nodes.position[numbers, 2]
+        z = np.clip(np.broadcast_to(z, len(points)), places[0], places[-1])
+        arm = points - np.column_stack([np.tile(self.axes[shaft], (len(z), 1)), z])
+        if len(numbers) == 1:
+            return self._fixed_to(np.full(len(z), numbers[0]), arm)
+        k = np.clip(np.searchsorted(places, z, side="right") - 1, 0, len(places) - 2)
+        length = places[k + 1] - places[k]
+        return Attachment(numbers[k], numbers[k + 1], (z - places[k]) / length, length, self._shear[shaft][k], arm)
 
     def on_pedestal(self, bearing: str, points: np.ndarray) -> Attachment:
         """All points move with the node of a bearing's pedestal."""
@@ -140,17 +148,6 @@ class Skeleton:
     def on_ground(self, points: np.ndarray) -> Attachment:
         """All points stand still."""
         return self._fixed_to(np.full(len(points), -1), np.zeros_like(points))
-
-    def _ride(self, shaft: str, z: np.ndarray, points: np.ndarray) -> Attachment:
-        numbers = self._numbers[shaft]
-        places = self.nodes.position[numbers, 2]
-        z = np.clip(z, places[0], places[-1])
-        arm = points - np.column_stack([np.tile(self.axes[shaft], (len(z), 1)), z])
-        if len(numbers) == 1:
-            return self._fixed_to(np.full(len(z), numbers[0]), arm)
-        k = np.clip(np.searchsorted(places, z, side="right") - 1, 0, len(places) - 2)
-        length = places[k + 1] - places[k]
-        return Attachment(numbers[k], numbers[k + 1], (z - places[k]) / length, length, self._shear[shaft][k], arm)
 
     def _fixed_to(self, nodes: np.ndarray, arm: np.ndarray) -> Attachment:
         zeros = np.zeros(len(nodes))

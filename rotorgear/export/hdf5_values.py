@@ -76,40 +76,26 @@ def _put_group(h5: ModuleType, group: Any, kind: str, value: Any) -> None:
 
 
 def _kind_of(value: Any, name: str) -> str:
-    """The kind of a value; those of few values are asked for before those of many: a truth is an integer too."""
-    match value:
-        case None:
-            return "nothing"
-        case Model():
-            return "model"
-        case Record():
-            return "record"
-        case str():
-            return "text"
-        case np.ndarray():
-            return "array"
-        case bool():
-            return "truth"
-        case int() | np.integer():
-            return "integer"
-        case float() | np.floating():
-            return "number"
-        case tuple():
-            if _fit_into_columns(value):
-                return "records"
-            if value and all(isinstance(entry, Note) for entry in value):
-                return "notes"
-            if _is_texts(value):
-                return "texts"
-            return "lists" if all(map(_is_texts, value)) else "sequence"
-        case dict():
-            # A table has texts as keys, and numbers, or arrays of one shape and kind.
-            shapes = {(np.shape(entry), np.asarray(entry).dtype) for entry in value.values()}
-            if all(isinstance(key, str) for key in value) and len(shapes) <= 1:
-                for kind, entries in (("numbers", float), ("arrays", np.ndarray)):
-                    if all(isinstance(entry, entries) for entry in value.values()):
-                        return kind
-            return "mapping"
+    """The kind of a value."""
+    for kind, types in _TYPES:
+        if isinstance(value, types):
+            return kind
+    if isinstance(value, tuple):
+        if _fit_into_columns(value):
+            return "records"
+        if value and all(isinstance(entry, Note) for entry in value):
+            return "notes"
+        if _is_texts(value):
+            return "texts"
+        return "lists" if all(map(_is_texts, value)) else "sequence"
+    if isinstance(value, dict):
+        # A table has texts as keys, and numbers, or arrays of one shape and kind.
+        shapes = {(np.shape(entry), np.asarray(entry).dtype) for entry in value.values()}
+        if all(isinstance(key, str) for key in value) and len(shapes) <= 1:
+            for kind, entries in (("numbers", float), ("arrays", np.ndarray)):
+                if all(isinstance(entry, entries) for entry in value.values()):
+                    return kind
+        return "mapping"
     raise TypeError(f"{name} of type {type(value).__name__} has no form in HDF5")
 
 
@@ -184,6 +170,17 @@ def _is_texts(value: Any) -> bool:
     return isinstance(value, tuple) and all(isinstance(entry, str) for entry in value)
 
 
+# Kinds of single values; a truth is an integer too, so that it is asked for before.
+_TYPES: tuple[tuple[str, Any], ...] = (
+    ("nothing", type(None)),
+    ("model", Model),
+    ("record", Record),
+    ("text", str),
+    ("array", np.ndarray),
+    ("truth", bool),
+    ("integer", (int, np.integer)),
+    ("number", (float, np.floating)),
+)
 _OF_A_NOTE = ("part", "what", "why", "value")
 # How a number or an array, alone or in a table, comes back from what h5py reads.
 _PLAIN: dict[str, Callable[[Any], Any]] = {

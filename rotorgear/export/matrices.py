@@ -109,9 +109,7 @@ def write_matrices(
     turns = speed_in_si(speed) or 0.0
     check_request(turns, None, None, elements, None)
     if fmax is None and elements is None:
-        raise AnalysisError(
-            "matrices need fmax (--fmax), the frequency in Hz that the mesh is refined for, or elements"
-        )
+        raise AnalysisError("matrices need fmax (--fmax), the frequency in Hz that the mesh serves, or elements")
     if fmax is not None and not 0.0 < fmax < float("inf"):
         raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
     system, _ = frf_system(model, turns, fmax or 1.0, elements)

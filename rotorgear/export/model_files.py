@@ -49,9 +49,7 @@ def new(path: str | Path, source: str | None = None, force: bool = False) -> lis
     copies = {target: model.path} | {target.with_name(file.name): file for file in model.companions}
     there = [str(file) for file in copies if file.exists()]
     if there and not force:
-        raise AnalysisError(
-            f"{' and '.join(there)} would be overwritten: choose another name or folder, or give --force"
-        )
+        raise AnalysisError(f"{' and '.join(there)} would be overwritten: choose another name, or give --force")
     for file, original in copies.items():
         with replacing(file) as scratch:
             shutil.copyfile(original, scratch)
@@ -115,9 +113,7 @@ def _below(owner: Any, key: str, address: str) -> Any:
     try:
         return owner[int(key)] if isinstance(owner, list) else owner[key]
     except (KeyError, IndexError, ValueError, TypeError):
-        raise AnalysisError(
-            f"{address}: the file does not spell this value out, so it can't be written there"
-        ) from None
+        raise AnalysisError(f"{address}: the file does not spell this value out: it can't be written there") from None
 
 
 def _times(value: Any, factor: float, address: str) -> Any:

@@ -114,9 +114,8 @@ def read_chunk(path: Path) -> dict[str, np.ndarray]:
     except (OSError, KeyError, ValueError, TypeError, RuntimeError):
         whole = False
     if not whole:
-        raise RotorgearError(
-            f"{path} is damaged: remove it and all chunks after it to go on from there, or start without resume"
-        )
+        remedy = "remove it and all chunks after it to go on from there, or start without resume"
+        raise RotorgearError(f"{path} is damaged: {remedy}")
     return chunk
 
 

@@ -18,7 +18,7 @@ from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult, NodeTable
 from rotorgear.results.response import ResponseResult
 from rotorgear.uff import datasets
-from rotorgear.uff.write import function_set, line_sets, nodes_set, shape_set, units_set, universal_bytes
+from rotorgear.uff.write import function_set, line_sets, nodes_set, shape_set, units_set
 
 _TRANSLATIONS = 3
 
@@ -57,7 +57,7 @@ def write_uff(
     else:
         sets = _order_functions(result, binary)
     with replacing(path) as scratch:
-        scratch.write_bytes(universal_bytes([units_set(datasets.Units()), *sets]))
+        scratch.write_bytes(b"".join([units_set(datasets.Units()), *sets]))
     return Path(path)
 
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from rotorgear.rexs.account import Account
@@ -39,22 +38,17 @@ _DIAMETER_SERIES = {"7": 0.34, "8": 0.45, "9": 0.62, "0": 0.84, "1": 1.12, "2": 
 _BORE_CODES = {"00": 10.0, "01": 12.0, "02": 15.0, "03": 17.0}
 
 
-@dataclass(frozen=True)
-class BearingSize:
-    """Bore and outer diameter in m, and the words that say where they come from."""
-
-    bore: float
-    outer: float
-    source: str
+# Bore and outer diameter in m, and the words that say where they come from.
+Size: TypeAlias = tuple[float, float, str]
 
 
-def size_of_designation(designation: str) -> BearingSize | None:
+def size_of_designation(designation: str) -> Size | None:
     """Bore and outer diameter by a designation such as 6305-2Z, NUP204E, 33014 or K 50x58x25; None where it says none."""
     sizes = re.search(r"(\d+(?:\.\d+)?)\s*[xX*]\s*(\d+(?:\.\d+)?)", designation)
     if sizes:
         bore = float(sizes[1])
         outer = float(sizes[2])
-        return BearingSize(1e-3 * bore, 1e-3 * outer, "designation") if 0.0 < bore < outer else None
+        return (1e-3 * bore, 1e-3 * outer, "designation") if 0.0 < bore < outer else None
     digits = re.search(r"\d{3,6}", designation)
     if digits is None:
         return None
@@ -63,12 +57,10 @@ def size_of_designation(designation: str) -> BearingSize | None:
     series = _DIAMETER_SERIES.get(digits[0][-3])
     if series is None or bore <= 0.0:
         return None
-    return BearingSize(1e-3 * bore, 1e-3 * (bore + series * bore**0.9), "designation, ISO 15")
+    return 1e-3 * bore, 1e-3 * (bore + series * bore**0.9), "designation, ISO 15"
 
 
-def estimated(
-    kind: str, size: BearingSize, static_rating: float | None, contact_angle: float
-) -> tuple[float, float, str]:
+def estimated(kind: str, size: Size, static_rating: float | None, contact_angle: float) -> tuple[float, float, str]:
     """Radial and axial stiffness in N/m of a "ball" or "roller" bearing by its size, and what they were estimated from.
 
     Args:
@@ -77,8 +69,9 @@ def estimated(
         static_rating: C_0 in N, or None: by ISO 76.
         contact_angle: in rad; of the axial stiffness, where 0, that of a deep groove bearing under a thrust.
     """
-    element = _ELEMENT * (size.outer - size.bore)
-    pitch = 0.5 * (size.outer + size.bore)
+    bore, outer, source = size
+    element = _ELEMENT * (outer - bore)
+    pitch = 0.5 * (outer + bore)
     count = max(4.0, math.floor(_FILLED[kind] * math.pi * pitch / element))
     if not static_rating or static_rating <= 0.0:
         shape = 1.0 if kind == "ball" else 1.0 - element / pitch
@@ -91,8 +84,8 @@ def estimated(
         radial = _ROLLER * count**0.9 * element**0.8 * load**0.1 * tilt**1.9
     axial = 2.0 * math.tan(contact_angle or _WORKING_ANGLE) ** 2 * radial
     words = (
-        f"{kind}s by Krämer's formula with {count:.0f} of {1e3 * element:.2g} mm and {load:.2g} N, from {1e3 * size.bore:.4g} x "
-        f"{1e3 * size.outer:.4g} mm ({size.source})"
+        f"{kind}s by Krämer's formula with {count:.0f} of {1e3 * element:.2g} mm and {load:.2g} N, from {1e3 * bore:.4g} x "
+        f"{1e3 * outer:.4g} mm ({source})"
     )
     return radial, axial, words
 
@@ -274,15 +267,11 @@ def _guess(
         return _UNKNOWN, _UNKNOWN / 10.0, f"a placeholder of {_UNKNOWN:.0e} N/m for a bearing of unknown size and kind"
     bore = account.number(part, ("inner_diameter", "bore_diameter"), "length")
     outer = account.number(part, ("outer_diameter",), "length")
-    sizes = [
-        BearingSize(bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None,
-        by_designation,
-        size_of_designation(part.name),
-    ]
+    stated = (bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None
     d = seat[0].diameter(seat[1])
-    size = next((item for item in sizes if item is not None and abs(item.bore - d) <= _FITS * d), None)
-    if size is None:
-        size = BearingSize(d, d + 1e-3 * _SERIES_2 * (1e3 * d) ** 0.9, "diameter of the shaft, series 2 of ISO 15")
+    by_shaft = (d, d + 1e-3 * _SERIES_2 * (1e3 * d) ** 0.9, "diameter of the shaft, series 2 of ISO 15")
+    sizes = filter(None, (stated, by_designation, size_of_designation(part.name)))
+    size = next((item for item in sizes if abs(item[0] - d) <= _FITS * d), by_shaft)
     rating = account.number(part, ("static_capacity", "static_load_rating", "radial_static_load_rating"), "rating")
     rows = structure.parts_of(part, "rolling_bearing_row")
     angles = [angle for row_ in rows if (angle := account.number(row_, ("pressure_angle", "contact_angle"), "angle"))]

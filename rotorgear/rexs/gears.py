@@ -132,21 +132,21 @@ def _middle(
     """
     account = structure.account
     u = account.number(gear, ("u_coordinate_on_shaft",), "length")
-    by_u = None if u is None else shaft.axis.z(u + (width / 2.0 if version <= (1, 0) else 0.0))
+    # z by u as begin and as middle of the face.
+    by_u = [] if u is None else [shaft.axis.z(u + width / 2.0), shaft.axis.z(u)]
+    z = (by_u[0] if version <= (1, 0) else by_u[1]) if by_u else None
     frame = structure.frame(gear)
     if frame is not None:
-        along, x, y = structure.place(frame)
+        along, x, y = structure.place(frame).tolist()
         if math.hypot(x - shaft.axis.x, y - shaft.axis.y) < 1e-4 * max(1.0, width) + 1e-5:
-            if by_u is not None and u is not None and abs(along - by_u) > 1e-5:
-                other = shaft.axis.z(u)
-                if min(abs(along - other), abs(along - shaft.axis.z(u + width / 2.0))) > 1e-5:
-                    reason = f"u_coordinate_on_shaft would give {1e3 * by_u:.6g} mm: the support vector counts"
-                    comments["at"] = account.assume(f"{gear.name}.at", f"{1e3 * along:.6g} mm", reason)
-            return shaft.place(gear, float(along), account)
-    if by_u is None:
+            if z is not None and min(abs(along - one) for one in by_u) > 1e-5:
+                reason = f"u_coordinate_on_shaft would give {1e3 * z:.6g} mm: the support vector counts"
+                comments["at"] = account.assume(f"{gear.name}.at", f"{1e3 * along:.6g} mm", reason)
+            z = along
+    if z is None:
         account.missing(gear, "its place is needed: support_vector or u_coordinate_on_shaft")
         return None
-    return shaft.place(gear, by_u, account)
+    return shaft.place(gear, z, account)
 
 
 def shift_sum(first: GearPart, second: GearPart, distance: float) -> float | None:

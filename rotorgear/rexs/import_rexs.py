@@ -92,14 +92,14 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
 
 def _version(document: Document, account: Account) -> tuple[int, int]:
     found = re.match(r"\s*(\d+)\.(\d+)", document.version)
-    if found is None:
-        account.warnings.append(f"the file states no version ('{document.version}'); it is read as 1.6")
-        return _NEWEST
-    version = int(found[1]), int(found[2])
-    if not (1, 0) <= version <= _NEWEST:
-        account.warnings.append(f"REXS {document.version} is read as 1.6, the newest version that is known here")
-        return _NEWEST
-    return version
+    version = (int(found[1]), int(found[2])) if found else None
+    if version is not None and (1, 0) <= version <= _NEWEST:
+        return version
+    newest = f"REXS {document.version} is read as 1.6, the newest version that is known here"
+    account.warnings.append(
+        newest if found else f"the file states no version ('{document.version}'); it is read as 1.6"
+    )
+    return _NEWEST
 
 
 def _with_load_case(

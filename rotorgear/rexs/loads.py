@@ -47,37 +47,30 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
         account.missing(part, "its place is needed: u_coordinate_on_shaft or support_vector")
         return []
     z = shaft.place(part, along, account)
-    tables = [_body(part, names.of(part.name, "mass", part.id), shaft, z, mass, structure)]
+    moments = [account.number(part, (f"moment_of_inertia_{axis}_axis",), "inertia") or 0.0 for axis in "uvw"]
+    polar, *across = (max(value, 0.0) for value in moments)
+    name = names.of(part.name, "mass", part.id)
+    body = shaft.table(f"{'disks' if polar or any(across) else 'point_masses'}.{name}", str(part), z)
+    body.add("mass", quantity(mass, "mass"))
+    if polar or any(across):
+        diametral = 0.5 * sum(across)
+        comment = ""
+        if abs(across[0] - across[1]) > _ALIKE * diametral:
+            said = f"{across[0]:.6g} about v, {across[1]:.6g} kg m^2 about w"
+            reason = f"a shaft's bodies are round here; the file says {said}"
+            comment = account.assume(f"{body.header}.diametral_inertia", f"{diametral:.6g} kg m^2", reason)
+        body.add("polar_inertia", quantity(polar, "inertia"))
+        body.add("diametral_inertia", quantity(diametral, "inertia"), comment)
+    tables = [body]
     eccentricity = account.numbers(part, "eccentricity_vector", "length", 3)
     if eccentricity is not None and math.hypot(*eccentricity[1:]) > 0.0:
         axes = frame.axes if frame is not None else structure.model.axes
         _, x, y = structure.model.axes @ (np.array(eccentricity) @ axes)
-        table = shaft.table(f"unbalances.{tables[0].header.partition('.')[2]}", f"eccentricity of {part}", z)
+        table = shaft.table(f"unbalances.{name}", f"eccentricity of {part}", z)
         table.add("magnitude", quantity(mass * math.hypot(x, y), "unbalance"))
         table.add("phase", quantity(math.atan2(y, x), "angle"))
         tables.append(table)
     return tables
-
-
-def _body(part: Component, name: str, shaft: ShaftPart, z: float, mass: float, structure: Structure) -> Table:
-    account = structure.account
-    moments = [account.number(part, (f"moment_of_inertia_{axis}_axis",), "inertia") or 0.0 for axis in "uvw"]
-    polar = max(moments[0], 0.0)
-    across = [max(value, 0.0) for value in moments[1:]]
-    kind = "disks" if polar or any(across) else "point_masses"
-    table = shaft.table(f"{kind}.{name}", str(part), z)
-    table.add("mass", quantity(mass, "mass"))
-    if kind == "point_masses":
-        return table
-    diametral = 0.5 * sum(across)
-    comment = ""
-    if abs(across[0] - across[1]) > _ALIKE * diametral:
-        said = f"{across[0]:.6g} about v, {across[1]:.6g} kg m^2 about w"
-        reason = f"a shaft's bodies are round here; the file says {said}"
-        comment = account.assume(f"{table.header}.diametral_inertia", f"{diametral:.6g} kg m^2", reason)
-    table.add("polar_inertia", quantity(polar, "inertia"))
-    table.add("diametral_inertia", quantity(diametral, "inertia"), comment)
-    return table
 
 
 @dataclass(frozen=True)

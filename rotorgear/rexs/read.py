@@ -63,7 +63,7 @@ def _unpacked(data: bytes) -> bytes:
             if len(members) != 1:
                 names = ", ".join(item.filename for item in members) or "none"
                 raise _UnreadableError(
-                    f"the archive should hold one file .rexs, .rexsj, .xml or .json; it holds: {names}"
+                    f"the archive must hold one file .rexs, .rexsj, .xml or .json, and holds: {names}"
                 )
             if members[0].file_size > _LARGEST:
                 raise _UnreadableError(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
@@ -106,9 +106,8 @@ def _by_id(components: Iterable[Component]) -> dict[str, Component]:
     for one in components:
         other = found.setdefault(one.id, one)
         if other is not one:
-            raise _UnreadableError(
-                f"two components have the id {one.id}: {other.type} '{other.name}' and {one.type} '{one.name}'"
-            )
+            both = " and ".join(f"{part.type} '{part.name}'" for part in (other, one))
+            raise _UnreadableError(f"two components have the id {one.id}: {both}")
     return found
 
 
@@ -117,9 +116,7 @@ def _refuse_entities(data: bytes) -> None:
     parser = expat.ParserCreate()
 
     def refuse(*declared: Any) -> None:
-        raise _UnreadableError(
-            "it declares a document type (DOCTYPE), which REXS does not have and which is not expanded"
-        )
+        raise _UnreadableError("it declares a document type (DOCTYPE), which REXS has not: it is not expanded")
 
     parser.StartDoctypeDeclHandler = refuse
     try:

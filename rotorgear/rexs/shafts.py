@@ -98,9 +98,8 @@ def read_sections(shaft: Component, structure: Structure) -> tuple[Section, ...]
         begin = account.number(part, ("outer_diameter_begin", "outer_diameter", "outer_diameter_end"), "length")
         if length is None or begin is None:
             what = "length and outer_diameter_begin"
-            account.missing(
-                part, f"{what} are needed" if components else f"a shaft needs shaft_section parts with {what}"
-            )
+            needs = f"{what} are needed" if components else f"a shaft needs shaft_section parts with {what}"
+            account.missing(part, needs)
             continue
         if length < -_SAME_PLACE:
             account.missing(part, "its length must not be negative")
@@ -126,7 +125,7 @@ def read_sections(shaft: Component, structure: Structure) -> tuple[Section, ...]
         range_of_u = f"from u = {1e3 * last.end:.6g} to {1e3 * section.u:.6g} mm"
         if gap < -_SAME_PLACE:
             account.missing(
-                shaft, f"its sections overlap at u = {1e3 * section.u:.6g} mm; they must follow one another"
+                shaft, f"its sections must follow one another; they overlap at u = {1e3 * section.u:.6g} mm"
             )
             sections.append(section)
             continue

@@ -29,28 +29,23 @@ _UNITS = {
 def quantity(value: float, kind: str) -> str:
     """A number in SI as a text in the unit that engineers use: 0.053 m is "53 mm"."""
     unit, factor = _UNITS[kind]
-    return f'"{_plain(value / factor)} {unit}"'
+    return f'"{number(value / factor)} {unit}"'
 
 
 def number(value: float) -> str:
     """A plain number."""
-    return _plain(value)
+    shown = f"{value:.{_DIGITS}g}"
+    return "0" if shown == "-0" else shown
 
 
 def text(value: str) -> str:
     """A text in quotes."""
-    clean = "".join(letter if letter.isprintable() else " " for letter in value)
-    return '"' + clean.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return '"' + comment_line(value).replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def row(**values: str) -> str:
     """An inline table of values that are texts already."""
     return "{ " + ", ".join(f"{key} = {value}" for key, value in values.items()) + " }"
-
-
-def _plain(value: float) -> str:
-    shown = f"{value:.{_DIGITS}g}"
-    return "0" if shown == "-0" else shown
 
 
 @dataclass

@@ -27,11 +27,6 @@ _PER_ROW = 6
 _LONGEST_LINE = 250
 
 
-def universal_bytes(sets: Iterable[bytes]) -> bytes:
-    """The bytes of a file of datasets."""
-    return b"".join(sets)
-
-
 def units_set(units: Units) -> bytes:
     """Dataset 164."""
     factors = "".join(_double(x) for x in (units.length, units.force, 1.0))

@@ -85,7 +85,7 @@ def whole_frequencies(model: Model, name: str, count: int) -> np.ndarray:
     P = sp.hstack([motions, rows], format="csr")
     groups = [group for group in system.groups_at(0.0) if group.part != f"casings.{name}"]
     mass = sp.kron(fe.matrices.mass, sp.eye_array(3), format="csr")
-    springs, flexibility = fe.springs()
+    springs, flexibility, _ = fe.springs()
     spring = sp.csr_array(shapes.T @ springs)
     empty = sp.csr_array((len(others), len(others)))
     rotor_stiffness = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
