@@ -73,9 +73,7 @@ def _kept(kind: type[Body], settings: CasingSettings, modes_to: float | None, pr
             fe = finite_element_body(settings, part_of(progress, 0.0, 0.3))
             tell = part_of(progress, 0.3, 1.0)
             body = reduce(fe, modes_to, tell)[0] if kind is ReducedBody else reduce_wheel(fe, modes_to, tell)
-            values = {
-                one.name: getattr(body, one.name) for one in fields(body) if one.name not in ("seconds", "surface")
-            }
+            values = {one.name: getattr(body, one.name) for one in fields(body) if one.name != "surface"}
             assert body.surface is not None, "a body of a mesh has a surface"
             write_entry(path, key, values | {_SURFACE + name: value for name, value in vars(body.surface).items()})
         else:

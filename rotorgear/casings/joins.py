@@ -54,9 +54,7 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
         AnalysisError: unknown sets, faces that do not touch, that share nodes, or a face that is tied twice.
     """
     n = len(mesh.points)
-    rows: list[np.ndarray] = []
-    columns: list[np.ndarray] = []
-    values: list[np.ndarray] = []
+    ties = sp.csr_array((n, n))
     springs = sp.csr_array((n, n))
     tied = np.zeros(n, dtype=bool)
     notes: list[str] = []
@@ -86,18 +84,13 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
         left = "" if near.all() else f"; {np.count_nonzero(~near)} nodes beyond its edge stay free"
         if one.stiffness is None:
             tied[nodes[near]] = True
-            rows.append(np.repeat(nodes[near], second.shape[1]))
-            columns.append(masters[near].ravel())
-            values.append(weights[near].ravel())
+            places_of_ties = (np.repeat(nodes[near], second.shape[1]), masters[near].ravel())
+            ties = ties + sp.csr_array((weights[near].ravel(), places_of_ties), shape=(n, n))
             notes.append(f"'{one.first}' and '{one.second}' are tied at {np.count_nonzero(near)} nodes{left}.")
         else:
             springs = springs + one.stiffness * _spring(mesh, first, second, _GAP * size)
             notes.append(f"'{one.first}' stands on '{one.second}' with {one.stiffness:.4g} N/m^3{left}.")
-    interpolation = None
-    if tied.any():
-        free = np.flatnonzero(~tied)
-        places = (np.concatenate([free, *rows]), np.concatenate([free, *columns]))
-        interpolation = sp.csr_array((np.concatenate([np.ones(len(free)), *values]), places), shape=(n, n))
+    interpolation = sp.csr_array(ties + sp.diags_array((~tied).astype(float))) if tied.any() else None
     mesh = replace(mesh, notes=(*mesh.notes, *notes))
     return Joined(mesh, interpolation, np.flatnonzero(tied), springs if springs.nnz else None)
 

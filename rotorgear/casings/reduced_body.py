@@ -9,7 +9,7 @@ of substructures for dynamic analyses, AIAA J. 6, 1968). What holds the body to 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
@@ -113,7 +113,6 @@ class ReducedBody:
         ground_weight: (6 g, 3) what gravity of 1 m/s^2 adds to it.
         held: whether held faces or mounts carry it; else it floats, and K has the six rigid motions.
         notes: sentences on what was done with the mesh, such as an order that was raised.
-        seconds: wall time by step.
     """
 
     name: str
@@ -138,7 +137,6 @@ class ReducedBody:
     ground_weight: np.ndarray | None = None
     held: bool = False
     notes: tuple[str, ...] = ()
-    seconds: dict[str, float] = field(default_factory=dict, compare=False)
 
     @property
     def size(self) -> int:

@@ -21,7 +21,6 @@ The whole mesh has modes too, nothing reduced: free, and held as the model file 
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from functools import partial
 
@@ -121,8 +120,6 @@ def reduce(
         AnalysisError: more memory than there is. ConvergenceError: a factorisation or an iteration that failed.
     """
     name = fe.settings.address
-    seconds: dict[str, float] = {}
-    started = time.perf_counter()
     mean = fe.settings.connection == "mean"
     seats = 6 * len(fe.seats)
     space = fe.free_space(held=True, rigid_seats=not mean)
@@ -130,25 +127,19 @@ def reduce(
     floating = not len(fe.held) and not space.seats.shape[1]
     rigid = R[space.dofs][:, : 6 if floating else 0]
     body = ElasticBody(fe.stiffness_in(space.shapes), rigid, name, part_of(progress, 0.0, 0.3))
-    seconds["factorisation"] = time.perf_counter() - started
 
     progress(0.3, f"{name}: static shapes of {len(fe.seats)} seats")
-    started = time.perf_counter()
     springs, flexibility, _ = fe.springs()
     seat_weights = fe.mean_weights(fe.seats) if mean else np.zeros((fe.dofs, 0))
     compliance = np.concatenate([np.zeros(seat_weights.shape[1]), flexibility])
     system = Constrained(body, space.forces(np.hstack([seat_weights, springs])), compliance)
     static = _static_shapes(fe, space, system, springs)
-    seconds["static shapes"] = time.perf_counter() - started
 
     progress(0.4, f"{name}: fixed-interface modes")
-    started = time.perf_counter()
     of_mass = partial(fe.mass_times, space=space)
     _, fixed, left = modes_up_to(system.solve, of_mass, len(space.dofs), modes_to, USUAL, name)
-    seconds["fixed-interface modes"] = time.perf_counter() - started
 
     progress(0.7, f"{name}: residual shapes and error")
-    started = time.perf_counter()
     fixed = space.shapes @ fixed
     kept = fixed.shape[1]
     mass_fixed = fe.matrices.times_mass(fixed)
@@ -181,7 +172,6 @@ def reduce(
         followed = basis[space.dofs][:, seats:] @ (M[seats:, some] / squares[:, None])
         error[:, some] = forces.T @ (system.solve(forces[:, some]) - followed)
     error = symmetric(error)
-    seconds["residual shapes"] = time.perf_counter() - started
 
     body_mass, centre, inertia = fe.mass_properties
     ground_force, ground_damping, ground_mass, ground_weight = _ground(fe, space, system, basis)
@@ -219,7 +209,6 @@ def reduce(
         ground_weight=ground_weight,
         held=held,
         notes=fe.mesh.notes,
-        seconds=seconds,
     )
     return reduced, body, basis
 

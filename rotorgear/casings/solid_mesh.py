@@ -141,23 +141,19 @@ def _only_kind(found: FileMesh, address: str) -> str:
     """The one kind of solids in a file."""
     kinds = [kind for kind in SOLIDS if kind in found.cells]
     others = [kind for kind in found.cells if kind not in SOLIDS and kind.startswith(SOLID_BEGINNINGS)]
-    counts = ", ".join(f"{len(cells)} {kind}" for kind, cells in found.cells.items()) or "none"
+    if len(kinds) == 1 and not others:
+        return kinds[0]
     if others:
-        raise AnalysisError(
-            f"{address}: the mesh has {others[0]} cells, which are not computed (cells: {counts}). Mesh the body with "
-            "tetrahedra of the first or second order, or with such hexahedra alone."
-        )
-    if not kinds:
-        raise AnalysisError(
-            f"{address}: the mesh has no solid cells (cells: {counts}). A casing is a mesh of tetrahedra or hexahedra: "
-            "mesh its volume and save all elements."
-        )
-    if len(kinds) > 1:
-        raise AnalysisError(
-            f"{address}: the mesh mixes {' and '.join(kinds)} (cells: {counts}), which do not fit together. Mesh the whole "
-            "body with one kind."
-        )
-    return kinds[0]
+        fault = f"has {others[0]} cells, which are not computed"
+        remedy = "Mesh the body with tetrahedra of the first or second order, or with such hexahedra alone"
+    elif kinds:
+        fault = f"mixes {' and '.join(kinds)}, which do not fit together"
+        remedy = "Mesh the whole body with one kind"
+    else:
+        fault = "has no solid cells"
+        remedy = "A casing is a mesh of tetrahedra or hexahedra: mesh its volume and save all elements"
+    counts = ", ".join(f"{len(cells)} {kind}" for kind, cells in found.cells.items()) or "none"
+    raise AnalysisError(f"{address}: the mesh {fault} (cells: {counts}). {remedy}.")
 
 
 def _straight(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:

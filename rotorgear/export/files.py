@@ -38,24 +38,20 @@ def replacing(path: str | Path) -> Iterator[Path]:
         raise WriteError(target, reason_of(error)) from None
     if target.is_dir():
         raise WriteError(target, "it is a folder; give the name of a file")
-    if device:
-        try:
-            yield target
-        except OSError as error:
-            raise WriteError(target, reason_of(error)) from None
-        return
-    if not target.parent.is_dir():
+    if not device and not target.parent.is_dir():
         raise WriteError(target, f"there is no folder {target.parent}; make it first, or choose another")
     # In the same folder, so that the move is one of names within a file system: it happens whole or not at all.
-    scratch = target.with_name(f".{target.name}.{uuid.uuid4().hex}")
+    scratch = target if device else target.with_name(f".{target.name}.{uuid.uuid4().hex}")
     try:
         yield scratch
-        os.replace(scratch, target)
+        if not device:
+            os.replace(scratch, target)
     except OSError as error:
         raise WriteError(target, reason_of(error)) from None
     finally:
-        with suppress(OSError):  # the name itself may be what the system refuses
-            scratch.unlink()
+        if not device:
+            with suppress(OSError):  # the name itself may be what the system refuses
+                scratch.unlink()
 
 
 @contextmanager

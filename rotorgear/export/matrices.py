@@ -60,12 +60,7 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
         "fmax_hz": result.fmax,
         "reduction_error": result.reduction_error,
     }
-    names = {
-        "inputs": result.inputs,
-        "outputs": result.outputs,
-        "input_units": result.input_units,
-        "output_units": result.output_units,
-    }
+    names = {key: getattr(result, key) for key in ("inputs", "outputs", "input_units", "output_units")}
     with replacing(target) as scratch, open(scratch, "wb") as stream:
         if target.suffix.lower() == ".mat":
             from scipy.io import savemat

@@ -47,9 +47,8 @@ def solids_mesh(pv: ModuleType, solids: Solids) -> Any:
     triangles = np.column_stack([np.full(len(solids.triangles), 3), solids.triangles])
     mesh = pv.PolyData(solids.points.astype(np.float32), faces=np.concatenate([quads.ravel(), triangles.ravel()]))
     mesh.GetPolys().ConvertTo32BitStorage()  # half of the file's cells
-    mesh.cell_data["part_id"] = solids.part.astype(np.int16)
-    mesh.cell_data["kind_id"] = solids.kind.astype(np.int16)
-    mesh.cell_data["shaft_id"] = solids.shaft.astype(np.int16)
+    for name in ("part", "kind", "shaft"):
+        mesh.cell_data[f"{name}_id"] = getattr(solids, name).astype(np.int16)
     return mesh
 
 

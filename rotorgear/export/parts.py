@@ -106,10 +106,8 @@ def _stripe(outer: np.ndarray, angle: float) -> Surface:
     """A strip on the shaft's surface at an angle."""
     radius = outer[:, 0] * (1.0 + _STRIPE_HEIGHT)
     z = outer[:, 1]
-    edges = [
-        np.column_stack([radius * np.cos(a), radius * np.sin(a), z])
-        for a in (angle - _STRIPE_HALF, angle + _STRIPE_HALF)
-    ]
+    sides = (angle - _STRIPE_HALF, angle + _STRIPE_HALF)
+    edges = [np.column_stack([radius * np.cos(a), radius * np.sin(a), z]) for a in sides]
     low = np.arange(len(z))
     high = len(z) + np.arange(len(z))
     return make_surface(np.vstack(edges), [np.column_stack([low[:-1], high[:-1], high[1:], low[1:]])])
@@ -220,20 +218,17 @@ def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
         beside_axis = np.hypot(*(ring.points - np.array(axis))[:, :2].T)
         if bearing.casing is not None:
             # Inside the shaft carries the ring, outside the casing, which is nearest there.
-            inside = beside_axis < (1.0 - 1e-9) * housing
-            carried = skeleton.rigid(bearing.shaft, z, ring.points)
-            seated = _select([skeleton.on_casing(bearing.casing, ring.points), carried], inside.astype(int))
-            yield Piece(f"bearings.{name}", "bearing", bearing.shaft, ring, seated)
-            continue
-        on_shaft = beside_axis < 0.5 * (radius + housing)
-        on_ground = np.array([False, True, True] * 2)
-        surface = join([ring, foot])
-        # The ring stretches from the shaft to the housing, the foot from the housing to the ground.
-        ground = skeleton.on_ground(surface.points)
-        held = skeleton.on_pedestal(name, surface.points) if bearing.pedestal else ground
-        carried = skeleton.rigid(bearing.shaft, z, surface.points)
-        attachment = _select([held, carried, ground], np.concatenate([on_shaft.astype(int), 2 * on_ground]))
-        yield Piece(f"bearings.{name}", "bearing", bearing.shaft, surface, attachment)
+            surface = ring
+            others = [skeleton.on_casing(bearing.casing, ring.points)]
+            which = (beside_axis < (1.0 - 1e-9) * housing).astype(int)
+        else:
+            # The ring stretches from the shaft to the housing, the foot from the housing to the ground.
+            surface = join([ring, foot])
+            ground = skeleton.on_ground(surface.points)
+            others = [skeleton.on_pedestal(name, surface.points) if bearing.pedestal else ground, ground]
+            which = np.concatenate([beside_axis < 0.5 * (radius + housing), [0, 2, 2] * 2]).astype(int)
+        choices = [others[0], skeleton.rigid(bearing.shaft, z, surface.points), *others[1:]]
+        yield Piece(f"bearings.{name}", "bearing", bearing.shaft, surface, _select(choices, which))
 
 
 def casing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
@@ -282,9 +277,7 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
         if np.allclose(start, end, rtol=0.0, atol=1e-6 * radius):
             continue
         if np.allclose(start[:2], end[:2], rtol=0.0, atol=1e-6 * radius):
-            sleeve = hollow_cylinder(
-                _SLEEVE * radius, 0.9 * _SLEEVE * radius, min(z1, z2), max(z1, z2), detail.segments
-            )
+            sleeve = hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, *sorted((z1, z2)), detail.segments)
             surface = sleeve.moved((*start[:2], 0.0))
             to_second = np.abs(surface.points[:, 2] - z2) < np.abs(surface.points[:, 2] - z1)
         else:

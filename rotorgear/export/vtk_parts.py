@@ -35,14 +35,11 @@ def write_casing_vtk(survey: CasingSurvey, folder: str | Path) -> list[Path]:
     for name, row in survey.casings.items():
         faces = np.column_stack([np.full(len(row.triangles), 3), row.triangles])
         mesh = pv.PolyData(row.points.astype(np.float32), faces=faces.ravel())
-        for kind, shapes, frequency in (
-            ("free", row.free_shapes, row.free_frequency_hz),
-            ("held", row.held_shapes, row.held_frequency_hz),
-        ):
-            for mode, shape in enumerate(np.moveaxis(shapes, 2, 0), start=1):
+        for kind in ("free", "held"):
+            for mode, shape in enumerate(np.moveaxis(getattr(row, f"{kind}_shapes"), 2, 0), start=1):
                 largest = np.linalg.norm(shape, axis=1).max()
                 mesh.point_data[f"{kind}_{mode:02d}"] = (shape / largest).astype(np.float32)
-            mesh.field_data[f"{kind}_frequency_hz"] = np.array(frequency)
+            mesh.field_data[f"{kind}_frequency_hz"] = np.array(getattr(row, f"{kind}_frequency_hz"))
         path = folder / f"casing_{name}.vtp"
         with replacing(path) as scratch:
             save_mesh(mesh, scratch)
@@ -79,10 +76,8 @@ def write_tooth_vtk(fields: ToothFields, directory: str | Path) -> list[Path]:
             # Nine nodes an element in the plane, 27 in space: VTK has both orders as they are.
             kind = pv.CellType.BIQUADRATIC_QUAD if gear.cells.shape[1] == 9 else pv.CellType.TRIQUADRATIC_HEXAHEDRON
             teeth = pv.UnstructuredGrid({kind: gear.cells}, gear.points)
-            teeth.point_data["displacement"] = gear.displacement
-            teeth.point_data["von_mises"] = gear.von_mises
-            teeth.point_data["largest_principal"] = gear.largest_principal
-            teeth.point_data["tooth"] = gear.tooth
+            for name in ("displacement", "von_mises", "largest_principal", "tooth"):
+                teeth.point_data[name] = getattr(gear, name)
             names.append(f"{gear.name}.vtu")
             save_mesh(teeth, scratch / names[-1])
 

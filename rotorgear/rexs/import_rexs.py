@@ -95,10 +95,8 @@ def _version(document: Document, account: Account) -> tuple[int, int]:
     version = (int(found[1]), int(found[2])) if found else None
     if version is not None and (1, 0) <= version <= _NEWEST:
         return version
-    newest = f"REXS {document.version} is read as 1.6, the newest version that is known here"
-    account.warnings.append(
-        newest if found else f"the file states no version ('{document.version}'); it is read as 1.6"
-    )
+    told = f"REXS {document.version} is read as 1.6, the newest version that is known here"
+    account.warnings.append(told if found else f"the file states no version ('{document.version}'): it is read as 1.6")
     return _NEWEST
 
 

@@ -144,13 +144,9 @@ def _operation(
 ) -> tuple[Table, list[Table]]:
     """Which torque drives follows from its power: torque times the speed of its shaft."""
     sense = speed or (torques[0].torque or 1.0)
-    power = {
-        item.component.id: item.torque * ratio[item.shaft.component.id] * sense
-        for item in torques
-        if item.torque is not None and item.shaft.component.id in ratio
-    }
-    drives = [item for item in torques if power.get(item.component.id, 0.0) > 0.0]
-    takes = [item for item in torques if power.get(item.component.id, 0.0) < 0.0]
+    power = [(item.torque or 0.0) * ratio.get(item.shaft.component.id, 0.0) * sense for item in torques]
+    drives = [item for item, own in zip(torques, power, strict=True) if own > 0.0]
+    takes = [item for item, own in zip(torques, power, strict=True) if own < 0.0]
     open_ends = [item for item in torques if item.torque is None and item.shaft.component.id in ratio]
     table = Table("operation")
     if not drives and takes and open_ends:

@@ -65,11 +65,10 @@ def _unpacked(data: bytes) -> bytes:
                 raise _UnreadableError(
                     f"the archive must hold one file .rexs, .rexsj, .xml or .json, and holds: {names}"
                 )
-            if members[0].file_size > _LARGEST:
-                raise _UnreadableError(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
+            # What the archive says of a size need not be true.
             with archive.open(members[0]) as stream:
-                found = stream.read(_LARGEST + 1)  # what the archive says of a size need not be true
-            if len(found) > _LARGEST:
+                found = stream.read(_LARGEST + 1) if members[0].file_size <= _LARGEST else None
+            if found is None or len(found) > _LARGEST:
                 raise _UnreadableError(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
             return found
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,10 @@ class Block:
     identifier: str
     lines: tuple[str, ...]
     data: bytes | None = None
+
+    def rows(self, first: int) -> list[tuple[int, str]]:
+        """The lines from a row on that are not blank, each with its row; rows count from 1."""
+        return [(k, text) for k, text in enumerate(self.lines[first - 1 :], start=first) if text.strip()]
 
     def problem(self, row: int, expected: str, value: str = "") -> ModelError:
         """An error at a row of the set, counted from 1; row 0 is the set as a whole."""
@@ -185,9 +190,9 @@ def numbers_in(text: str, block: Block, row: int) -> list[float]:
     return values
 
 
-def numbers_of(rows: Iterable[tuple[int, str]], block: Block) -> NDArray[np.float64]:
-    """The numbers in several rows, each with its place in the set."""
-    return np.array([value for row, text in rows for value in numbers_in(text, block, row)])
+def numbers_from(first: int, block: Block) -> NDArray[np.float64]:
+    """The numbers in all rows from one on."""
+    return np.array([value for row, text in block.rows(first) for value in numbers_in(text, block, row)])
 
 
 def whole_in(text: str, block: Block, row: int, least: int) -> list[int]:
@@ -209,9 +214,4 @@ def is_whole(value: float) -> bool:
 
 def columns(text: str, widths: Iterable[int]) -> list[str]:
     """The fields of a row by their widths, stripped."""
-    fields = []
-    at = 0
-    for width in widths:
-        fields.append(text[at : at + width].strip())
-        at += width
-    return fields
+    return [text[start:end].strip() for start, end in pairwise(accumulate(widths, initial=0))]

@@ -25,8 +25,8 @@ from rotorgear.uff.blocks import (
     blocks_of,
     columns,
     is_whole,
+    numbers_from,
     numbers_in,
-    numbers_of,
     sizes_of,
     whole_in,
 )
@@ -82,8 +82,7 @@ def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Functio
     first, step, z = ([*form[3:6], 0.0, 0.0, 0.0])[:3]
     notes: list[str] = []
     if block.data is None:
-        rows = [(k, text) for k, text in enumerate(lines[11:], start=12) if text.strip()]
-        x, values = _parted(numbers_of(rows, block), count, int(form[0]), even, block)
+        x, values = _parted(numbers_from(12, block), count, int(form[0]), even, block)
     else:
         x, values, notes = _from_bytes(block, count, int(form[0]), even)
     if even and not step > 0.0 and count > 1:
@@ -275,8 +274,7 @@ def _units(block: Block) -> datasets.Units:
     if len(block.lines) < 2:
         raise block.problem(0, "a units code, and factors of length and force")
     code, description = columns(block.lines[0], (10, 20))
-    rows = [(k, text) for k, text in enumerate(block.lines[1:], start=2) if text.strip()]
-    factors = numbers_of(rows, block)
+    factors = numbers_from(2, block)
     if not code.isdigit() or len(factors) < 2 or not (factors[:2] > 0.0).all():
         raise block.problem(2, "a units code, and factors of length and force above 0", " ".join(block.lines)[:70])
     given = (float(factors[0]), float(factors[1]))
@@ -291,7 +289,7 @@ def _units(block: Block) -> datasets.Units:
 
 def _nodes(block: Block, units: datasets.Units) -> datasets.Nodes:
     """Datasets 15, a line a node, and 2411, two lines a node."""
-    rows = [numbers_in(text, block, k) for k, text in enumerate(block.lines, start=1) if text.strip()]
+    rows = [numbers_in(text, block, k) for k, text in block.rows(1)]
     if block.number == 2411:
         if len(rows) % 2 or any(len(row) < 4 for row in rows[::2]) or any(len(row) != 3 for row in rows[1::2]):
             raise block.problem(0, "two lines a node: four whole numbers, then x, y and z")
@@ -328,8 +326,7 @@ def _line(block: Block) -> datasets.TraceLine:
     if len(block.lines) < 2:
         raise block.problem(0, "number and name of a trace line, and its nodes")
     number, count = whole_in(block.lines[0], block, 1, 2)[:2]
-    rows = [(k, text) for k, text in enumerate(block.lines[2:], start=3) if text.strip()]
-    numbers = numbers_of(rows, block)
+    numbers = numbers_from(3, block)
     if not all(map(is_whole, numbers)):
         raise block.problem(3, "numbers of nodes")
     nodes = numbers.astype(int)
@@ -356,7 +353,7 @@ def _shape(block: Block) -> datasets.Shape:
         damping = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
     else:
         raise block.problem(6, "a normal (2) or complex (3, 7) mode", f"analysis type {analysis}")
-    nodes, values = _node_values(lines[8:], each * (2 if kind == 5 else 1), block)
+    nodes, values = _node_values(each * (2 if kind == 5 else 1), block)
     if kind == 5:
         values = values[:, 0::2] + 1j * values[:, 1::2]
     names = tuple(text.strip() for text in lines[:5])
@@ -364,9 +361,9 @@ def _shape(block: Block) -> datasets.Shape:
     return datasets.Shape(frequency, damping, eigenvalue, nodes, motions, names, mode, data_type)
 
 
-def _node_values(lines: tuple[str, ...], each: int, block: Block) -> tuple[np.ndarray, np.ndarray]:
+def _node_values(each: int, block: Block) -> tuple[np.ndarray, np.ndarray]:
     """Numbers of nodes (n,), and `each` numbers at every one (n, each)."""
-    rows = [(k, numbers_in(text, block, k)) for k, text in enumerate(lines, start=9) if text.strip()]
+    rows = [(k, numbers_in(text, block, k)) for k, text in block.rows(9)]
     if not rows:
         raise block.problem(9, "the shape has no nodes")
     nodes: list[int] = []

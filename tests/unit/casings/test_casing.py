@@ -196,9 +196,10 @@ def test_a_body_is_kept_by_its_mesh_and_keys_and_a_damaged_file_is_made_anew(fol
         return (model.with_(changes) if changes else model).layout.casing("box")
 
     first = body()
-    again = body()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rotorgear.casings.casing.reduce", None)  # it comes from the disk
+        again = body()
     assert again is not first
-    assert again.seconds == {}, "it came from the disk"
     np.testing.assert_array_equal(first.stiffness, again.stiffness)
     np.testing.assert_array_equal(first.surface.basis, again.surface.basis)  # type: ignore[union-attr]
     assert again.seats == first.seats == ("left",)
