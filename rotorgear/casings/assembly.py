@@ -77,9 +77,7 @@ def assemble(mesh: SolidMesh, material: Elastic) -> Assembled:
         trace = shear * np.trace(G, axis1=1, axis2=2)
         for i in range(3):
             for j in range(3):
-                entry = lame * G[:, i, j] + shear * G[:, j, i]
-                if i == j:
-                    entry = entry + trace
+                entry = lame * G[:, i, j] + shear * G[:, j, i] + (trace if i == j else 0.0)
                 blocks[:, i, j] += np.bincount(where, entry, len(keys))
         volume = np.linalg.det(np.einsum("eki,kjq->eqij", some, mass_gradients, optimize=True)) * mass_weights
         masses += np.bincount(where, (volume @ products.T).ravel(), len(keys))

@@ -74,8 +74,8 @@ def read_nastran(path: Path) -> FileMesh:
     cells = []
     sets = {}
     for (kind, number), found in rows.items():
-        nodes = places(found)
-        cells.append((kind, nodes[:, _HEXA] if kind == "hexahedron20" else nodes))
+        corners = places(found)
+        cells.append((kind, corners[:, _HEXA] if kind == "hexahedron20" else corners))
         if kind.startswith(("triangle", "quad")):
             sets[f"property_{number}"] = set_of(cells[-1:])
     numbers = np.array(list(points))

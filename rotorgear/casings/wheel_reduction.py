@@ -221,12 +221,9 @@ class _Waves:
         """L (6 + k, 6 + k) of rigid motions and coordinates, of a pair with L (u_1 + i u_2) = i n (u_1 + i u_2)."""
         n = np.concatenate([_RIGID_DIAMETERS, self.diameters])
         L = np.zeros((len(n), len(n)))
-        k = 0
-        while k < len(n):
-            if n[k]:
-                L[k, k + 1] = n[k]
-                L[k + 1, k] = -n[k]
-            k += 2 if n[k] else 1
+        first = np.flatnonzero(n)[::2]  # pairs stand side by side
+        L[first, first + 1] = n[first]
+        L[first + 1, first] = -n[first]
         return L
 
     def mean(self, X: np.ndarray) -> np.ndarray:
@@ -341,8 +338,7 @@ class _Rim:
         moments = np.linalg.inv((powers * self.weight) @ powers.T)
         cosine = np.zeros((2, 3, fields.shape[1]))
         sine = np.zeros_like(cosine)
-        k = 0
-        while k < len(diameters):
+        for k in (*np.flatnonzero(diameters == 0), *np.flatnonzero(diameters)[::2]):
             n = int(diameters[k])
             f = along[:, :, k] + 1j * along[:, :, k + 1] if n else along[:, :, k]
             A = moments @ ((powers * self.weight) @ (f * np.exp(-1j * n * self.angle)).T)
@@ -352,7 +348,6 @@ class _Rim:
                 cosine[:, :, k + 1] = A.imag
                 sine[:, :, k] = -A.imag
                 sine[:, :, k + 1] = A.real
-            k += 2 if n else 1
         return cosine, sine
 
 

@@ -104,12 +104,9 @@ class Skeleton:
 
     def positions(self) -> np.ndarray:
         """Where the nodes are shown, (p, 3) in m; casings, which have no axis, where they are; gear bodies on their shaft."""
-        shown = np.array(
-            [
-                [*self.axes[shaft], place[2]] if shaft else place
-                for shaft, place in zip(self.nodes.shaft, self.nodes.position, strict=True)
-            ]
-        )
+        shown = self.nodes.position.copy()
+        for shaft, axis in self.axes.items():
+            shown[np.array(self.nodes.shaft) == shaft, :2] = axis
         for gear in self.model.layout.elastic_bodies:
             numbers = self.nodes.of_casing(body_name(gear))
             shaft = self.model.layout.gear(gear).shaft
@@ -124,13 +121,13 @@ class Skeleton:
         """All points ride on the cross-section at z, or each on that at its value of z."""
         numbers = self._numbers[shaft]
         places = self.nodes.position[numbers, 2]
-        z = np.clip(np.broadcast_to(z, len(points)), places[0], places[-1])
-        arm = points - np.column_stack([np.tile(self.axes[shaft], (len(z), 1)), z])
+        at = np.clip(np.broadcast_to(z, len(points)), places[0], places[-1])
+        arm = points - np.column_stack([np.tile(self.axes[shaft], (len(at), 1)), at])
         if len(numbers) == 1:
-            return self._fixed_to(np.full(len(z), numbers[0]), arm)
-        k = np.clip(np.searchsorted(places, z, side="right") - 1, 0, len(places) - 2)
+            return self._fixed_to(np.full(len(at), numbers[0]), arm)
+        k = np.clip(np.searchsorted(places, at, side="right") - 1, 0, len(places) - 2)
         length = places[k + 1] - places[k]
-        return Attachment(numbers[k], numbers[k + 1], (z - places[k]) / length, length, self._shear[shaft][k], arm)
+        return Attachment(numbers[k], numbers[k + 1], (at - places[k]) / length, length, self._shear[shaft][k], arm)
 
     def on_pedestal(self, bearing: str, points: np.ndarray) -> Attachment:
         """All points move with the node of a bearing's pedestal."""

@@ -277,7 +277,8 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
         if np.allclose(start, end, rtol=0.0, atol=1e-6 * radius):
             continue
         if np.allclose(start[:2], end[:2], rtol=0.0, atol=1e-6 * radius):
-            sleeve = hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, *sorted((z1, z2)), detail.segments)
+            low, high = sorted((z1, z2))
+            sleeve = hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, low, high, detail.segments)
             surface = sleeve.moved((*start[:2], 0.0))
             to_second = np.abs(surface.points[:, 2] - z2) < np.abs(surface.points[:, 2] - z1)
         else:

@@ -91,10 +91,9 @@ def revolve(contour: np.ndarray, segments: int, closed: bool = False) -> Surface
 
 def hollow_cylinder(outer_radius: float, inner_radius: float, low: float, high: float, segments: int) -> Surface:
     """A closed cylinder between two values of z, solid for inner_radius = 0."""
-    if inner_radius <= 0.0:
-        return revolve(np.array([[0.0, low], [outer_radius, low], [outer_radius, high], [0.0, high]]), segments)
-    corners = [[inner_radius, low], [outer_radius, low], [outer_radius, high], [inner_radius, high]]
-    return revolve(np.array(corners), segments, closed=True)
+    inner = max(inner_radius, 0.0)
+    corners = [[inner, low], [outer_radius, low], [outer_radius, high], [inner, high]]
+    return revolve(np.array(corners), segments, closed=inner > 0.0)
 
 
 def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: np.ndarray, inner: float) -> Surface:

@@ -44,14 +44,9 @@ class GearPart:
     comments: dict[str, str]
 
     @property
-    def transverse_module(self) -> float:
-        """m_t = m_n / cos(beta)."""
-        return self.module / math.cos(self.helix_angle)
-
-    @property
     def reference_diameter(self) -> float:
-        """d = z m_t."""
-        return self.teeth * self.transverse_module
+        """d = z m_t with the transverse module m_t = m_n / cos(beta)."""
+        return self.teeth * (self.module / math.cos(self.helix_angle))
 
 
 def read_gear(

@@ -183,10 +183,10 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     taken = [part for part in document.components.values() if is_bearing(part) or is_coupling(part)]
     structure.note_left_out({part.id for part in [*taken, *masses]})
     counts = {"shafts": len(shafts), "gears": len(gears), "meshes": len(mesh_tables), "bearings": len(bearings)}
-    head = [operation] if operation is not None else []
+    head = [*filter(None, [operation]), *materials.tables]
     bodies = [*shaft_tables, *gear_tables, *mass_list]
-    joints = [*bearings.values(), *couplings.values()]
-    return [*head, *materials.tables, *bodies, *mesh_tables, *joints, *load_list], counts
+    joints = [*mesh_tables, *bearings.values(), *couplings.values()]
+    return [*head, *bodies, *joints, *load_list], counts
 
 
 def _value(table: Table, key: str) -> str:

@@ -199,8 +199,7 @@ def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, acco
     if not np.any(force) and not np.any(moment):
         return None
     # What the turning of axes leaves of a zero is none.
-    force = np.where(np.abs(force) < _ROUNDING * np.abs(force).max(), 0.0, force)
-    moment = np.where(np.abs(moment) < _ROUNDING * np.abs(moment).max(), 0.0, moment)
+    force, moment = (np.where(np.abs(v) < _ROUNDING * np.abs(v).max(), 0.0, v) for v in (force, moment))
     table = shaft.table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load), z)
     for key, kind, (along, x, y) in (("force", "force", force), ("moment", "torque", moment)):
         if any((along, x, y)):

@@ -43,14 +43,44 @@ class Block:
     lines: tuple[str, ...]
     data: bytes | None = None
 
-    def rows(self, first: int) -> list[tuple[int, str]]:
-        """The lines from a row on that are not blank, each with its row; rows count from 1."""
-        return [(k, text) for k, text in enumerate(self.lines[first - 1 :], start=first) if text.strip()]
-
     def problem(self, row: int, expected: str, value: str = "") -> ModelError:
         """An error at a row of the set, counted from 1; row 0 is the set as a whole."""
         address = f"{self.file}:{self.line + row} (dataset {self.number})"
         return ModelError([Problem(address, value, expected)], self.file)
+
+    def filled(self, first: int) -> list[int]:
+        """The rows from one on that are not blank, counted from 1."""
+        return [row for row, text in enumerate(self.lines[first - 1 :], start=first) if text.strip()]
+
+    def numbers(self, row: int) -> list[float]:
+        """The numbers in a row.
+
+        Raises:
+            ModelError: something that is no finite number.
+        """
+        text = self.lines[row - 1]
+        rest = _NUMBER.sub(" ", text).strip()
+        # An exponent without a letter: 0.1-100.
+        parts = (found.upper().replace("D", "E") for found in _NUMBER.findall(text))
+        values = [] if rest else [float(re.sub(r"([\d.])([+-]\d{3})\Z", r"\1e\2", part)) for part in parts]
+        if rest or not all(abs(value) < _LARGEST for value in values):
+            raise self.problem(row, "numbers", repr(text.strip()[:60]))
+        return values
+
+    def numbers_from(self, first: int) -> NDArray[np.float64]:
+        """The numbers in all rows from one on."""
+        return np.array([value for row in self.filled(first) for value in self.numbers(row)])
+
+    def whole(self, row: int, least: int) -> list[int]:
+        """The whole numbers in a row, `least` of them or more.
+
+        Raises:
+            ModelError: fewer of them, or others.
+        """
+        values = self.numbers(row)
+        if len(values) < least or not all(map(is_whole, values[:least])):
+            raise self.problem(row, f"{least} whole numbers", repr(self.lines[row - 1].strip()[:60]))
+        return [int(value) for value in values]
 
 
 @dataclass
@@ -171,40 +201,6 @@ def _is_mark(text: str) -> bool:
 
 def _problem(name: str, line: int, expected: str, value: str = "") -> ModelError:
     return ModelError([Problem(f"{name}:{line}", value, expected)], name)
-
-
-def numbers_in(text: str, block: Block, row: int) -> list[float]:
-    """The numbers in a row.
-
-    Raises:
-        ModelError: something that is no finite number.
-    """
-    rest = _NUMBER.sub(" ", text).strip()
-    # An exponent without a letter: 0.1-100.
-    parts = (
-        re.sub(r"([\d.])([+-]\d{3})\Z", r"\1e\2", found.upper().replace("D", "E")) for found in _NUMBER.findall(text)
-    )
-    values = [] if rest else [float(part) for part in parts]
-    if rest or not all(abs(value) < _LARGEST for value in values):
-        raise block.problem(row, "numbers", repr(text.strip()[:60]))
-    return values
-
-
-def numbers_from(first: int, block: Block) -> NDArray[np.float64]:
-    """The numbers in all rows from one on."""
-    return np.array([value for row, text in block.rows(first) for value in numbers_in(text, block, row)])
-
-
-def whole_in(text: str, block: Block, row: int, least: int) -> list[int]:
-    """The whole numbers in a row, `least` of them or more.
-
-    Raises:
-        ModelError: fewer of them, or others.
-    """
-    values = numbers_in(text, block, row)
-    if len(values) < least or not all(map(is_whole, values[:least])):
-        raise block.problem(row, f"{least} whole numbers", repr(text.strip()[:60]))
-    return [int(value) for value in values]
 
 
 def is_whole(value: float) -> bool:

@@ -19,17 +19,7 @@ from numpy.typing import NDArray
 from rotorgear.errors import ModelError, Problem
 from rotorgear.quantity import GRAVITY
 from rotorgear.uff import datasets
-from rotorgear.uff.blocks import (
-    Block,
-    binary_fields,
-    blocks_of,
-    columns,
-    is_whole,
-    numbers_from,
-    numbers_in,
-    sizes_of,
-    whole_in,
-)
+from rotorgear.uff.blocks import Block, binary_fields, blocks_of, columns, is_whole, sizes_of
 
 _COMPLEX = (5, 6)
 _KINDS = (2, 4, 5, 6)
@@ -71,7 +61,7 @@ def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Functio
     if len(lines) < 11:
         raise block.problem(0, f"eleven header lines of a function, {len(lines)} are there")
     kind, response, reference = _freedoms(lines[5], block)
-    form = numbers_in(lines[6], block, 7)
+    form = block.numbers(7)
     if len(form) < 3 or form[0] not in _KINDS or form[1] < 0 or not is_whole(form[1]):
         expected = "ordinate type 2, 4, 5 or 6, number of values and spacing"
         raise block.problem(7, expected, repr(lines[6].strip()[:60]))
@@ -82,7 +72,7 @@ def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Functio
     first, step, z = ([*form[3:6], 0.0, 0.0, 0.0])[:3]
     notes: list[str] = []
     if block.data is None:
-        x, values = _parted(numbers_from(12, block), count, int(form[0]), even, block)
+        x, values = _parted(block.numbers_from(12), count, int(form[0]), even, block)
     else:
         x, values, notes = _from_bytes(block, count, int(form[0]), even)
     if even and not step > 0.0 and count > 1:
@@ -274,7 +264,7 @@ def _units(block: Block) -> datasets.Units:
     if len(block.lines) < 2:
         raise block.problem(0, "a units code, and factors of length and force")
     code, description = columns(block.lines[0], (10, 20))
-    factors = numbers_from(2, block)
+    factors = block.numbers_from(2)
     if not code.isdigit() or len(factors) < 2 or not (factors[:2] > 0.0).all():
         raise block.problem(2, "a units code, and factors of length and force above 0", " ".join(block.lines)[:70])
     given = (float(factors[0]), float(factors[1]))
@@ -289,7 +279,7 @@ def _units(block: Block) -> datasets.Units:
 
 def _nodes(block: Block, units: datasets.Units) -> datasets.Nodes:
     """Datasets 15, a line a node, and 2411, two lines a node."""
-    rows = [numbers_in(text, block, k) for k, text in block.rows(1)]
+    rows = [block.numbers(row) for row in block.filled(1)]
     if block.number == 2411:
         if len(rows) % 2 or any(len(row) < 4 for row in rows[::2]) or any(len(row) != 3 for row in rows[1::2]):
             raise block.problem(0, "two lines a node: four whole numbers, then x, y and z")
@@ -325,8 +315,8 @@ def _joined(nodes: list[datasets.Nodes], file: str) -> datasets.Nodes | None:
 def _line(block: Block) -> datasets.TraceLine:
     if len(block.lines) < 2:
         raise block.problem(0, "number and name of a trace line, and its nodes")
-    number, count = whole_in(block.lines[0], block, 1, 2)[:2]
-    numbers = numbers_from(3, block)
+    number, count = block.whole(1, 2)[:2]
+    numbers = block.numbers_from(3)
     if not all(map(is_whole, numbers)):
         raise block.problem(3, "numbers of nodes")
     nodes = numbers.astype(int)
@@ -339,11 +329,11 @@ def _shape(block: Block) -> datasets.Shape:
     lines = block.lines
     if len(lines) < 8:
         raise block.problem(0, "eight header lines of a shape, and rows of nodes: the set is cut")
-    _, analysis, _, data_type, kind, each = whole_in(lines[5], block, 6, 6)[:6]
+    _, analysis, _, data_type, kind, each = block.whole(6, 6)[:6]
     if kind not in (2, 5) or each < 1:
         raise block.problem(6, "data type 2 (real) or 5 (complex), and numbers a node", repr(lines[5].strip()))
-    mode = [*whole_in(lines[6], block, 7, 3), 1][3]
-    facts = numbers_in(lines[7], block, 8)
+    mode = [*block.whole(7, 3), 1][3]
+    facts = block.numbers(8)
     eigenvalue = None
     if analysis == _NORMAL:
         frequency, _, damping = [*facts[:3], *(math.nan, 0.0, 0.0)[len(facts) :]]
@@ -363,7 +353,7 @@ def _shape(block: Block) -> datasets.Shape:
 
 def _node_values(each: int, block: Block) -> tuple[np.ndarray, np.ndarray]:
     """Numbers of nodes (n,), and `each` numbers at every one (n, each)."""
-    rows = [(k, numbers_in(text, block, k)) for k, text in block.rows(9)]
+    rows = [(row, block.numbers(row)) for row in block.filled(9)]
     if not rows:
         raise block.problem(9, "the shape has no nodes")
     nodes: list[int] = []
