@@ -15,8 +15,7 @@ import numpy as np
 
 from rotorgear.export.solids import Solids
 from rotorgear.page.contents import Contents, error_of
-from rotorgear.plots.figure import COLOURS, new_figure
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.plots.figure import COLOURS, beside, label, legend_below, name_axes, new_figure, values
 from rotorgear.results.standards import StandardsResult
 
 # Seen from the side of +x, +y and +z: columns are the picture's right, up, and towards the eye.
@@ -42,33 +41,38 @@ _LEAST = 1e-13
 _LINKS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
 
 
-def svg_of(picture: Any, label: str) -> str:
+def svg_of(picture: Any, shows: str) -> str:
     """Axes, or an array of them, as SVG whose letters are text: it can be read aloud, searched, and is small."""
     import matplotlib
 
     one = np.asarray(picture, dtype=object).flat[0]
     out = StringIO()
     # Ids of clip paths begin with the salt, so that no two pictures of the page share one.
-    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": label, "font.family": "DejaVu Sans"}):
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": shows, "font.family": "DejaVu Sans"}):
         one.figure.figure.savefig(
             out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
         )
     text = out.getvalue()
     if len(text) > _LARGEST:  # very many lines as SVG would make the page heavy
-        image = BytesIO()
-        one.figure.figure.savefig(image, format="png", dpi=150)
-        data = base64.b64encode(image.getvalue()).decode("ascii")
-        return f'<img alt="{escape(label)}" src="data:image/png;base64,{data}">'
+        return _image(one.figure.figure, shows, dpi=150)
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
-    prefix = re.sub(r"\W+", "_", label)
+    prefix = re.sub(r"\W+", "_", shows)
     text = re.sub(r'\bid="', f'id="{prefix}-', text)
     text = re.sub(r'(xlink:href="|url\()#', rf"\1#{prefix}-", text)
-    head = f'role="img" aria-label="{escape(label)}" {_LINKS}'
+    head = f'role="img" aria-label="{escape(shows)}" {_LINKS}'
     return re.sub(
         r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', lambda found: f'<svg viewBox="{found[1]}" {head}>', text, count=1
     )
+
+
+def _image(figure: Any, shows: str, **look: Any) -> str:
+    """A figure as an image element that holds its pixels."""
+    out = BytesIO()
+    figure.savefig(out, format="png", **look)
+    data = base64.b64encode(out.getvalue()).decode("ascii")
+    return f'<img alt="{escape(shows)}" src="data:image/png;base64,{data}">'
 
 
 class Painter:
@@ -86,11 +90,11 @@ class Painter:
         self.middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         self.span = np.ptp(flat, axis=0)
 
-    def image(self, label: str, moved: np.ndarray | None = None, level: np.ndarray | None = None) -> str:
+    def image(self, shows: str, moved: np.ndarray | None = None, level: np.ndarray | None = None) -> str:
         """An image element.
 
         Args:
-            label: what it shows, for those who don't see it.
+            shows: what it shows, for those who don't see it.
             moved: displacements (P, 3); none for the gearbox at rest.
             level: (P,) from 0 to 1, shown by colour in place of the kinds of parts.
         """
@@ -128,34 +132,29 @@ class Painter:
         axis.set_xlim(-reach, reach)
         axis.set_ylim(-reach * self.size[1] / self.size[0], reach * self.size[1] / self.size[0])
         axis.axis("off")
-        out = BytesIO()
-        figure.savefig(out, format="png", dpi=96, pil_kwargs={"optimize": True})
-        data = base64.b64encode(out.getvalue()).decode("ascii")
-        return f'<img alt="{escape(label)}" src="data:image/png;base64,{data}">'
+        return _image(figure, shows, dpi=96, pil_kwargs={"optimize": True})
 
-    def mode(self, label: str, shape: np.ndarray) -> str:
+    def mode(self, shows: str, shape: np.ndarray) -> str:
         """A mode at phase 0: deformed, coloured by displacement over the largest.
 
         Args:
-            label: what it shows. shape: displacements of the nodes (p, 6).
+            shows: what it shows. shape: displacements of the nodes (p, 6).
         """
         moved, _ = self.solids.scaled(shape)
         size = np.linalg.norm(np.abs(moved), axis=1)
-        return self.image(label, np.real(moved), size / (size.max(initial=0.0) or 1.0))
+        return self.image(shows, np.real(moved), size / (size.max(initial=0.0) or 1.0))
 
 
 def draw_unbalance(result: StandardsResult) -> Any:
     """Major axis of the orbit over the speed of the input shaft, a curve for each shaft."""
     axis = new_figure((9.0, 3.8)).subplots()
-    rpm = result.curve_speeds * RPM_PER_RAD_S
+    rpm = values(result, "curve_speeds")
     for k, (shaft, size) in enumerate(result.curves.items()):
         axis.semilogy(rpm, 1e6 * size, color=COLOURS[k % len(COLOURS)], lw=1.4, label=shaft)
     axis.axvline(result.operating_rpm, color="#444444", lw=0.8, ls="--")
-    axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
-    axis.set_ylabel("major axis, µm peak to peak")
-    axis.grid(True, which="major", alpha=0.25)
+    name_axes(axis, label(result, "curve_speeds"), label(result, "curves", "um"), grid=True)
     axis.set_xlim(rpm[0], rpm[-1])
-    axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=6)
+    legend_below(axis, 6, 0.16)
     return axis
 
 
@@ -169,14 +168,12 @@ def draw_errors(found: Contents) -> Any:
         x = max(found.seconds[name], 1e-3)
         y = max(error, _LEAST)
         axis.plot(x, y, "o", color=COLOURS[k % len(COLOURS)], ms=6)
-        axis.annotate(name, (x, y), xytext=(6, 4 if k % 2 else -11), textcoords="offset points", fontsize=9)
+        beside(axis, name, (x, y), (6, 4 if k % 2 else -11), fontsize=9)
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.margins(0.15)
     low, high = axis.get_ylim()
     if high < 100.0 * low:  # at least two decades, so that their ticks are powers of ten
         axis.set_ylim(low / 10.0, high * 10.0)
-    axis.set_xlabel("CPU seconds")
-    axis.set_ylabel("largest estimated relative error")
-    axis.grid(True, which="major", alpha=0.25)
+    name_axes(axis, "CPU seconds", "largest estimated relative error", grid=True)
     return axis

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import COLOURS, figure_for, name_axes, plain_axis
+from rotorgear.plots.figure import COLOURS, figure_for, label, name_axes, plain_axis, values
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.bearing import BearingSheet
+from rotorgear.results.bearing import BearingSheet, BearingSpeed, RollingElementRow
 
 
 def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
@@ -37,41 +37,33 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
         for angle, place, gap, pressures in film.patches():
             picture = inside.pcolormesh(angle, 1e3 * place, 1e-6 * pressures.T, cmap="viridis", **field)
             beside.plot(angle, 1e6 * gap, color=COLOURS[0], **line)
-        figure.colorbar(picture, ax=inside, label="pressure, MPa")
-        name_axes(inside, "", f"{film.place}, mm", title=f"Pressure, at most {largest:.3g} MPa")
+        figure.colorbar(picture, ax=inside, label=label(film, "pressure", "MPa"))
+        name_axes(inside, "", label(film, film.place, "mm"), title=f"Pressure, at most {largest:.3g} MPa")
         beside.set_ylim(bottom=0.0)
-        name_axes(beside, "", "gap, um", title=film.over_gap.format(film))
+        name_axes(beside, "", label(film, "gap", "um"), title=film.over_gap.format(film))
     else:
         angle = np.degrees([row.angle for row in result.rolling_elements])
-        inside.bar(
-            angle,
-            [row.load for row in result.rolling_elements],
-            width=0.5 * 360.0 / max(len(angle), 1),
-            color=COLOURS[0],
-        )
-        name_axes(inside, "", "load, N", title="Loads of the rolling elements")
-        for number, (key, label) in enumerate((("inner_pressure", "inner ring"), ("outer_pressure", "outer ring"))):
-            pressure = [1e-6 * getattr(row, key) for row in result.rolling_elements]
-            beside.plot(angle, pressure, "o", color=COLOURS[number], label=label)
+        loads = [row.load for row in result.rolling_elements]
+        inside.bar(angle, loads, width=0.5 * 360.0 / max(len(angle), 1), color=COLOURS[0])
+        name_axes(inside, "", label(RollingElementRow, "load"), title="Loads of the rolling elements")
+        for ring, colour in zip(("inner", "outer"), COLOURS, strict=False):
+            pressure = [values(row, f"{ring}_pressure", "MPa") for row in result.rolling_elements]
+            beside.plot(angle, pressure, "o", color=colour, label=f"{ring} ring")
         name_axes(beside, "", "largest Hertz pressure, MPa", legend=1)
     for axis in (inside, beside):
         axis.set_xlabel("angle from +x, deg")
     rpm = [row.speed * RPM_PER_RAD_S for row in result.over_speed]
     pairs = ((2, 2),) if result.along_shaft else ((0, 0), (0, 1), (1, 0), (1, 1))
-    for axis, key, factor, label in (
-        (stiffness, "stiffness", 1e-6, "K, N/um"),
-        (damping, "damping", 1e-3, "C, kN s/m"),
-    ):
-        for number, (i, j) in enumerate(pairs):
-            values = [factor * float(getattr(row, key)[i, j]) for row in result.over_speed]
-            axis.plot(rpm, values, "o-", ms=3, lw=1.4, color=COLOURS[number], label=f"{'xyz'[i]}{'xyz'[j]}")
-        name_axes(axis, "speed of the input shaft, rpm", label, legend=2)
+    for axis, key, factor, unit in ((stiffness, "stiffness", 1e-6, "N/um"), (damping, "damping", 1e-3, "kN s/m")):
+        for (i, j), colour in zip(pairs, COLOURS, strict=False):
+            entries = [factor * float(getattr(row, key)[i, j]) for row in result.over_speed]
+            axis.plot(rpm, entries, "o-", ms=3, lw=1.4, color=colour, label=f"{'xyz'[i]}{'xyz'[j]}")
+        name_axes(axis, label(BearingSpeed, "speed"), label(BearingSpeed, key, unit), legend=2)
         if result.threshold_speed is not None:
             axis.axvline(result.threshold_speed * RPM_PER_RAD_S, color="#999999", lw=0.8, ls=":")
-    stiffness.set_title(
-        "Stiffness" + (" (dotted: whirl threshold)" if result.threshold_speed is not None else ""), fontsize=10
-    )
-    damping.set_title("Damping", fontsize=10)
+    threshold = " (dotted: whirl threshold)" if result.threshold_speed is not None else ""
+    name_axes(stiffness, title=f"Stiffness{threshold}")
+    name_axes(damping, title="Damping")
     axes = np.array([inside, beside, stiffness, damping])
     for axis in axes[1:]:
         plain_axis(axis)

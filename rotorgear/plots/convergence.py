@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import BLUE, GREY, ORANGE, axes_for, figure_for, name_axes
+from rotorgear.plots.figure import BLUE, GREY, ORANGE, axes_for, beside, figure_for, label, name_axes
 from rotorgear.results.convergence import ConvergenceStudy, MeshConvergenceStudy, Rung
+from rotorgear.results.mesh import MeshResult
 
 _STYLE = {"elements": ("s", GREY, "basic elements"), "accuracy": ("o", BLUE, "refined to an accuracy")}
 # An error of exactly zero has no place on a logarithmic axis.
@@ -36,13 +37,11 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     figure = figure_for(fig, (10.0, 4.4), result.title)
     reached = [rung for rung in result.rungs if math.isfinite(rung.error) and math.isfinite(rung.seconds)]
     # Where only steps or lengths differ, all rungs stand over the same number of dofs.
-    panels = [("seconds", "CPU seconds, whole analysis")]
-    if len({rung.dofs for rung in reached}) > 1:
-        panels.append(("dofs", "degrees of freedom"))
+    panels = ("seconds", "dofs") if len({rung.dofs for rung in reached}) > 1 else ("seconds",)
     axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
-    for axis, (key, label) in zip(axes, panels, strict=True):
+    for axis, key in zip(axes, panels, strict=True):
         _curves(axis, reached, key)
-        axis.set_xlabel(label)
+        axis.set_xlabel(label(Rung, key))
     name_axes(axes[0], "", f"{result.analysis}: largest relative error\nof {result.modes} {result.compared}", legend=1)
     return axes
 
@@ -66,15 +65,8 @@ def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
         for place, text in _labels(x, y, [rung.setting for rung in rungs]):
             # Inside the axes, and those of one family above, of the next below: different families may meet in a point.
             to_the_left = place[0] > far_right and len(text) > _SHORT
-            axis.annotate(
-                text,
-                place,
-                xytext=(-4 if to_the_left else 4, -9 if number % 2 else 4),
-                textcoords="offset points",
-                ha="right" if to_the_left else "left",
-                fontsize=7,
-                color=colour,
-            )
+            offset = (-4 if to_the_left else 4, -9 if number % 2 else 4)
+            beside(axis, text, place, offset, ha="right" if to_the_left else "left", color=colour)
     axis.plot([], [], "x", color="#444444", alpha=0.7, label="its own estimate")
     axis.set_xscale("log")
     axis.set_yscale("log")
@@ -110,9 +102,9 @@ def _labels(x: np.ndarray, y: np.ndarray, settings: Sequence[float]) -> list[tup
 
 
 _CURVES = (
-    ("mean_stiffness", "o", BLUE, "mean stiffness"),
-    ("peak_to_peak_stiffness", "s", ORANGE, "its peak to peak"),
-    ("ste_peak_to_peak", "^", "#3a7d44", "transmission error, peak to peak"),
+    ("mean_stiffness", "o", BLUE),
+    ("peak_to_peak_stiffness", "s", ORANGE),
+    ("ste_peak_to_peak", "^", "#3a7d44"),
 )
 
 
@@ -130,10 +122,10 @@ def mesh_convergence(result: MeshConvergenceStudy, ax: Any = None) -> Any:
         MissingExtraError: matplotlib is not installed.
     """
     axis = axes_for(ax, (7.5, 4.6), f"{result.title}: {result.mesh}")
-    for name, marker, colour, label in _CURVES:
+    for name, marker, colour in _CURVES:
         seconds = [rung.fe_seconds + rung.contact_seconds for rung in result.rungs]
         errors = [100.0 * max(getattr(rung.error, name), 1e-7) for rung in result.rungs]
-        axis.loglog(seconds, errors, marker, color=colour, ms=7, label=label)
+        axis.loglog(seconds, errors, marker, color=colour, ms=7, label=MeshResult.declarations[name].label)
         known = [(s, rung.estimate) for s, rung in zip(seconds, result.rungs, strict=True) if rung.estimate]
         # A cross lies over the mark of another curve, not under it.
         estimates = [100.0 * getattr(e, name) for _, e in known]
@@ -141,7 +133,7 @@ def mesh_convergence(result: MeshConvergenceStudy, ax: Any = None) -> Any:
     for rung in result.rungs:
         top = 100.0 * rung.error.worst
         place = (rung.fe_seconds + rung.contact_seconds, top)
-        axis.annotate(rung.method.removeprefix("preset "), place, (6, 6), textcoords="offset points", fontsize=9)
+        beside(axis, rung.method.removeprefix("preset "), place, (6, 6), fontsize=9)
     axis.loglog([], [], "x", color="#444444", ms=8, mew=1.8, label="its own estimate")
     axis.margins(0.12)
     for scale in (axis.xaxis, axis.yaxis):

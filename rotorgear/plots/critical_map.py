@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import BLUE, GREY, axes_for, name_axes
+from rotorgear.plots.figure import BLUE, GREY, axes_for, label, legend_below, name_axes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.critical import CriticalMap
 from rotorgear.results.modal import WHIRL_WORDS
@@ -60,19 +60,12 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
             near = np.abs(result.critical_speeds[max(row - 1, 0) : row + 2]) * RPM_PER_RAD_S
             edges = np.log(np.sort(np.concatenate([near[np.isfinite(near)], axis.get_ylim()])))
             widest = int(np.argmax(np.diff(edges)))
-            axis.text(
-                value,
-                float(np.exp(0.5 * (edges[widest] + edges[widest + 1]))),
-                ", ".join(alike[:3]) + more,
-                rotation=90,
-                fontsize=7,
-                va="center",
-                ha="right",
-                color="#444444",
-            )
-    name_axes(axis, "radial stiffness of every bearing, N/m", f"critical speed of {result.model.reference_shaft}, rpm")
+            middle = float(np.exp(0.5 * (edges[widest] + edges[widest + 1])))
+            look = {"rotation": 90, "fontsize": 7, "va": "center", "ha": "right", "color": "#444444"}
+            axis.text(value, middle, ", ".join(alike[:3]) + more, **look)
+    name_axes(axis, label(result, "stiffness"), label(result, "critical_speeds"))
     axis.set_xlim(result.stiffness[0], result.stiffness[-1])
     axis.grid(True, which="both", alpha=0.2)
     if axis.get_legend_handles_labels()[0]:
-        axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=5)  # curves fill the axes
+        legend_below(axis, 5)
     return axis

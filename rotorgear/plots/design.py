@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import BLUE, figure_for, name_axes
-from rotorgear.results.optimise import OptimiseResult
-from rotorgear.results.scatter import HIGH, LOW, ScatterResult
+from rotorgear.plots.figure import BLUE, figure_for, label, legend_below, name_axes
+from rotorgear.results.optimise import LayoutMode, OptimiseResult
+from rotorgear.results.scatter import HIGH, LOW, FrequencyBand, ScatterResult
 
 # Participations below this share are not drawn.
 _LEAST = 1e-3
@@ -43,17 +43,15 @@ def scatter(result: ScatterResult, fig: Any = None) -> Any:
                 body.set(facecolor=BLUE, alpha=0.35, edgecolor="none")
         upper.plot([k, k], [row.low_hz, row.high_hz], color=BLUE, lw=2.0)
         upper.plot([k - 0.3, k + 0.3], [row.nominal_hz] * 2, color="#222222", lw=1.2)
-    name = f"{100 * LOW:.0f} to {100 * HIGH:.0f} % of the samples"
-    upper.plot([], [], color=BLUE, lw=2.0, label=name)
+    upper.plot([], [], color=BLUE, lw=2.0, label=f"{100 * LOW:.0f} to {100 * HIGH:.0f} % of the samples")
     upper.plot([], [], color="#222222", lw=1.2, label="nominal")
     for line in result.margins:
         reach = (line.frequency_hz * (1.0 - result.least_margin), line.frequency_hz * (1.0 + result.least_margin))
         upper.axhspan(*reach, color="#c2571a", alpha=0.08, lw=0.0)
         upper.axhline(line.frequency_hz, color="#c2571a", lw=0.7)
-        upper.annotate(
-            line.line, (1.0, line.frequency_hz), xycoords=("axes fraction", "data"), fontsize=7, ha="right", va="bottom"
-        )
-    upper.set_ylabel("frequency, Hz")
+        place = {"transform": upper.get_yaxis_transform(), "ha": "right", "va": "bottom"}
+        upper.text(1.0, line.frequency_hz, line.line, fontsize=7, **place)
+    upper.set_ylabel(label(FrequencyBand, "nominal_hz"))
     upper.legend(frameon=False, loc="upper left")
     upper.grid(True, axis="y", alpha=0.2)
     shares = result.first_order_share[: len(result.bands)]
@@ -65,9 +63,9 @@ def scatter(result: ScatterResult, fig: Any = None) -> Any:
     if len(order) > _TOLD:
         lower.bar(numbers, shares.sum(axis=1) - bottom, bottom=bottom, color="#bbbbbb", width=0.8, label="others")
     lower.set_ylim(0.0, 1.0)
-    name_axes(lower, "mode", "share in the variance")
+    name_axes(lower, "mode", label(result, "first_order_share"))
     lower.set_xticks(numbers)
-    lower.legend(frameon=False, fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3)
+    legend_below(lower, 3, 0.22, fontsize=7)
     return np.array([upper, lower])
 
 
@@ -91,10 +89,7 @@ def optimise(result: OptimiseResult, fig: Any = None) -> Any:
     for axis, line in zip(rows, result.lines, strict=True):
         axis.axvspan(-asked, asked, color="#c2571a", alpha=0.10, lw=0.0)
         axis.axhline(100.0 * result.participation, color="#444444", lw=0.7, ls="--")
-        for modes, colour, name in (
-            (result.modes_before, "#999999", "before"),
-            (result.modes_after, BLUE, "after"),
-        ):
+        for name, modes, colour in (("before", result.modes_before, "#999999"), ("after", result.modes_after, BLUE)):
             near = [one for one in modes if one.line == line.line and one.speed == line.speed]
             x = [100.0 * one.margin for one in near]
             y = [100.0 * one.participation for one in near]
@@ -102,9 +97,9 @@ def optimise(result: OptimiseResult, fig: Any = None) -> Any:
             axis.plot(x, y, "o", color=colour, ms=4, label=name)
         axis.set_yscale("log")
         axis.set_ylim(100.0 * _LEAST, 100.0)
-        axis.set_ylabel("takes part, %", fontsize=8)
         axis.set_title(f"{line.line}: {line.frequency_hz:.1f} Hz", fontsize=9, loc="left")
-    rows[-1].set_xlabel("distance of the mode from the excitation, %")
+    figure.supylabel(label(LayoutMode, "participation", "%"), fontsize=9)
+    rows[-1].set_xlabel(label(LayoutMode, "margin", "%"))
     rows[-1].set_xlim(-3.0 * asked, 3.0 * asked)
     rows[0].legend(frameon=False, fontsize=8, loc="upper right", ncols=2)
     return rows

@@ -11,6 +11,8 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish, replacing
 from rotorgear.extras import require
+from rotorgear.results.schema import Record
+from rotorgear.results.table import label_of, scale, unit_of
 
 FORMATS = (".png", ".svg", ".pdf")
 # Colours of lines and bars that colour-blind readers tell apart, dark enough on white (Okabe and Ito).
@@ -65,6 +67,27 @@ def name_axes(axis: Any, x: str = "", y: str = "", *, title: str = "", grid: boo
         axis.grid(True, alpha=0.25)
     if legend:
         axis.legend(frameon=False, fontsize=8, ncols=legend)
+
+
+def label(of: Record | type[Record], field: str, shown: str = "") -> str:
+    """What stands along an axis that shows a field: the label that the result declares, and the unit that is shown."""
+    return label_of(of.declarations[field], shown)
+
+
+def values(of: Record, field: str, shown: str = "") -> np.ndarray:
+    """A field of a result, or of a record in it, in the unit that `label` says."""
+    declared = of.declarations[field]
+    return scale(declared.unit, shown or unit_of(declared)) * np.asarray(getattr(of, field))
+
+
+def legend_below(axis: Any, columns: int, below: float = 0.12, **look: Any) -> None:
+    """A legend below axes that curves fill, so many shares of their height down."""
+    axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -below), ncols=columns, **look)
+
+
+def beside(axis: Any, text: str, at: tuple[float, float], offset: tuple[float, float], **look: Any) -> None:
+    """Write small words beside a point, so many points of type away from it."""
+    axis.annotate(text, at, xytext=offset, textcoords="offset points", **{"fontsize": 7} | look)
 
 
 def plain_axis(axis: Any) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import COLOURS, figure_for, plain_axis
+from rotorgear.plots.figure import COLOURS, figure_for, label, name_axes, plain_axis
 from rotorgear.results.frequency_response import FrequencyResponse
 
 
@@ -31,16 +31,14 @@ def frf(result: FrequencyResponse, fig: Any = None, *, quantity: str = "receptan
     for number, (o, i) in enumerate(pairs):
         colour = COLOURS[number % len(COLOURS)]
         style = ("-", "--", ":")[number // len(COLOURS) % 3]
-        label = f"{result.inputs[i]} to {result.outputs[o]}"
-        size.semilogy(result.frequency_hz, np.abs(values[:, o, i]), color=colour, ls=style, lw=1.3, label=label)
+        name = f"{result.inputs[i]} to {result.outputs[o]}"
+        size.semilogy(result.frequency_hz, np.abs(values[:, o, i]), color=colour, ls=style, lw=1.3, label=name)
         phase.plot(result.frequency_hz, np.degrees(np.angle(values[:, o, i])), color=colour, ls=style, lw=1.0)
     units = dict.fromkeys(result.unit(o, i, quantity) for o, i in pairs)
-    size.set_ylabel(f"{quantity}, {', '.join(units)}", fontsize=9)
-    size.legend(frameon=False, fontsize=8)
-    phase.set_ylabel("phase, deg", fontsize=9)
+    name_axes(size, "", f"{quantity}, {', '.join(units)}", legend=1)
+    name_axes(phase, label(result, "frequency_hz"), "phase, deg")
     phase.set_ylim(-190, 190)
     phase.set_yticks([-180, -90, 0, 90, 180])
-    phase.set_xlabel("frequency, Hz")
     for axis in (size, phase):
         plain_axis(axis)
     return np.array([size, phase])

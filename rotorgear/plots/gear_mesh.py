@@ -13,7 +13,7 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.plots.figure import BLUE, ORANGE, figure_for
+from rotorgear.plots.figure import BLUE, ORANGE, figure_for, name_axes
 from rotorgear.results.gear_sheet import GearSheet
 
 _POINTS = 40
@@ -76,38 +76,35 @@ def gear(result: GearSheet, fig: Any = None, *, mesh: str | None = None) -> np.n
     turn = np.linspace(0.0, 2.0 * math.pi, 721)
     centres = ((0.0, 0.0), (1e3 * teeth.pair.centre_distance, 0.0))
     for axis in (whole, near):
-        for number, (g, centre, colour) in enumerate(
-            zip((teeth.first, teeth.second), centres, (BLUE, ORANGE), strict=True), 1
-        ):
+        gears = ((1, row.pinion, teeth.first, BLUE), (2, row.gear, teeth.second, ORANGE))
+        for (number, gear_name, g, colour), centre in zip(gears, centres, strict=True):
             xy = 1e3 * gear_contour(teeth, number)
             axis.fill(*xy.T, facecolor=colour, alpha=0.16)
-            axis.plot(*xy.T, color=colour, lw=1.2, label=(row.pinion, row.gear)[number - 1])
-            for radius, style in ((g.base_radius / math.cos(angle), "-."), (g.base_radius, ":")):
-                label = {"-.": "working pitch circles", ":": "base circles"}[style] if number == 1 else None
+            axis.plot(*xy.T, color=colour, lw=1.2, label=gear_name)
+            circles = {"working pitch circles": g.base_radius / math.cos(angle), "base circles": g.base_radius}
+            for (circle, radius), style in zip(circles.items(), ("-.", ":"), strict=True):
                 x = 1e3 * radius * np.cos(turn) + centre[0]
                 y = 1e3 * radius * np.sin(turn)
-                axis.plot(x, y, style, color="#555555", lw=0.8, label=label)
+                axis.plot(x, y, style, color="#555555", lw=0.8, label=circle if number == 1 else None)
             axis.plot(*centre, "+", color=colour, ms=8)
         tangents = [-teeth.first.base_radius * math.tan(angle), teeth.second.base_radius * math.tan(angle)]
         ends = 1e3 * np.array([on_line_of_action(teeth, x) for x in tangents])
         axis.plot(*ends.T, "--", color="#333333", lw=0.9, label="line of action")
-        path = 1e3 * np.array(
-            [on_line_of_action(teeth, x) for x in (teeth.pair.start_of_contact, teeth.pair.end_of_contact)]
-        )
+        contact = (teeth.pair.start_of_contact, teeth.pair.end_of_contact)
+        path = 1e3 * np.array([on_line_of_action(teeth, x) for x in contact])
         axis.plot(*path.T, color="#111111", lw=2.4, label="path of contact")
         axis.plot(*(1e3 * contact_points(teeth)).T, "o", color="#c00000", ms=4.5, label="contact points")
         axis.set_aspect("equal")
         axis.tick_params(labelsize=8)
-        axis.set_xlabel("x, mm", fontsize=8)
-        axis.set_ylabel("y, mm", fontsize=8)
+        name_axes(axis, "x, mm", "y, mm")
     # A few teeth around the pitch point.
     pitch = 1e3 * on_line_of_action(teeth, 0.0)[0]
     reach = 5.0e3 * teeth.first.transverse_module
     near.set_xlim(pitch - 1.25 * reach, pitch + 1.25 * reach)
     near.set_ylim(-reach, reach)
-    whole.set_title(f"{name}: centre distance {1e3 * row.centre_distance_m:.3f} mm", fontsize=10)
+    name_axes(whole, title=f"{name}: centre distance {1e3 * row.centre_distance_m:.3f} mm")
     ratios = f"eps_alpha {row.transverse_contact_ratio:.3f}, eps_beta {row.overlap_ratio:.3f}"
-    near.set_title(f"working pressure angle {row.working_pressure_angle_deg:.3f} deg, {ratios}", fontsize=10)
+    name_axes(near, title=f"working pressure angle {row.working_pressure_angle_deg:.3f} deg, {ratios}")
     handles = dict(zip(*near.get_legend_handles_labels()[::-1], strict=True))
     first = {row.pinion: handles[row.pinion], row.gear: handles[row.gear]} | handles
     figure.legend(first.values(), first.keys(), loc="outside lower center", ncols=7, frameon=False, fontsize=8)

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import BLUE, GREY, ORANGE, axes_for, figure_for, name_axes
-from rotorgear.results.mesh import MeshResult
+from rotorgear.plots.figure import BLUE, GREY, ORANGE, axes_for, beside, figure_for, label, name_axes, values
+from rotorgear.results.mesh import HelixContact, MeshResult
 from rotorgear.results.mesh_map import MeshMap
-from rotorgear.results.root_stress import RootStress
+from rotorgear.results.root_stress import GearRootStress, RootStress
+from rotorgear.results.schema import Record
 
 _LEVELS = {"pressure": 16, "map": 14}
 
@@ -33,18 +34,12 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
     figure = figure_for(fig, (11.0, 3.7 * rows), f"{result.mesh}: {result.stiffness_model}{load}")
     axes = figure.subplots(rows, 2, squeeze=False)
     stiffness = axes[0, 0]
-    stiffness.plot(
-        *_closed(result.position, 1e-6 * result.stiffness, result.periods), color=BLUE, lw=1.6, label=result.definition
-    )
+    _plot(stiffness, result, values(result, "stiffness", "N/um"), color=BLUE, lw=1.6, label=result.definition)
     if result.tangent is not None:
-        stiffness.plot(
-            *_closed(result.position, 1e-6 * result.tangent, result.periods), color=ORANGE, lw=1.2, label="tangent"
-        )
-    stiffness.axhline(1e-6 * result.mean_stiffness, color=GREY, lw=0.9, ls="--", label="mean")
-    name_axes(
-        stiffness, title=f"stiffness, {'all helices' if result.helices > 1 else 'one helix'}, transverse", legend=1
-    )
-    _plain_axis(stiffness, "stiffness, N/um")
+        _plot(stiffness, result, values(result, "tangent", "N/um"), color=ORANGE, lw=1.2, label="tangent")
+    stiffness.axhline(values(result, "mean_stiffness", "N/um"), color=GREY, lw=0.9, ls="--", label="mean")
+    helices = "all helices" if result.helices > 1 else "one helix"
+    _name_cycle(stiffness, "stiffness", "N/um", title=f"stiffness, {helices}, transverse", legend=1)
     _error(axes[0, 1], result)
     if result.helix:
         helix = result.helix[0]
@@ -58,31 +53,31 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
             elif carries.any():
                 sharing.plot(result.position, carried, ".", color=GREY, ms=3)
         sharing.set_ylim(0.0, None)
-        name_axes(sharing, title=f"load sharing, contact ratio {helix.contact_ratio:.2f} under load", legend=2)
-        _plain_axis(sharing, "share of the load, %")
+        title = f"load sharing, contact ratio {helix.contact_ratio:.2f} under load"
+        _name_cycle(sharing, "share", "%", of=HelixContact, title=title, legend=2)
         mesh_pressure(result, axes[1, 1])
     if result.loads:
         mesh_loads(result, axes[-1, 0])
         # Transmission error over the cycle at each load, about the middle of its range.
         axis = axes[-1, 1]
-        axis.set_title("transmission error about its middle, by load factor", fontsize=10)
         for point in result.loads:
             if point.ste_m is not None and point.position is not None:
-                middle = 0.5 * (point.ste_m.max() + point.ste_m.min())
-                curve = _closed(point.position, 1e6 * (point.ste_m - middle), result.periods)
-                axis.plot(*curve, lw=1.3, label=f"{point.factor:g}")
-        axis.legend(frameon=False, fontsize=8, ncols=4)
-        _plain_axis(axis, "transmission error, um")
+                error = values(point, "ste_m", "um")
+                middle = 0.5 * (error.max() + error.min())
+                _plot(axis, result, error - middle, point.position, lw=1.3, label=f"{point.factor:g}")
+        title = "transmission error about its middle, by load factor"
+        _name_cycle(axis, "transmission_error", "um", title=title, legend=4)
     return np.asarray(axes)
 
 
-def _closed(position: np.ndarray, values: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
-    """The curve with its first point again at the end of the last period."""
-    return np.append(position, position[0] + periods), np.append(values, values[0])
+def _plot(axis: Any, result: MeshResult, curve: np.ndarray, position: np.ndarray | None = None, **look: Any) -> None:
+    """Draw a curve over the mesh cycle, with its first point again at the end of the last period."""
+    at = result.position if position is None else position
+    axis.plot(np.append(at, at[0] + result.periods), np.append(curve, curve[0]), **look)
 
 
-def _plain_axis(axis: Any, label: str) -> None:
-    name_axes(axis, "mesh periods", label, grid=True)
+def _name_cycle(axis: Any, field: str, shown: str, of: type[Record] = MeshResult, **names: Any) -> None:
+    name_axes(axis, label(MeshResult, "position"), label(of, field, shown), grid=True, **names)
     axis.ticklabel_format(axis="y", useOffset=False)
 
 
@@ -91,25 +86,15 @@ def _error(axis: Any, result: MeshResult) -> None:
     if result.transmission_error is None or result.no_load_error is None:
         axis.text(0.5, 0.5, "no load", ha="center", transform=axis.transAxes)
         return
-    axis.plot(
-        *_closed(result.position, 1e6 * result.transmission_error, result.periods),
-        color=BLUE,
-        lw=1.6,
-        label="under load",
-    )
-    if np.ptp(result.no_load_error) > 0.0:
+    loaded = values(result, "transmission_error", "um")
+    _plot(axis, result, loaded, color=BLUE, lw=1.6, label="under load")
+    without = values(result, "no_load_error", "um")
+    varies = bool(np.ptp(without) > 0.0)
+    if varies:
         # Both curves about one mean: what is compared is how much they vary.
-        shift = float(np.mean(result.transmission_error) - np.mean(result.no_load_error))
-        label = f"without load, {1e6 * shift:+.3g} um"
-        axis.plot(
-            *_closed(result.position, 1e6 * (result.no_load_error + shift), result.periods),
-            color=GREY,
-            lw=1.2,
-            ls="--",
-            label=label,
-        )
-        axis.legend(frameon=False, fontsize=8)
-    _plain_axis(axis, "transmission error, um")
+        shift = float(np.mean(loaded) - np.mean(without))
+        _plot(axis, result, without + shift, color=GREY, lw=1.2, ls="--", label=f"without load, {shift:+.3g} um")
+    _name_cycle(axis, "transmission_error", "um", legend=int(varies))
 
 
 def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
@@ -136,17 +121,19 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
     # Corners touch where the line of action passes too, at another position: they are shown beside it.
     on_line = ~contact.corner
     touching = contact.corner & (contact.force > 0.0)
-    roll = 1e3 * contact.roll[:, 0]
-    z = 1e3 * contact.z
-    pressure = 1e-6 * contact.pressure
+    roll = values(contact, "roll", "mm")[:, 0]
+    z = values(contact, "z", "mm")
+    pressure = values(contact, "pressure", "MPa")
+    pressures = label(contact, "pressure", "MPa")
+    corners = "a tip corner touches"
     if np.ptp(z) == 0.0:
         order = np.flatnonzero(on_line)[np.argsort(roll[on_line])]
         axis.fill_between(roll[order], pressure[order], color=BLUE, alpha=0.25, lw=0.0)
         axis.plot(roll[order], pressure[order], color=BLUE, lw=1.4, label="on the line of action")
         if touching.any():
-            axis.plot(roll[touching], pressure[touching], ".", color=ORANGE, ms=4, label="a tip corner touches")
+            axis.plot(roll[touching], pressure[touching], ".", color=ORANGE, ms=4, label=corners)
             _legend_below(axis, 2)
-        name_axes(axis, "", "largest pressure, MPa", grid=True)
+        name_axes(axis, "", pressures, grid=True)
         axis.set_ylim(0.0, None)
     else:
         from matplotlib.tri import Triangulation
@@ -154,37 +141,24 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
         # Triangles between the places that contact lines pass; both directions to scale, or slender ones would smear.
         near = Triangulation(roll[on_line] / np.ptp(roll), z[on_line] / np.ptp(z)).triangles
         levels = np.linspace(0.0, max(float(pressure.max()), 1e-3), _LEVELS["pressure"])
-        filled = axis.tricontourf(
-            Triangulation(roll[on_line], z[on_line], near), pressure[on_line], levels=levels, cmap="viridis"
-        )
+        flank = Triangulation(roll[on_line], z[on_line], near)
+        filled = axis.tricontourf(flank, pressure[on_line], levels=levels, cmap="viridis")
         if touching.any():
-            axis.scatter(
-                roll[touching],
-                z[touching],
-                c=pressure[touching],
-                label="a tip corner touches",
-                cmap="viridis",
-                vmin=0.0,
-                vmax=levels[-1],
-                edgecolors="white",
-                linewidths=0.3,
-                s=14,
-            )
+            look = {
+                "cmap": "viridis",
+                "vmin": 0.0,
+                "vmax": levels[-1],
+                "edgecolors": "white",
+                "linewidths": 0.3,
+                "s": 14,
+            }
+            axis.scatter(roll[touching], z[touching], c=pressure[touching], label=corners, **look)
             _legend_below(axis, 1)
-        axis.set_ylabel("place along the face, mm")
-        axis.figure.colorbar(filled, ax=axis, label="largest pressure, MPa", format="%.0f")
-    for name, place in zip("ACE", contact.path_of_contact, strict=True):
-        axis.axvline(
-            1e3 * place, color="#c00000" if name == "C" else "#333333", lw=1.0, ls="-." if name == "C" else "--"
-        )
-        axis.annotate(
-            name,
-            (1e3 * place, 1.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(2, -10),
-            textcoords="offset points",
-            fontsize=8,
-        )
+        axis.set_ylabel(label(contact, "z", "mm"))
+        axis.figure.colorbar(filled, ax=axis, label=pressures, format="%.0f")
+    for name, place in zip("ACE", values(contact, "path_of_contact", "mm"), strict=True):
+        axis.axvline(place, color="#c00000" if name == "C" else "#333333", lw=1.0, ls="-." if name == "C" else "--")
+        beside(axis, name, (place, 1.0), (2, -10), xycoords=("data", "axes fraction"), fontsize=8)
     return axis
 
 
@@ -218,25 +192,28 @@ def mesh_loads(result: MeshResult, ax: Any = None) -> Any:
     torque = abs(result.load.pinion_torque_n_m) * np.array([point[0] for point in points])
     axis.plot(torque, [1e6 * point[1] for point in points], "o-", ms=3.5, lw=1.6, color=BLUE, label="peak to peak")
     for order in range(min(len(point[2]) for point in points)):
-        values = [1e6 * point[2][order] for point in points]
-        axis.plot(torque, values, ".--", lw=1.1, label=f"mesh order {order + 1}")
-    name_axes(
-        axis, f"torque on {result.pinion}, N m", "transmission error, um", title="transmission error over the torque"
-    )
+        amplitudes = [1e6 * point[2][order] for point in points]
+        axis.plot(torque, amplitudes, ".--", lw=1.1, label=f"mesh order {order + 1}")
     axis.set_ylim(0.0, None)
-    name_axes(axis, legend=1, grid=True)
+    title = "transmission error over the torque"
+    error = label(result, "transmission_error", "um")
+    name_axes(axis, f"torque on {result.pinion}, N m", error, title=title, legend=1, grid=True)
     return axis
 
 
-# What is drawn by name: its field, the factor to its unit, and its label.
+# What is drawn by name: its field, and the unit that is shown.
 QUANTITIES = {
-    "ste": ("ste_peak_to_peak", 1e6, "transmission error, peak to peak, um"),
-    "order_1": ("ste_harmonics", 1e6, "transmission error, mesh order 1, um"),
-    "order_2": ("ste_harmonics", 1e6, "transmission error, mesh order 2, um"),
-    "order_3": ("ste_harmonics", 1e6, "transmission error, mesh order 3, um"),
-    "pressure": ("largest_pressure", 1e-6, "largest contact pressure, MPa"),
-    "face_load_factor": ("face_load_factor", 1.0, "face load factor K_Hbeta"),
+    "ste": ("ste_peak_to_peak", "um"),
+    "order_1": ("ste_harmonics", "um"),
+    "order_2": ("ste_harmonics", "um"),
+    "order_3": ("ste_harmonics", "um"),
+    "pressure": ("largest_pressure", "MPa"),
+    "face_load_factor": ("face_load_factor", ""),
 }
+
+
+# Those of a map, row by row.
+_MAPS = ("ste", "order_1", "order_2", "pressure", "face_load_factor", "order_3")
 
 
 def mesh_map(result: MeshMap, fig: Any = None) -> np.ndarray:
@@ -254,9 +231,7 @@ def mesh_map(result: MeshMap, fig: Any = None) -> np.ndarray:
     """
     figure = figure_for(fig, (13.0, 7.2), f"{result.mesh}: {result.pinion} and {result.gear}")
     axes = np.asarray(figure.subplots(2, 3, squeeze=False))
-    for axis, quantity in zip(
-        axes.flat, ("ste", "order_1", "order_2", "pressure", "face_load_factor", "order_3"), strict=True
-    ):
+    for axis, quantity in zip(axes.flat, _MAPS, strict=True):
         mesh_quantity(result, axis, quantity=quantity)
     return axes
 
@@ -277,32 +252,32 @@ def mesh_quantity(result: MeshMap, ax: Any = None, *, quantity: str = "ste") -> 
     """
     if quantity not in QUANTITIES:
         raise AnalysisError(f"a mesh map has no '{quantity}': there are {', '.join(QUANTITIES)}")
-    field, factor, label = QUANTITIES[quantity]
-    values = factor * getattr(result, field)
+    field, unit = QUANTITIES[quantity]
+    shown = values(result, field, unit)
+    name = label(result, field, unit)
     if field == "ste_harmonics":
-        values = values[:, :, int(quantity[-1]) - 1]
+        order = int(quantity[-1])
+        shown = shown[:, :, order - 1]
+        name = f"transmission error, mesh order {order}, {unit}"
     axis = axes_for(ax, (6.4, 4.4), "")
     torque = result.pinion_torque
-    misalignment = 1e6 * result.misalignment
+    misalignment = values(result, "misalignment", "um")
+    along = (label(result, "pinion_torque"), label(result, "misalignment", "um"))
     # A constant up to rounding has no contours.
-    if min(values.shape) > 1:
-        axis.set_title(label, fontsize=10)
-        if np.ptp(values) > 1e-9 * np.abs(values).max():
-            filled = axis.contourf(torque, misalignment, values.T, levels=_LEVELS["map"], cmap="viridis")
-            axis.contour(
-                torque, misalignment, values.T, levels=_LEVELS["map"], colors="white", linewidths=0.4, alpha=0.6
-            )
+    if min(shown.shape) > 1:
+        name_axes(axis, *along, title=name)
+        if np.ptp(shown) > 1e-9 * np.abs(shown).max():
+            levels = _LEVELS["map"]
+            filled = axis.contourf(torque, misalignment, shown.T, levels=levels, cmap="viridis")
+            axis.contour(torque, misalignment, shown.T, levels=levels, colors="white", linewidths=0.4, alpha=0.6)
             axis.figure.colorbar(filled, ax=axis)
         else:
-            axis.text(0.5, 0.5, f"{values.flat[0]:.4g} everywhere", ha="center", transform=axis.transAxes)
-        name_axes(axis, "torque on the pinion, N m", "misalignment over the face, um")
+            axis.text(0.5, 0.5, f"{shown.flat[0]:.4g} everywhere", ha="center", transform=axis.transAxes)
         return axis
-    over_torque = len(torque) > 1 or len(misalignment) == 1
-    x = torque if over_torque else misalignment
-    axis.plot(x, values.ravel(), "o-", ms=3.5, lw=1.5, color=BLUE)
-    name_axes(axis, "torque on the pinion, N m" if over_torque else "misalignment over the face, um", label)
+    x, name_of_x = (torque, along[0]) if len(torque) > 1 or len(misalignment) == 1 else (misalignment, along[1])
+    axis.plot(x, shown.ravel(), "o-", ms=3.5, lw=1.5, color=BLUE)
+    name_axes(axis, name_of_x, name, grid=True)
     axis.set_ylim(0.0, None)
-    axis.grid(True, alpha=0.25)
     return axis
 
 
@@ -321,14 +296,12 @@ def root_stress(result: RootStress, ax: Any = None) -> Any:
     """
     axis = axes_for(ax, (8.0, 4.6), f"{result.mesh}: {result.pinion_torque_n_m:.5g} N m on the pinion")
     for gear, colour in zip(result.gears, (BLUE, ORANGE), strict=True):
-        axis.plot(gear.phase, 1e-6 * gear.largest, color=colour, lw=1.6, label=f"{gear.name}, largest of the fillet")
-        axis.plot(
-            gear.phase, 1e-6 * gear.at_tangent, color=colour, lw=1.2, ls="--", label=f"{gear.name}, 30 deg tangent"
-        )
+        for field, style in (("largest", {"lw": 1.6}), ("at_tangent", {"lw": 1.2, "ls": "--"})):
+            name = f"{gear.name}, {gear.declarations[field].label}"
+            axis.plot(gear.phase, values(gear, field, "MPa"), color=colour, label=name, **style)
         if gear.nominal is not None:
-            axis.axhline(1e-6 * gear.nominal, color=colour, lw=0.8, ls=":", label=f"{gear.name}, nominal by ISO 6336-3")
+            nominal = f"{gear.name}, nominal by ISO 6336-3"
+            axis.axhline(values(gear, "nominal", "MPa"), color=colour, lw=0.8, ls=":", label=nominal)
     axis.axvline(0.0, color=GREY, lw=0.8)
-    name_axes(
-        axis, "mesh periods from contact at the pitch point", "largest principal stress, MPa", legend=1, grid=True
-    )
+    name_axes(axis, label(GearRootStress, "phase"), "largest principal stress, MPa", legend=1, grid=True)
     return axis

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.old_names import warn_old
-from rotorgear.plots.figure import COLOURS, figure_for, name_axes, parameter_name
+from rotorgear.plots.figure import COLOURS, figure_for, label, name_axes, parameter_name
 from rotorgear.plots.transient import shaft_orbits
 from rotorgear.results.orbits import OrbitsResult
 from rotorgear.results.transient import TransientResult
@@ -51,10 +51,10 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
             kept = result.stable[own] == stable
             shown = kept | np.roll(kept, 1)
             shown[0] = kept[0]
-            label = f"{branch.name}, {'stable' if stable else 'unstable'}"
             if kept.any():
                 y = np.where(shown, sizes[own, c], np.nan)
-                axes[0].plot(x[own], y, style, color=colour, lw=1.4, label=label)
+                name = f"{branch.name}, {'stable' if stable else 'unstable'}"
+                axes[0].plot(x[own], y, style, color=colour, lw=1.4, label=name)
         axes[1].plot(x[own], largest[own], "-", color=colour, lw=1.0)
     for kind, marker in _MARKERS.items():
         points = [one for one in result.special_points if one.kind == kind]
@@ -63,14 +63,15 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
             height = [1e6 * float(told.peak_to_peak(one)[c]) for one in points]
             axes[0].plot(at, height, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
     axes[1].axhline(1.0, color="k", lw=0.6)
-    name_axes(axes[0], "", f"{told.what}, peak to peak, u{told.unit}", title=f"{told.label[c]}: periodic motions")
+    moved = label(result, "peak_to_peak_approach" if told.of_contacts else "place_peak_to_peak", f"u{told.unit}")
+    name_axes(axes[0], "", moved, title=f"{told.label[c]}: periodic motions")
     axes[0].legend(fontsize=7)
     axes[1].set_ylabel("largest |mu|")
     for curve in result.curves:
-        marker = _MARKERS[curve.kind]
-        label = f"{curve.kind}, {result.branches[curve.branch].name}"
+        style = f"-{_MARKERS[curve.kind]}"
+        name = f"{curve.kind}, {result.branches[curve.branch].name}"
         second = curve.second / result.per_unit[1]
-        axes[2].plot(curve.value / result.per_unit[0], second, "-" + marker, ms=3, mfc="w", lw=1.2, label=label)
+        axes[2].plot(curve.value / result.per_unit[0], second, style, ms=3, mfc="w", lw=1.2, label=name)
     if result.curves:
         axes[2].set_ylabel(parameter_name(result.address[1], result.unit[1]))
         axes[2].legend(fontsize=7)

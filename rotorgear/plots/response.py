@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import COLOURS, GREY, axes_for, figure_for, name_axes, plain_axis
+from rotorgear.plots.figure import COLOURS, GREY, axes_for, beside, figure_for, label, name_axes, plain_axis, values
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.response import ResponseResult
 
 _MOST_LINES = len(COLOURS)
 _WIDTH = 5.6
 _HEIGHT = 2.9
+# Directions of a point that are rotations.
+_TURNING = ("tilt_x", "tilt_y", "torsion")
 _HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 
 
@@ -37,53 +40,41 @@ def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
     title = f"{result.model.title or 'Forced response'}: amplitudes over speed"
     figure = figure_for(fig, (2.0 * _WIDTH, _HEIGHT * max(len(rows), 1) + 0.4), title)
     axes = np.atleast_2d(figure.subplots(max(len(rows), 1), 2, sharex=True))
-    for (left, right), (title, names, size, unit) in zip(axes, rows, strict=False):
+    for (left, right), (quantity, names, size) in zip(axes, rows, strict=False):
         total = np.sqrt((size**2).sum(axis=0))  # (s, lines)
-        _lines(left, result, names, total.T, f"{title}, {unit}")
+        _lines(left, result, names, total.T, quantity)
         strongest = int(np.argmax(total.max(axis=0)))
+        unit = quantity.rpartition(", ")[2]
         _lines(right, result, list(result.orders), size[:, :, strongest], f"{names[strongest]} by order, {unit}")
     for axis in axes[-1]:
-        axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
+        axis.set_xlabel(label(result, "speeds"))
     return axes
 
 
-def _quantities(result: ResponseResult) -> list[tuple[str, list[str], np.ndarray, str]]:
-    """(title, names of the lines, amplitudes (o, s, lines), unit)."""
+def _quantities(result: ResponseResult) -> Iterator[tuple[str, list[str], np.ndarray]]:
+    """Yield what is drawn with its unit, names of the lines, amplitudes (o, s, lines)."""
     meshes = list(dict.fromkeys(result.contact_mesh))
-
-    def by_mesh(values: np.ndarray) -> np.ndarray:
-        largest = [np.abs(values[:, :, result.contacts_of(mesh)]).max(axis=2) for mesh in meshes]
-        return np.stack(largest, axis=2) if largest else np.zeros((len(result.orders), len(result.speeds), 0))
-
-    bearings = np.linalg.norm(np.abs(result.bearing_force), axis=3)
-    turning = ("tilt_x", "tilt_y", "torsion")
-    linear = [k for k, name in enumerate(result.points) if result.model.points[name].direction not in turning]
-    angular = [k for k, name in enumerate(result.points) if result.model.points[name].direction in turning]
-    quantities = [
-        ("Dynamic mesh force of a helix", meshes, by_mesh(result.mesh_force), "N"),
-        ("Transmission error", meshes, 1e6 * by_mesh(result.transmission_error), "um"),
-        ("Bearing force", list(result.bearings), bearings, "N"),
-        *(
-            ("Acceleration", [result.points[k] for k in points], np.abs(result.acceleration[:, :, points]), unit)
-            for points, unit in ((linear, "m/s$^2$"), (angular, "rad/s$^2$"))
-        ),
-    ]
-    casings = list(result.casings)
-    if casings:  # the power of orders adds up, as the squares of amplitudes do
-        power = np.sqrt(result.radiated_power)
-        quantities.append(("Root of the equivalent radiated power", casings, power, "W$^{1/2}$"))
+    for field, unit in (("mesh_force", "N"), ("transmission_error", "um")) if meshes else ():
+        sizes = np.abs(values(result, field, unit))
+        of_meshes = [sizes[:, :, result.contacts_of(mesh)].max(axis=2) for mesh in meshes]
+        yield label(result, field, unit), meshes, np.stack(of_meshes, axis=2)
+    yield label(result, "bearing_force"), list(result.bearings), np.linalg.norm(np.abs(result.bearing_force), axis=3)
+    turns = np.array([result.model.points[name].direction in _TURNING for name in result.points], bool)
+    for chosen, unit in ((~turns, "m/s$^2$"), (turns, "rad/s$^2$")):
+        names = [name for name, drawn in zip(result.points, chosen, strict=True) if drawn]
+        yield label(result, "acceleration", unit), names, np.abs(result.acceleration[:, :, chosen])
+    if result.casings:  # the power of orders adds up, as the squares of amplitudes do
+        yield "root of the equivalent radiated power, W$^{1/2}$", list(result.casings), np.sqrt(result.radiated_power)
     if not meshes and not result.bearings:
         orbit = 1e6 * np.abs(result.displacement[:, :, :, :2]).max(axis=3)
-        quantities.append(("Displacement", list(result.places), orbit, "um"))
-    return quantities
+        yield "displacement, um", list(result.places), orbit
 
 
-def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarray, label: str) -> None:
+def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarray, title: str) -> None:
     """Draw the strongest lines (lines, s) on a logarithmic scale of four decades at most."""
     ranked = [int(k) for k in np.argsort(-sizes.max(axis=1), kind="stable") if sizes[k].any()]
-    for k in sorted(ranked[:_MOST_LINES]):
-        marker = "o" if len(result.speeds) == 1 else ""
-        colour = COLOURS[sorted(ranked[:_MOST_LINES]).index(k)]
+    marker = "o" if len(result.speeds) == 1 else ""
+    for k, colour in zip(sorted(ranked[:_MOST_LINES]), COLOURS, strict=False):
         axis.semilogy(result.speed_rpm, sizes[k], color=colour, lw=1.3, marker=marker, label=names[k])
     more = len(ranked) - _MOST_LINES
     top = float(sizes.max(initial=0.0))
@@ -94,7 +85,7 @@ def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarra
     first, last = sorted((float(result.speeds[0]), float(result.speeds[-1])))
     if operating and first <= operating <= last:
         axis.axvline(operating * RPM_PER_RAD_S, color=GREY, lw=0.9, ls="--")
-    axis.set_title(label + (f" ({more} weaker left out)" if more > 0 else ""), fontsize=9.5)
+    axis.set_title(title + (f" ({more} weaker left out)" if more > 0 else ""), fontsize=9.5)
     axis.legend(frameon=False, fontsize=7, ncols=2 if len(ranked) > 2 else 1, loc="upper left")
     plain_axis(axis)
 
@@ -147,17 +138,8 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
         if here - labelled < _LABELS_APART * widest:
             continue
         labelled = here
-        axis.annotate(
-            result.orders[order],
-            (here, rpm[-1]),
-            xytext=(2, 4),
-            textcoords="offset points",
-            fontsize=7.5,
-            rotation=35,
-            color="#333333",
-            annotation_clip=False,
-            zorder=200,
-        )
+        look = {"fontsize": 7.5, "rotation": 35, "color": "#333333", "annotation_clip": False, "zorder": 200}
+        beside(axis, result.orders[order], (here, rpm[-1]), (2, 4), **look)
     for number, s in enumerate(chosen[::-1]):
         # Heights from 0 to 1 of shares of the highest peak, logarithmic.
         height = 1.0 + np.log10(np.maximum(size[shown, s] / top, _SHOWN)) / _DECADES
@@ -172,7 +154,7 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
         axis.plot(hz, line, color=COLOURS[0], lw=0.8, zorder=2 * number + 2)
     axis.set_xlim(0.0, widest)
     axis.set_ylim(rpm[0] - step, rpm[-1] + (_STEPS_HIGH + 3.0) * step)
-    name_axes(axis, "frequency, Hz", f"speed of {result.model.reference_shaft}, rpm")
+    name_axes(axis, label(result, "frequency_hz"), label(result, "speeds"))
     plain_axis(axis)
     return axis
 
@@ -183,16 +165,13 @@ def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.n
         at = max(result.peaks(), key=lambda row: row[4])[0] if result.contact_mesh else next(iter(result.bearings), "")
     name = at.rpartition(".")[2]
     if name in result.contact_mesh:
-        return (
-            f"dynamic force of mesh {name}",
-            "N",
-            np.abs(result.mesh_force[:, :, result.contacts_of(name)]).max(axis=2),
-        )
+        force = np.abs(result.mesh_force[:, :, result.contacts_of(name)])
+        return f"dynamic force of mesh {name}", "N", force.max(axis=2)
     if name in result.bearings:
         force = result.bearing_force[:, :, result.bearings.index(name)]
         return f"force of bearing {name}", "N", np.linalg.norm(np.abs(force), axis=2)
     if name in result.points:
-        turns = result.model.points[name].direction in ("tilt_x", "tilt_y", "torsion")
+        turns = result.model.points[name].direction in _TURNING
         size = np.abs(result.acceleration[:, :, result.points.index(name)])
         return f"acceleration at {name}", "rad/s$^2$" if turns else "m/s$^2$", size
     known = [*dict.fromkeys(result.contact_mesh), *result.bearings, *result.points]

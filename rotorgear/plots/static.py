@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import COLOURS, figure_for, name_axes, plain_axis
+from rotorgear.plots.figure import COLOURS, figure_for, label, name_axes, plain_axis, values
 from rotorgear.results.static import MeshFace, StaticResult
 
 
@@ -36,16 +36,16 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
         for helix in range(helices):
             at = [k for k in range(len(result.contact_mesh)) if result.contact_helix[k] == helix]
             x = [meshes.index(result.contact_mesh[k]) + (helix - 0.5 * (helices - 1)) * 0.38 for k in at]
-            label = ("helix at smaller z", "helix at larger z")[helix] if helices == 2 else None
-            bars = forces.bar(x, result.mesh_force[at] / 1e3, width=0.36, color=COLOURS[helix], label=label)
+            side = ("helix at smaller z", "helix at larger z")[helix] if helices == 2 else None
+            force = values(result, "mesh_force", "kN")[at]
+            bars = forces.bar(x, force, width=0.36, color=COLOURS[helix], label=side)
             forces.bar_label(bars, fmt="%.1f", fontsize=8, padding=1)
         shares = {row.mesh: row.share for row in result.shares}
         names = [f"{mesh}\n{100.0 * shares[mesh]:.1f} %" if mesh in shares else mesh for mesh in meshes]
         forces.set_xticks(range(len(meshes)), names, fontsize=9)
-        name_axes(forces, "", "normal force, kN", title="Meshes, with the share of each branch" if shares else "Meshes")
+        title = "Meshes, with the share of each branch" if shares else "Meshes"
+        name_axes(forces, "", label(result, "mesh_force", "kN"), title=title, legend=int(helices == 2))
         forces.margins(y=0.15)
-        if helices == 2:
-            forces.legend(frameon=False, fontsize=8)
         plain_axis(forces)
         radial = [float(np.hypot(*force[:2])) / 1e3 for force in result.bearing_force.values()]
         axial = [abs(float(force[2])) / 1e3 for force in result.bearing_force.values()]
@@ -54,9 +54,7 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
         bearings.barh(y + 0.19, axial, height=0.36, color=COLOURS[1], label="axial")
         bearings.set_yticks(y, list(result.bearing_force), fontsize=9)
         bearings.invert_yaxis()
-        name_axes(bearings, "force, kN", title="Bearings")
-        if result.bearing_force:
-            bearings.legend(frameon=False, fontsize=8)
+        name_axes(bearings, "force, kN", title="Bearings", legend=int(bool(result.bearing_force)))
         plain_axis(bearings)
         axes += [forces, bearings, *along]
         for axis in along:
@@ -69,18 +67,15 @@ def _along_faces(axis: Any, faces: list[MeshFace]) -> None:
     for number, row in enumerate(faces):
         colour = COLOURS[number % len(COLOURS)]
         side = f" {'LR'[row.helix]}" if [other.mesh for other in faces].count(row.mesh) == 2 else ""
-        label = f"{row.mesh}{side}, $K_{{H\\beta}}$ {row.face_load_factor:.2f}"
-        axis.plot(1e3 * row.z_m, 1e-3 * row.line_load_n_per_m, color=colour, lw=1.6, label=label)
+        name = f"{row.mesh}{side}, $K_{{H\\beta}}$ {row.face_load_factor:.2f}"
+        load = values(row, "line_load_n_per_m", "N/mm")
+        axis.plot(values(row, "z_m", "mm"), load, color=colour, lw=1.6, label=name)
         if row.load_place_m is not None:
             axis.axvline(1e3 * row.load_place_m, color=colour, lw=0.8, ls=":")
     axis.set_ylim(bottom=0.0)
-    name_axes(
-        axis,
-        "z from the middle of the face, mm",
-        "load per width, N/mm",
-        title="Along the face (dotted: resultant)",
-        legend=1,
-    )
+    title = "Along the face (dotted: resultant)"
+    up = label(MeshFace, "line_load_n_per_m", "N/mm")
+    name_axes(axis, label(MeshFace, "z_m", "mm"), up, title=title, legend=1)
     plain_axis(axis)
 
 
@@ -91,8 +86,8 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[A
     for axis, name in zip(axes, shafts, strict=True):
         nodes = result.nodes.on_shaft(name)
         z = 1e3 * result.nodes.position[nodes, 2]
-        for dof, label in enumerate("xy"):
-            axis.plot(z, 1e6 * result.displacement[nodes, dof], color=COLOURS[dof], label=label, lw=1.6)
+        for dof, direction in enumerate("xy"):
+            axis.plot(z, 1e6 * result.displacement[nodes, dof], color=COLOURS[dof], label=direction, lw=1.6)
         layout = result.model.layout
         parts_on_shafts = [(gear.shaft, gear.z, "#999999") for gear in layout.gears]
         parts_on_shafts += [(*layout.place(f"bearings.{bearing}"), "#009E73") for bearing in result.model.bearings]

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import COLOURS, figure_for, name_axes, panels_of, parameter_name, save_all
+from rotorgear.plots.figure import COLOURS, figure_for, name_axes, panels_of, parameter_name, save_all, values
 from rotorgear.results.portrait import DISPLACEMENT, VELOCITY, Portraits
 from rotorgear.results.sweep import SweepResult
 
 _SIZE = (8.0, 6.0)
+_EXPONENT = "LE per mesh\nperiod"
 _KINDS = ("1T", "2T", "3T", "4T", "longer", "quasi-periodic", "chaotic", "not settled", "failed")
 _SHADES = ("#0072B2", "#56B4E9", "#009E73", "#9ad0a5", "#F0E442", "#E69F00", "#D55E00", "#bbbbbb", "#ffffff")
 
@@ -77,46 +78,31 @@ def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np
     exponent = bool(result.lyapunov.shape[2])
     rows = 3 if exponent else 2
     axes = figure_for(fig, _SIZE, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[:rows])
-    dot = float(np.clip(120.0 / len(result.values), 0.8, 3.0))  # the finer, the more points stand side by side
+    upper, *middle, lower = axes
+    over = result.values[:, 0]
+    look: dict[str, Any] = {"ms": 3, "lw": 0.7}
+    dot = float(np.clip(120.0 / len(over), 0.8, 3.0))  # the finer, the more points stand side by side
     for r, name in enumerate(result.run):
-        x = np.repeat(result.values[:, 0], result.count)
+        colour = _colour(result, r)
         y = 1e6 * result.section[:, r, :, contact, 0].ravel()
-        axes[0].plot(x, y, ".", ms=dot, mew=0, color=_colour(result, r), alpha=0.7, label=name, rasterized=True)
-        if exponent:
-            axes[1].errorbar(
-                result.values[:, 0],
-                result.lyapunov[:, r, 0],
-                result.lyapunov_error[:, r, 0],
-                fmt=".-",
-                ms=3,
-                lw=0.7,
-                color=_colour(result, r),
-            )
-    name_axes(
-        axes[0],
-        "",
-        "displacement at the section, um",
-        title=f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}",
-    )
+        x = np.repeat(over, result.count)
+        upper.plot(x, y, ".", ms=dot, mew=0, color=colour, alpha=0.7, label=name, rasterized=True)
+        for axis in middle:
+            errors = result.lyapunov_error[:, r, 0]
+            axis.errorbar(over, result.lyapunov[:, r, 0], errors, fmt=".-", color=colour, **look)
+    title = f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}"
+    name_axes(upper, "", "displacement at the section, um", title=title)
     if len(result.run) > 1:
-        axes[0].legend(fontsize=7, markerscale=4, loc="best", ncols=2)
-    if exponent:
-        axes[1].axhline(0.0, color="k", lw=0.6)
-        axes[1].set_ylabel("LE per mesh\nperiod")
+        upper.legend(fontsize=7, markerscale=4, loc="best", ncols=2)
+    for axis in middle:
+        axis.axhline(0.0, color="k", lw=0.6)
+        axis.set_ylabel(_EXPONENT)
     whose = f" ({result.run[0]})" if len(result.run) > 1 else ""
-    for values, name, colour in ((result.apart, "contact loss", 0), (result.back, "coast flank", 1)):
-        axes[-1].plot(
-            result.values[:, 0],
-            100.0 * values[:, 0, contact],
-            ".-",
-            ms=3,
-            lw=0.7,
-            color=COLOURS[colour],
-            label=name + whose,
-        )
-    axes[-1].set_ylabel("share of\ntime, %")
-    axes[-1].legend(fontsize=7)
-    axes[-1].set_xlabel(parameter_name(result.address[0], result.unit[0]))
+    for field, colour in zip(("apart", "back"), COLOURS, strict=False):
+        name = result.declarations[field].label + whose
+        lower.plot(over, values(result, field, "%")[:, 0, contact], ".-", color=colour, label=name, **look)
+    name_axes(lower, parameter_name(result.address[0], result.unit[0]), "share of\ntime, %")
+    lower.legend(fontsize=7)
     for one in axes:
         one.grid(alpha=0.25)
     return np.asarray(axes)
@@ -183,25 +169,16 @@ def sweep_map(result: SweepResult, fig: Any = None) -> np.ndarray:
     kinds = np.array([_KINDS.index(word) for word in words], dtype=float).reshape(n1, n2).T
     exponent = bool(result.lyapunov.shape[2])
     axes = np.atleast_1d(figure.subplots(2 if exponent else 1, 1, sharex=True))
-    shades = ListedColormap(list(_SHADES))
-    picture = axes[0].pcolormesh(
-        x,
-        y,
-        kinds,
-        cmap=shades,
-        norm=BoundaryNorm(np.arange(-0.5, len(_KINDS)), len(_KINDS)),
-        shading="nearest",
-        rasterized=True,
-    )
+    look: dict[str, Any] = {"shading": "nearest", "rasterized": True}
+    norm = BoundaryNorm(np.arange(-0.5, len(_KINDS)), len(_KINDS))
+    picture = axes[0].pcolormesh(x, y, kinds, cmap=ListedColormap(list(_SHADES)), norm=norm, **look)
     bar = figure.colorbar(picture, ax=axes[0], ticks=range(len(_KINDS)))
     bar.ax.set_yticklabels(_KINDS, fontsize=7)
     if exponent:
-        values = result.lyapunov[:, 0, 0].reshape(n1, n2).T
-        reach = float(np.nanmax(np.abs(values), initial=1e-12))
-        picture = axes[1].pcolormesh(
-            x, y, values, cmap="RdBu_r", vmin=-reach, vmax=reach, shading="nearest", rasterized=True
-        )
-        figure.colorbar(picture, ax=axes[1], label="LE per mesh period")
+        exponents = result.lyapunov[:, 0, 0].reshape(n1, n2).T
+        reach = float(np.nanmax(np.abs(exponents), initial=1e-12))
+        picture = axes[1].pcolormesh(x, y, exponents, cmap="RdBu_r", vmin=-reach, vmax=reach, **look)
+        figure.colorbar(picture, ax=axes[1], label=_EXPONENT.replace("\n", " "))
     for one in axes:
         one.set_ylabel(parameter_name(result.address[1], result.unit[1]), fontsize=8)
     axes[-1].set_xlabel(parameter_name(result.address[0], result.unit[0]))
@@ -233,14 +210,8 @@ def portraits(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.n
             path = 1e6 * kept.trajectory(k, j)[:, contact]
             points = 1e6 * kept.section(k, j)[:, contact]
             line, dot = _colours(kept, j)
-            one.plot(
-                path[:, DISPLACEMENT],
-                1e-3 * path[:, VELOCITY],
-                lw=0.4,
-                color=line,
-                label=_name(result, k, j),
-                rasterized=True,
-            )
+            name = _name(result, k, j)
+            one.plot(path[:, DISPLACEMENT], 1e-3 * path[:, VELOCITY], lw=0.4, color=line, label=name, rasterized=True)
             one.plot(points[:, DISPLACEMENT], 1e-3 * points[:, VELOCITY], ".", ms=4, mew=0, color=dot, zorder=3)
         _legend(result, k, one)
         one.margins(0.08)
@@ -270,10 +241,9 @@ def portrait_spectra(result: SweepResult, fig: Any = None, *, contact: int = 0) 
         for j in range(len(kept.run)):
             order, amplitude = kept.spectrum(k, j, contact)
             shown = (order > 0.0) & (order <= _ORDERS + 0.2)
-            one.semilogy(
-                order[shown], 1e6 * amplitude[shown], lw=0.6, color=_colours(kept, j)[1], label=_name(result, k, j)
-            )
-            largest = max(largest, float(np.nanmax(1e6 * amplitude[shown], initial=0.0)))
+            size = 1e6 * amplitude[shown]
+            one.semilogy(order[shown], size, lw=0.6, color=_colours(kept, j)[1], label=_name(result, k, j))
+            largest = max(largest, float(np.nanmax(size, initial=0.0)))
         one.set_xlim(0.0, _ORDERS + 0.2)
         _legend(result, k, one)
         if largest > 0.0:
@@ -297,11 +267,11 @@ def _panels(result: SweepResult, fig: Any) -> tuple[Portraits, Any, list[Any]]:
     figure = figure_for(fig, inches, "")
     panels = panels_of(figure, count)
     for one, p in zip(panels, kept.point.tolist(), strict=True):
-        values = ", ".join(f"{x:.6g} {unit}".strip() for x, unit in zip(result.values[p], result.unit, strict=True))
+        at = ", ".join(f"{x:.6g} {unit}".strip() for x, unit in zip(result.values[p], result.unit, strict=True))
         kinds = [result.motion_at(p, r) for r in kept.run.tolist()]
         if len(kinds) > 1:
             kinds = [f"{result.run[r]} {kind}" for r, kind in zip(kept.run.tolist(), kinds, strict=True)]
-        one.set_title(f"{values}: {', '.join(kinds)}", fontsize=8)
+        one.set_title(f"{at}: {', '.join(kinds)}", fontsize=8)
         one.tick_params(labelsize=7)
     return kept, figure, panels
 

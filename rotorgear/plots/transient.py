@@ -11,7 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.transient.spectra import spectrum
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import axes_for, figure_for, name_axes, panels_of, save_all
+from rotorgear.plots.figure import axes_for, figure_for, label, legend_below, name_axes, panels_of, save_all, values
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 
@@ -65,15 +65,15 @@ def _window(result: TransientResult) -> np.ndarray:
     return np.asarray(result.time >= start)
 
 
-def _histories(result: TransientResult, ax: Any, table: np.ndarray, label: str) -> Any:
+def _histories(result: TransientResult, ax: Any, field: str, unit: str) -> Any:
+    """A field of the contacts over the last periods."""
     shown = _window(result)
     axes = axes_for(ax, _SIZE, result.model.title)
-    for i, name in enumerate(result.contact):
-        axes.plot(1e3 * result.time[shown], table[shown, i], lw=1.0, label=name)
-    name_axes(axes, "time, ms", label, grid=True)
-    axes.legend(
-        fontsize=7, ncols=4, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12)
-    )  # curves fill the axes
+    time = values(result, "time", "ms")[shown]
+    for name, history in zip(result.contact, values(result, field, unit)[shown].T, strict=True):
+        axes.plot(time, history, lw=1.0, label=name)
+    name_axes(axes, label(result, "time", "ms"), label(result, field, unit), grid=True)
+    legend_below(axes, 4, fontsize=7)
     return axes
 
 
@@ -90,7 +90,7 @@ def mesh_forces(result: TransientResult, ax: Any = None) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    axes = _histories(result, ax, 1e-3 * result.mesh_force, "mesh force, kN")
+    axes = _histories(result, ax, "mesh_force", "kN")
     axes.axhline(0.0, color="k", lw=0.5)
     return axes
 
@@ -108,7 +108,7 @@ def transmission_error(result: TransientResult, ax: Any = None) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    return _histories(result, ax, 1e6 * result.transmission_error, "transmission error, um")
+    return _histories(result, ax, "transmission_error", "um")
 
 
 def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:
@@ -128,10 +128,9 @@ def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:
     names = names[:3]
     orders = bool(np.ptp(result.speed) > 0.0)
     # Meshes of one frequency share their lines, which then carry the names of all of them.
-    meshes_of: dict[float, str] = {}
+    meshes_of: dict[float, list[str]] = {}
     for mesh, frequency in result.mesh_frequency.items():
-        f = round(frequency, 6)
-        meshes_of[f] = f"{meshes_of[f]}, {mesh}" if f in meshes_of else mesh
+        meshes_of.setdefault(round(frequency, 6), []).append(mesh)
     figure = figure_for(fig, _SIZE, result.model.title)
     panels = np.atleast_1d(figure.subplots(len(names), 1, sharex=True))
     for axes, name in zip(panels, names, strict=True):
@@ -142,8 +141,8 @@ def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:
         axes.semilogy(lines.frequency[1:], lines.amplitude[1:], lw=0.8)
         for number, (f, meshes) in enumerate([] if orders else meshes_of.items(), 1):
             for k in range(1, int(reach / f) + 1):
-                label = f"orders of {meshes}" if k == 1 else None
-                axes.axvline(k * f, color=f"C{number}", lw=0.7, ls=":", label=label)
+                name_of_line = f"orders of {', '.join(meshes)}" if k == 1 else None
+                axes.axvline(k * f, color=f"C{number}", lw=0.7, ls=":", label=name_of_line)
         axes.set_xlim(0.0, reach)
         axes.set_ylim(0.3 * _SHOWN_SHARE * top, 3.0 * top)
         if result.mesh_frequency and not orders:
@@ -204,21 +203,20 @@ def energy(result: TransientResult, fig: Any = None) -> np.ndarray:
     e = result.energy
     figure = figure_for(fig, _SIZE, result.model.title)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    time = values(e, "time", "ms")
     stored = e.strain + e.contact
     terms = {
-        "kinetic": e.kinetic - e.kinetic[0],
+        e.declarations["kinetic"].label: e.kinetic - e.kinetic[0],
         "stored in springs and contacts": stored - stored[0],
-        "work of the loads": e.load_work,
-        "work of the excitation": e.excitation_work,
-        "dissipated": e.dissipated,
     }
-    for name, values in terms.items():
-        upper.plot(1e3 * e.time, values, lw=1.0, label=name)
+    terms |= {e.declarations[name].label: getattr(e, name) for name in ("load_work", "excitation_work", "dissipated")}
+    for name, term in terms.items():
+        upper.plot(time, term, lw=1.0, label=name)
     upper.set_ylabel("energy since the start, J")
     # Above the panel: the terms take its whole height.
     upper.legend(fontsize=7, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
-    lower.plot(1e3 * e.time, e.numerical, lw=1.0, color="tab:red")
-    name_axes(lower, "time, ms", "energy error, J")
+    lower.plot(time, e.numerical, lw=1.0, color="tab:red")
+    name_axes(lower, label(e, "time", "ms"), label(e, "numerical"))
     for axes in (upper, lower):
         axes.grid(alpha=0.3)
     return np.array([upper, lower])
@@ -242,16 +240,10 @@ def spectrogram(result: TransientResult, ax: Any = None) -> Any:
     if not np.ptp(result.speed):
         raise AnalysisError("a spectrogram is drawn over the speed: it needs a run-up (speed_to, --speed-to)")
     name = next((n for n in result.channel if n.endswith("acceleration")), f"force {result.contact[0]}")
-    values = result.history(name)[result.counted]
-    size = int(min(max(values.size // 60, 64), 4096))
-    f, t, power = signal.spectrogram(
-        values - values.mean(),
-        1.0 / result.spacing,
-        nperseg=size,
-        noverlap=size // 2,
-        window="hann",
-        scaling="spectrum",
-    )
+    history = result.history(name)[result.counted]
+    size = int(min(max(history.size // 60, 64), 4096))
+    settings = {"nperseg": size, "noverlap": size // 2, "window": "hann", "scaling": "spectrum"}
+    f, t, power = signal.spectrogram(history - history.mean(), 1.0 / result.spacing, **settings)
     axes = axes_for(ax, _SIZE, result.model.title)
     speeds = np.interp(result.settle + t, result.time, result.speed) * RPM_PER_RAD_S
     level = 10.0 * np.log10(np.maximum(2.0 * power, 1e-12 * power.max()))
@@ -259,5 +251,5 @@ def spectrogram(result: TransientResult, ax: Any = None) -> Any:
     axes.figure.colorbar(picture, ax=axes, label="dB of the amplitude squared")
     seen = f[level.max(axis=1) > level.max() - _SHOWN_DB]
     axes.set_ylim(0.0, 1.1 * float(seen.max(initial=f[1])))
-    name_axes(axes, "speed of the input shaft, rpm", "frequency, Hz", title=name)
+    name_axes(axes, label(result, "speed", "rpm"), "frequency, Hz", title=name)
     return axes

@@ -84,7 +84,7 @@ class FilmState(OilState):
     sommerfeld: float = of("Sommerfeld number", note=" mu N L D / W (R/c)^2")
     side_flow: float = of("oil that leaves at both ends", "m^3/s")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad")
-    z: np.ndarray = of("place along the shaft from the middle of the bearing", "m", "place")
+    z: np.ndarray = of("place along the shaft", "m", "place", note=" from the middle of the bearing")
     gap: np.ndarray = of("gap of the film", "m", "angle")
     pressure: np.ndarray = of("pressure", "Pa", "angle", "place", note=", symmetric about the middle")
 

@@ -118,7 +118,7 @@ class CriticalMap(ModelResult, kind="critical_map"):
     """
 
     line: str = of("excitation line", note=" of the map")
-    stiffness: np.ndarray = of("stiffness", "N/m", "stiffness", note=", radial, of all bearings")
+    stiffness: np.ndarray = of("radial stiffness of all bearings", "N/m", "stiffness")
     critical_speeds: np.ndarray = of(
         "critical speeds of the input shaft",
         "rad/s",

@@ -61,7 +61,7 @@ class HelixContact(Record):
     )
     position: np.ndarray = of("number of the position", "", "slice", json=None)
     pair: np.ndarray = of("number of the tooth pair", "", "slice", json=None)
-    z: np.ndarray = of("place from the middle of the face", "m", "slice", json=None)
+    z: np.ndarray = of("place along the face", "m", "slice", json=None, note=" from its middle")
     length: np.ndarray = of("length of the contact line", "m", "slice", json=None)
     corner: np.ndarray = of("whether a tip corner touches there, off the line of action", "", "slice", json=None)
     roll: np.ndarray = of("roll lengths of both gears", "m", "slice", "pinion_and_gear", json=None)
@@ -130,7 +130,7 @@ class LoadPoint(Record):
         "amplitudes of mesh orders 1 to 3 of the transmission error", "m", "order", note=" at that load", default=()
     )
     largest_pressure_pa: float | None = of("largest contact pressure", "Pa", note=" at that load", default=None)
-    position: np.ndarray | None = of("position", "", "position", note=" in mesh periods at that load", default=None)
+    position: np.ndarray | None = of("position", "mesh periods", "position", note=" at that load", default=None)
     ste_m: np.ndarray | None = of("transmission error", "m", "position", note=" under that load", default=None)
 
 
@@ -166,7 +166,7 @@ class MeshResult(Result, kind="mesh"):
     stagger: float = of("lead of the second helix in mesh periods")
     load: MeshLoad | None = of("load", record=MeshLoad)
     position: np.ndarray = of(
-        "position", "", "position", note=" in mesh periods, rising, not evenly spaced for loaded teeth"
+        "position", "mesh periods", "position", note=", rising, not evenly spaced for loaded teeth"
     )
     event: np.ndarray = of("whether a tooth pair comes or goes there", "", "position", note=": the curves have a kink")
     stiffness: np.ndarray = of("stiffness", "N/m", "position", note=" over `position`")

@@ -29,7 +29,7 @@ class GearRootStress(Record):
 
     name: str = of("name", note=" of the gear", column="gear")
     phase: np.ndarray = of(
-        "position of the tooth", "", "phase", note=" in mesh periods from its contact at the pitch point"
+        "position of the tooth", "mesh periods", "phase", note=" from its contact at the pitch point"
     )
     at_tangent: np.ndarray = of("stress at the 30 degree tangent", "Pa", "phase", note=", largest along the face")
     largest: np.ndarray = of("largest stress of the fillet", "Pa", "phase")

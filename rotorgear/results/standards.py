@@ -88,12 +88,12 @@ class StandardsResult(ModelResult, kind="standards"):
         "speed of the input shaft", "rad/s", "speed", json="curve_speed_rpm", note=" of the curves"
     )
     curves: dict[str, np.ndarray] = of(
-        "major axis of the orbit",
+        "major axis of the orbit, peak to peak",
         "m",
         "SHAFT",
         "speed",
         json="unbalance_response_m",
-        note=", peak to peak, at the place of the largest response of each shaft, with the unbalance of its first peak",
+        note=", at the place of the largest response of each shaft, with the unbalance of its first peak",
     )
 
     def count(self, verdict: str) -> int:

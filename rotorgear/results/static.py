@@ -113,8 +113,8 @@ class MeshFace(Record):
     tilt_stiffness_n_m: float | None = of(
         "stiffness against tilt", "N m", note=": moment for a tilt of the flanks in m/m, about the centre of stiffness"
     )
-    z_m: np.ndarray = of("places along the face", "m", "place", note=" from its middle")
-    line_load_n_per_m: np.ndarray = of("load per width, mean of the mesh cycle", "N/m", "place")
+    z_m: np.ndarray = of("place along the face", "m", "place", note=" from its middle")
+    line_load_n_per_m: np.ndarray = of("load per width", "N/m", "place", note=", mean of the mesh cycle")
 
     @property
     def misalignment_m(self) -> float:

@@ -35,7 +35,9 @@ _SCALES = {
     ("m", "um"): 1e6,
     ("Pa", "MPa"): 1e-6,
     ("W", "kW"): 1e-3,
+    ("N", "kN"): 1e-3,
     ("N/m", "N/um"): 1e-6,
+    ("N/m", "N/mm"): 1e-3,
     ("s", "ms"): 1e3,
     ("", "%"): 100.0,
     ("N/m^2", "N/(mm um)"): 1e-9,
@@ -291,12 +293,17 @@ def _labelled(known: dict[str, Declared], column: Column) -> Column:
     if not isinstance(column.value, str):
         return replace(column, label=column.label or column.heading.replace("\n", " "))
     declared = _declared(known, column.value)
-    unit = column.shown or _unit(declared)
-    label = column.label or (f"{declared.label}, {unit}" if unit else declared.label)
+    label = column.label or label_of(declared, column.shown)
     if column.entry and not column.label:  # one of several of a name
         label = column.heading
     left = (declared.words or None) if column.left is None else column.left
     return replace(column, heading=column.heading or declared.column or label, label=label, left=left)
+
+
+def label_of(declared: Declared, shown: str = "") -> str:
+    """What a field is, with the unit that it is shown in: the heading of a wide table, and what stands along an axis."""
+    unit = shown or unit_of(declared)
+    return f"{declared.label}, {unit}" if unit else declared.label
 
 
 def _key(declared: Declared) -> str:
@@ -305,7 +312,7 @@ def _key(declared: Declared) -> str:
     return written_keys[0].key if len(written_keys) == 1 and isinstance(declared.json[0], str) else ""
 
 
-def _unit(declared: Declared) -> str:
+def unit_of(declared: Declared) -> str:
     """The unit that a field is shown in: as declared, or as it is written."""
     if declared.shown:
         return declared.shown
@@ -342,7 +349,7 @@ def _number(value: Any, declared: Declared, column: Column, path: tuple[str | in
     form = column.form or declared.form
     if value is None or isinstance(value, str | bool) or value != value:
         return _plain(value, form)
-    shown = column.shown or _unit(declared)
+    shown = column.shown or unit_of(declared)
     factor = scale(declared.unit, shown)
     if isinstance(value, tuple):
         if not isinstance(form, str):

@@ -46,7 +46,7 @@ class ToothFields(Result, kind="tooth_field"):
     """Both gears and the contact at one position of the first helix."""
 
     mesh: str = of("mesh", note=": its name")
-    position: float = of("position", note=" in mesh periods")
+    position: float = of("position", "mesh periods")
     gears: tuple[ToothField, ToothField] = of("both gears", "", "pinion_and_gear", record=ToothField)
     contact: ContactField = of("slices that carry load", record=ContactField)
 

@@ -58,7 +58,7 @@ class EnergyLedger(Record):
         "energy that dampers took", "J", "instant", json=_at_end("dissipated_j", "energy that dampers took")
     )
     numerical: np.ndarray = of(
-        "what the integration made",
+        "energy error",
         "J",
         "instant",
         json=_at_end("numerical_j", "energy error of the integration: what it made, or lost if negative"),
