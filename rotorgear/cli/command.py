@@ -41,7 +41,6 @@ class Command:
 
     Attributes:
         name: as it is called.
-        group: under which `rotorgear --help` lists it.
         summary: what that list says of it.
         verb: the verbs whose arguments it takes, the one behind it first; by default the one of its name.
         shows: what may become of the result, among the keys of `SHOWS`.
@@ -51,10 +50,10 @@ class Command:
         table, picture: options that are handed to the table and to the picture of the result.
         needs: optional package -> what needs it, as a sentence begins with it.
         body: "module.function" below rotorgear.cli that does more than to run the verb and to show its result.
+        group: under which `rotorgear --help` lists it.
     """
 
     name: str
-    group: str
     summary: str
     verb: tuple[str, ...] | None = None
     shows: tuple[str, ...] = ("json",)
@@ -65,6 +64,7 @@ class Command:
     picture: tuple[str, ...] = ()
     needs: Mapping[str, str] = field(default_factory=dict)
     body: str = "show.analyse"
+    group: str = ""
 
     @property
     def verbs(self) -> tuple[str, ...]:

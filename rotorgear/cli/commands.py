@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -30,6 +31,10 @@ def _bounds(texts: list[str]) -> dict[str, list[str]]:
     return {name: text.split(":") for name, text in pairs.items()}
 
 
+def _written_to(text: str) -> Option:
+    return Option(text, "path", flags=("-o", "--output"))
+
+
 _RIG = Option("Measured frequencies of a rig (CSV).", "path", None)
 _SPECTRUM = Option("List the lines in the spectrum of this history.", "text")
 _OVER = Option(
@@ -40,311 +45,287 @@ _OVER = Option(
     read=axes_of,
 )
 
-COMMANDS = (
-    Command(
-        "new",
-        "Model",
-        "Write a model file to change, as a copy of a shipped one",
-        options={"path": Option(shown="FILE")},
-        shows=(),
-        body="bodies.new",
+_GROUPS = {
+    "Model": (
+        Command(
+            "new",
+            "Write a model file to change, as a copy of a shipped one",
+            options={"path": Option(shown="FILE")},
+            shows=(),
+            body="bodies.new",
+        ),
+        Command("models", "List the models that come with rotorgear", shows=(), body="bodies.models"),
+        Command("check", "What a model file describes, and what is wrong in it"),
+        Command(
+            "view",
+            "A window with the gearbox and its moving modes",
+            ("view", "modal"),
+            (),
+            body="bodies.view",
+            hidden=("model", "fmax", "only", "pruning", "error_estimate"),
+            options={"mode": Option("Mode to begin with, counted from 1.", default=1, least=1)},
+            needs={"pyvista": "A window"},
+        ),
+        Command(
+            "report",
+            "One page about a model, with pictures (HTML)",
+            options={"output": Option("The page to write (HTML).", "path", Path("report.html"), ("-o", "--output"))},
+            needs={"jinja2": "A report", "matplotlib": "A report"},
+            body="bodies.report",
+        ),
+        Command(
+            "accuracy",
+            "Error against run time over finer and finer meshes",
+            shows=("json", "save", "plot"),
+            options={
+                "modes": Option(least=1),
+                "finest": Option(least=1),
+                "reference": Option(
+                    "Natural frequencies to compare with (CSV; default: the model's own finest).",
+                    "path",
+                    read=_frequencies,
+                ),
+            },
+            body="bodies.accuracy",
+        ),
     ),
-    Command("models", "Model", "List the models that come with rotorgear", shows=(), body="bodies.models"),
-    Command(
-        "check",
-        "Model",
-        "What a model file describes, and what is wrong in it",
+    "Linear": (
+        Command(
+            "modal",
+            "Natural frequencies and mode shapes, at rest or at a speed",
+            shows=("json", "save", "plot", "vtk", "uff"),
+            hidden=("error_estimate",),
+            options={
+                "rig": _RIG,
+                "plot": Option(
+                    "Render the modes of --shapes: the first to a .png, or all of them into a folder.", "path"
+                ),
+                "tolerance": Option("Largest relative difference of a match with the rig.", "float", 0.05),
+                "energies": Option("Also list the energy shares of each mode by part.", "flag"),
+                "shapes": Option(
+                    "Modes for --vtk, --plot and --uff, such as 1,6,9-12 (default: the six lowest, --uff all).", "text"
+                ),
+            },
+            table=("energies",),
+            body="bodies.modal",
+        ),
+        Command(
+            "campbell",
+            "Modes over speed: crossings, margins, whirl, stability",
+            shows=("json", "save", "plot", "vtk"),
+            hidden=("error_estimate",),
+            options={
+                "sidebands": Option(least=0),
+                "crossings": Option("Also list all crossings with the lines.", "flag"),
+                "colour": Option("Colour of branches in --plot: motion, mesh or damping.", "text", "motion"),
+                "branch": Option("The branch that --vtk writes.", "int", 1, least=1),
+            },
+            table=("crossings",),
+            picture=("colour",),
+        ),
+        Command(
+            "critical",
+            "Critical speeds; with --map over support stiffness",
+            shows=("json", "save", "plot"),
+            options={
+                "damped": Option(flags=("--damped/--undamped",)),
+                "map": Option("Also the undamped map over the stiffness of the bearings, which --plot draws.", "flag"),
+                "map_shaft": Option("Shaft that excites in the map (default: the input).", "text"),
+            },
+            body="bodies.critical",
+        ),
+        Command(
+            "static",
+            "Deflections, forces, load sharing at the mean load",
+            shows=("json", "save", "plot", "vtk"),
+            options={"sensitivity": Option("Also list the sensitivities of the load shares of the branches.", "flag")},
+            table=("sensitivity",),
+        ),
+        Command(
+            "response",
+            "Run-up: forced vibration by order and speed",
+            shows=("json", "save", "plot", "vtk", "uff"),
+            options={
+                "waterfall": Option("Draw spectra over speed to this PNG, SVG or PDF.", "path"),
+                "at": Option("Mesh, bearing or point of --waterfall (default: mesh of the largest force).", "text"),
+            },
+        ),
+        Command(
+            "frf",
+            "Frequency responses between places",
+            shows=("json", "save", "plot", "uff"),
+            options={"quantity": Option("receptance, mobility or accelerance.", "text", "receptance")},
+            table=("quantity",),
+            picture=("quantity",),
+            body="bodies.frf",
+        ),
+        Command("standards", "Rules of rotor standards with values and verdicts", shows=("json", "save")),
+        Command("scatter", "Bands of frequencies and margins where numbers scatter", shows=("json", "plot")),
+        Command(
+            "optimise",
+            "Change numbers so that excitations stay off the modes",
+            shows=("json", "save", "plot", "output"),
+            options={
+                "bounds": Option(shown="ADDRESS=LOW:HIGH"),
+                "output": _written_to("Write the model file with the numbers found here."),
+            },
+        ),
     ),
-    Command(
-        "view",
-        "Model",
-        "A window with the gearbox and its moving modes",
-        ("view", "modal"),
-        (),
-        body="bodies.view",
-        hidden=("model", "fmax", "only", "pruning", "error_estimate"),
-        options={"mode": Option("Mode to begin with, counted from 1.", default=1, least=1)},
-        needs={"pyvista": "A window"},
+    "Nonlinear": (
+        Command(
+            "transient",
+            "Motion over time from the static state: backlash, spectra",
+            shows=("json", "plot", "vtk"),
+            options={
+                "frames": Option("Instants that --vtk writes.", "int", 120, least=2),
+                "spectrum": _SPECTRUM,
+                "rig": Option("Put the lines of this rig (CSV) beside those of --spectrum.", "path"),
+            },
+            needs={"numba": "A transient"},
+            body="bodies.transient",
+        ),
+        Command(
+            "sweep",
+            "Bifurcations, Lyapunov exponents, response types",
+            shows=("json", "plot"),
+            options={
+                "over": Option(shown="ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,..."),
+                "portraits": Option(
+                    "Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. "
+                    "With --plot nine points where not given.",
+                    "texts",
+                    None,
+                ),
+            },
+            needs={"numba": "A sweep"},
+            body="bodies.sweep",
+        ),
+        Command(
+            "orbits",
+            "Branches of periodic motions and their stability",
+            shows=("json", "save", "plot"),
+            options={"over": Option(shown="ADDRESS=FROM:TO")},
+            needs={"numba": "A branch of periodic motions"},
+        ),
     ),
-    Command(
-        "report",
-        "Model",
-        "One page about a model, with pictures (HTML)",
-        options={"output": Option("The page to write (HTML).", "path", Path("report.html"), ("-o", "--output"))},
-        needs={"jinja2": "A report", "matplotlib": "A report"},
-        body="bodies.report",
+    "Teeth and parts": (
+        Command("gear", "Gear sheet: geometry, measures, contact ratios", shows=("json", "plot"), picture=("mesh",)),
+        Command(
+            "mesh",
+            "Stiffness, transmission error, pressure over a mesh cycle",
+            shows=("json", "plot", "vtk"),
+            options={
+                "harmonics": Option("Mesh orders that are listed.", "int", 5, least=0),
+                "at": Option("Position in mesh periods that --vtk writes.", "float", 0.0),
+            },
+            table=("harmonics",),
+        ),
+        Command(
+            "mesh-map",
+            "A mesh cycle over torque and misalignment",
+            shows=("json", "plot", "csv"),
+            options={"over": _OVER},
+        ),
+        Command(
+            "optimise-flanks",
+            "Flank modifications with the least transmission error",
+            options={
+                "over": _OVER,
+                "bounds": Option(read=_bounds, shown="NAME=LOW:HIGH"),
+                "tolerance": Option(shown="NAME=SIZE"),
+                "weights": Option(least=0),
+            },
+        ),
+        Command("root-stress", "Stress in the tooth roots over a mesh cycle", shows=("json", "plot")),
+        Command(
+            "bearing",
+            "Sheet of one bearing at the gearbox's loads",
+            shows=("json", "save", "plot"),
+            positional=("name",),
+        ),
+        Command(
+            "casing",
+            "Meshes of casings: modes, seats, errors, cost",
+            shows=("json", "vtk"),
+            options={"modes": Option(least=1)},
+        ),
     ),
-    Command(
-        "accuracy",
-        "Model",
-        "Error against run time over finer and finer meshes",
-        shows=("json", "save", "plot"),
-        options={
-            "modes": Option(least=1),
-            "finest": Option(least=1),
-            "reference": Option(
-                "Natural frequencies to compare with (CSV; default: the model's own finest).", "path", read=_frequencies
-            ),
-        },
-        body="bodies.accuracy",
+    "Rig": (
+        Command(
+            "compare",
+            "Modes or responses beside those of a rig",
+            ("compare", "compare_shapes", "compare_frf", "compare_orders"),
+            ("json", "plot"),
+            hidden=("known_to_hz", "samples", "seed"),
+            options={
+                "lines": Option("The same as --rig.", "path", shown="RIG"),
+                "rig": _RIG,
+                "shapes": Option(default=None),
+                "frf": Option(default=None),
+                "orders": Option(default=None),
+            },
+            positional=("lines",),
+            body="bodies.compare",
+        ),
+        Command(
+            "sensors",
+            "Where to put the sensors of a modal test",
+            shows=("json", "save", "output"),
+            options={"output": _written_to("Write the table of sensors here (CSV).")},
+        ),
+        Command(
+            "update",
+            "Numbers of a model that a rig makes most probable",
+            shows=("json", "save", "output"),
+            options={"output": _written_to("Write the updated model file here.")},
+        ),
     ),
-    Command(
-        "modal",
-        "Linear",
-        "Natural frequencies and mode shapes, at rest or at a speed",
-        shows=("json", "save", "plot", "vtk", "uff"),
-        hidden=("error_estimate",),
-        options={
-            "rig": _RIG,
-            "plot": Option("Render the modes of --shapes: the first to a .png, or all of them into a folder.", "path"),
-            "tolerance": Option("Largest relative difference of a match with the rig.", "float", 0.05),
-            "energies": Option("Also list the energy shares of each mode by part.", "flag"),
-            "shapes": Option(
-                "Modes for --vtk, --plot and --uff, such as 1,6,9-12 (default: the six lowest, --uff all).", "text"
-            ),
-        },
-        table=("energies",),
-        body="bodies.modal",
+    "Files": (
+        Command(
+            "import",
+            "A gearbox from a REXS file as a model file",
+            ("import_rexs",),
+            options={
+                "path": Option("REXS file, 1.0 to 1.6: XML, JSON or zip.", "path", REQUIRED, shown="FILE"),
+                "output": Option("Model file to write, such as model.toml.", "path", REQUIRED, ("-o", "--output")),
+                "force": Option("Overwrite the model file if it is there.", "flag"),
+            },
+            body="bodies.import_rexs",
+        ),
+        Command(
+            "export",
+            "The linear system for other programs (.mat, .npz, UFF)",
+            ("state_space", "write_matrices"),
+            ("json", "uff"),
+            hidden=("path",),
+            options={
+                "inputs": Option(default=None),
+                "outputs": Option(default=None),
+                "fmax": Option(default=None),
+                "state_space": Option("Write A B C D and M D K to this .mat or .npz.", "path"),
+                "matrices": Option("Write sparse M C G K to this .npz.", "path"),
+                "uff": Option("Write geometry and modes to this universal file.", "path"),
+                "modes": Option("Modes of the universal file (default: 12, or to --fmax).", "int"),
+            },
+            body="bodies.export",
+        ),
+        Command(
+            "schema",
+            "The JSON Schema of the model file, for editors",
+            options={"json": Option("Write it to this file instead of the terminal.", "path")},
+            body="bodies.schema",
+        ),
+        Command(
+            "validate",
+            "Run the validation cases; exit code 1 where one fails",
+            (),
+            options={"cases": Option("Cases to run, such as two_disk_rotor (default: all).", "texts", shown="CASE")},
+            positional=("cases",),
+            body="bodies.validate",
+        ),
     ),
-    Command(
-        "campbell",
-        "Linear",
-        "Modes over speed: crossings, margins, whirl, stability",
-        shows=("json", "save", "plot", "vtk"),
-        hidden=("error_estimate",),
-        options={
-            "sidebands": Option(least=0),
-            "crossings": Option("Also list all crossings with the lines.", "flag"),
-            "colour": Option("Colour of branches in --plot: motion, mesh or damping.", "text", "motion"),
-            "branch": Option("The branch that --vtk writes.", "int", 1, least=1),
-        },
-        table=("crossings",),
-        picture=("colour",),
-    ),
-    Command(
-        "critical",
-        "Linear",
-        "Critical speeds; with --map over support stiffness",
-        shows=("json", "save", "plot"),
-        options={
-            "damped": Option(flags=("--damped/--undamped",)),
-            "map": Option("Also the undamped map over the stiffness of the bearings, which --plot draws.", "flag"),
-            "map_shaft": Option("Shaft that excites in the map (default: the input).", "text"),
-        },
-        body="bodies.critical",
-    ),
-    Command(
-        "static",
-        "Linear",
-        "Deflections, forces, load sharing at the mean load",
-        shows=("json", "save", "plot", "vtk"),
-        options={"sensitivity": Option("Also list the sensitivities of the load shares of the branches.", "flag")},
-        table=("sensitivity",),
-    ),
-    Command(
-        "response",
-        "Linear",
-        "Run-up: forced vibration by order and speed",
-        shows=("json", "save", "plot", "vtk", "uff"),
-        options={
-            "waterfall": Option("Draw spectra over speed to this PNG, SVG or PDF.", "path"),
-            "at": Option("Mesh, bearing or point of --waterfall (default: mesh of the largest force).", "text"),
-        },
-    ),
-    Command(
-        "frf",
-        "Linear",
-        "Frequency responses between places",
-        shows=("json", "save", "plot", "uff"),
-        options={"quantity": Option("receptance, mobility or accelerance.", "text", "receptance")},
-        table=("quantity",),
-        picture=("quantity",),
-        body="bodies.frf",
-    ),
-    Command("standards", "Linear", "Rules of rotor standards with values and verdicts", shows=("json", "save")),
-    Command(
-        "scatter",
-        "Linear",
-        "Bands of frequencies and margins where numbers scatter",
-        shows=("json", "plot"),
-    ),
-    Command(
-        "optimise",
-        "Linear",
-        "Change numbers so that excitations stay off the modes",
-        shows=("json", "save", "plot", "output"),
-        options={
-            "bounds": Option(shown="ADDRESS=LOW:HIGH"),
-            "output": Option("Write the model file with the numbers found here.", "path", flags=("-o", "--output")),
-        },
-    ),
-    Command(
-        "transient",
-        "Nonlinear",
-        "Motion over time from the static state: backlash, spectra",
-        shows=("json", "plot", "vtk"),
-        options={
-            "frames": Option("Instants that --vtk writes.", "int", 120, least=2),
-            "spectrum": _SPECTRUM,
-            "rig": Option("Put the lines of this rig (CSV) beside those of --spectrum.", "path"),
-        },
-        needs={"numba": "A transient"},
-        body="bodies.transient",
-    ),
-    Command(
-        "sweep",
-        "Nonlinear",
-        "Bifurcations, Lyapunov exponents, response types",
-        shows=("json", "plot"),
-        options={
-            "over": Option(shown="ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,..."),
-            "portraits": Option(
-                "Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. With --plot "
-                "nine points where not given.",
-                "texts",
-                None,
-            ),
-        },
-        needs={"numba": "A sweep"},
-        body="bodies.sweep",
-    ),
-    Command(
-        "orbits",
-        "Nonlinear",
-        "Branches of periodic motions and their stability",
-        shows=("json", "save", "plot"),
-        options={"over": Option(shown="ADDRESS=FROM:TO")},
-        needs={"numba": "A branch of periodic motions"},
-    ),
-    Command(
-        "gear",
-        "Teeth and parts",
-        "Gear sheet: geometry, measures, contact ratios",
-        shows=("json", "plot"),
-        picture=("mesh",),
-    ),
-    Command(
-        "mesh",
-        "Teeth and parts",
-        "Stiffness, transmission error, pressure over a mesh cycle",
-        shows=("json", "plot", "vtk"),
-        options={
-            "harmonics": Option("Mesh orders that are listed.", "int", 5, least=0),
-            "at": Option("Position in mesh periods that --vtk writes.", "float", 0.0),
-        },
-        table=("harmonics",),
-    ),
-    Command(
-        "mesh-map",
-        "Teeth and parts",
-        "A mesh cycle over torque and misalignment",
-        shows=("json", "plot", "csv"),
-        options={"over": _OVER},
-    ),
-    Command(
-        "optimise-flanks",
-        "Teeth and parts",
-        "Flank modifications with the least transmission error",
-        options={
-            "over": _OVER,
-            "bounds": Option(read=_bounds, shown="NAME=LOW:HIGH"),
-            "tolerance": Option(shown="NAME=SIZE"),
-            "weights": Option(least=0),
-        },
-    ),
-    Command("root-stress", "Teeth and parts", "Stress in the tooth roots over a mesh cycle", shows=("json", "plot")),
-    Command(
-        "bearing",
-        "Teeth and parts",
-        "Sheet of one bearing at the gearbox's loads",
-        shows=("json", "save", "plot"),
-        positional=("name",),
-    ),
-    Command(
-        "casing",
-        "Teeth and parts",
-        "Meshes of casings: modes, seats, errors, cost",
-        shows=("json", "vtk"),
-        options={"modes": Option(least=1)},
-    ),
-    Command(
-        "compare",
-        "Rig",
-        "Modes or responses beside those of a rig",
-        ("compare", "compare_shapes", "compare_frf", "compare_orders"),
-        ("json", "plot"),
-        hidden=("known_to_hz", "samples", "seed"),
-        options={
-            "lines": Option("The same as --rig.", "path", shown="RIG"),
-            "rig": _RIG,
-            "shapes": Option(default=None),
-            "frf": Option(default=None),
-            "orders": Option(default=None),
-        },
-        positional=("lines",),
-        body="bodies.compare",
-    ),
-    Command(
-        "sensors",
-        "Rig",
-        "Where to put the sensors of a modal test",
-        shows=("json", "save", "output"),
-        options={"output": Option("Write the table of sensors here (CSV).", "path", flags=("-o", "--output"))},
-    ),
-    Command(
-        "update",
-        "Rig",
-        "Numbers of a model that a rig makes most probable",
-        shows=("json", "save", "output"),
-        options={"output": Option("Write the updated model file here.", "path", flags=("-o", "--output"))},
-    ),
-    Command(
-        "import",
-        "Files",
-        "A gearbox from a REXS file as a model file",
-        ("import_rexs",),
-        options={
-            "path": Option("REXS file, 1.0 to 1.6: XML, JSON or zip.", "path", REQUIRED, shown="FILE"),
-            "output": Option("Model file to write, such as model.toml.", "path", REQUIRED, ("-o", "--output")),
-            "force": Option("Overwrite the model file if it is there.", "flag"),
-        },
-        body="bodies.import_rexs",
-    ),
-    Command(
-        "export",
-        "Files",
-        "The linear system for other programs (.mat, .npz, UFF)",
-        ("state_space", "write_matrices"),
-        ("json", "uff"),
-        hidden=("path",),
-        options={
-            "inputs": Option(default=None),
-            "outputs": Option(default=None),
-            "fmax": Option(default=None),
-            "state_space": Option("Write A B C D and M D K to this .mat or .npz.", "path"),
-            "matrices": Option("Write sparse M C G K to this .npz.", "path"),
-            "uff": Option("Write geometry and modes to this universal file.", "path"),
-            "modes": Option("Modes of the universal file (default: 12, or to --fmax).", "int"),
-        },
-        body="bodies.export",
-    ),
-    Command(
-        "schema",
-        "Files",
-        "The JSON Schema of the model file, for editors",
-        options={"json": Option("Write it to this file instead of the terminal.", "path")},
-        body="bodies.schema",
-    ),
-    Command(
-        "validate",
-        "Files",
-        "Run the validation cases; exit code 1 where one fails",
-        (),
-        options={"cases": Option("Cases to run, such as two_disk_rotor (default: all).", "texts", shown="CASE")},
-        positional=("cases",),
-        body="bodies.validate",
-    ),
-)
+}
+COMMANDS = tuple(replace(one, group=group) for group, commands in _GROUPS.items() for one in commands)
 
 
 @cache

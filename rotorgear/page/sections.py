@@ -12,11 +12,6 @@ from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.note import sentences
 from rotorgear.page.contents import Contents, error_of
 from rotorgear.page.figures import Painter, draw_errors, draw_unbalance, svg_of
-from rotorgear.plots.campbell import campbell as draw_campbell
-from rotorgear.plots.critical_map import critical_map as draw_map
-from rotorgear.plots.mesh import mesh as draw_mesh
-from rotorgear.plots.response import response as draw_response
-from rotorgear.plots.static import static as draw_static
 from rotorgear.results.casing import CasingRow
 from rotorgear.results.mesh import MeshResult
 from rotorgear.results.table import (
@@ -38,28 +33,24 @@ RESULTS = "results"
 _PICTURES = 8
 
 
-@dataclass(frozen=True)
-class Figure:
-    """A picture: inline SVG or an image, and what it shows. `small`: several stand in a row."""
-
-    caption: str
-    markup: str
-    small: bool = False
-
-
 @dataclass
 class Section:
-    """A section of the page; `tables` are HTML."""
+    """A section of the page: its tables are HTML; a figure has a caption and a markup, inline SVG or an image."""
 
     name: str
     title: str
     words: list[str] = field(default_factory=list)
     tables: list[str] = field(default_factory=list)
-    figures: list[Figure] = field(default_factory=list)
+    figures: list[dict[str, Any]] = field(default_factory=list)
 
     def show(self, tables: Iterable[Any], *top: str) -> Section:
         """Add tables whose numbers stand below a place of the JSON output; what else a result says is left."""
         self.tables += [html_table(one, top=top) for one in tables if isinstance(one, Table) and one.rows]
+        return self
+
+    def draw(self, caption: str, picture: Any, label: str) -> Section:
+        """Add axes of matplotlib; `label` says what they show to those who don't see them."""
+        self.figures.append({"caption": caption, "markup": svg_of(picture, label), "small": False})
         return self
 
 
@@ -73,13 +64,11 @@ def sections(found: Contents, studies: list[Any]) -> Iterator[Section]:
         section = Section("model", "The gearbox").show(made["check"].tables(), RESULTS, "check")
         if painter is not None:
             seen = "The model, seen from an end; a casing is drawn transparent."
-            section.figures.append(Figure(seen, painter.image("The gearbox")))
+            section.figures.append({"caption": seen, "markup": painter.image("The gearbox"), "small": False})
         yield section
     if "static" in made:
         section = Section("statics", "Statics").show(made["static"].tables(), RESULTS, "static")
-        drawn = svg_of(draw_static(made["static"]), "Statics")
-        section.figures.append(Figure("Forces, load sharing and deflections.", drawn))
-        yield section
+        yield section.draw("Forces, load sharing and deflections.", made["static"].plot(), "Statics")
     if "modal" in made:
         yield _modes(made["modal"], painter)
     over_speed: dict[str, Callable[[dict[str, Any]], Section]] = {
@@ -114,7 +103,7 @@ def _modes(result: Any, painter: Painter | None) -> Section:
         for k in [k for k in range(len(result)) if not result.rigid[k]][:_PICTURES]:
             label = f"Mode {k + 1}: {result.frequency_hz[k]:.2f} Hz"
             image = small.mode(label, np.real(result.shapes[:, :, k]))
-            section.figures.append(Figure(f"{label}, {result.description[k]}", image, small=True))
+            section.figures.append({"caption": f"{label}, {result.description[k]}", "markup": image, "small": True})
     return section
 
 
@@ -122,8 +111,7 @@ def _campbell(made: dict[str, Any]) -> Section:
     """The diagram, margins at the operating speed, and onsets of instability."""
     result = made["campbell"]
     section = Section("campbell", "Campbell diagram and margins").show(result.tables(), RESULTS, "campbell")
-    drawn = svg_of(draw_campbell(result), "Campbell diagram")
-    section.figures.append(Figure("Natural frequencies over speed, and lines of excitation.", drawn))
+    section.draw("Natural frequencies over speed, and lines of excitation.", result.plot(), "Campbell diagram")
     if result.onsets:
         section.show([table_of(result, "onsets")], RESULTS, "campbell")
     else:
@@ -136,10 +124,8 @@ def _critical(made: dict[str, Any]) -> Section:
     result = made["critical"]
     section = Section("critical", "Critical speeds")
     if "critical_map" in made and np.isfinite(made["critical_map"].critical_speeds).any():
-        caption = (
-            "Undamped critical speeds over one stiffness of all bearings; vertical lines: the bearings of the model."
-        )
-        section.figures.append(Figure(caption, svg_of(draw_map(made["critical_map"]), "Critical speed map")))
+        caption = "Undamped critical speeds over one stiffness of all bearings; vertical lines: those of the model."
+        section.draw(caption, made["critical_map"].plot(), "Critical speed map")
     if not len(result):
         section.words.append("No line meets a mode in the range of speeds.")
     return section.show(result.tables(), RESULTS, "critical")
@@ -156,18 +142,12 @@ def _standards(made: dict[str, Any]) -> Section:
         caption = (
             "Response to the rules' unbalance in the shape of each shaft's first peak; dashed: the operating speed."
         )
-        section.figures.append(Figure(caption, svg_of(draw_unbalance(result), "Unbalance response")))
+        section.draw(caption, draw_unbalance(result), "Unbalance response")
+    rules = [(rule.name, rule.source, rule.formula) for rule in result.rules]
     tables = [
         table_of(result, "criticals", *_with_columns(result, "criticals"), "description"),
         table_of(result, "checks", *_with_columns(result, "checks"), "note"),
-        grid(
-            [(rule.name, rule.source, rule.formula) for rule in result.rules],
-            "rule",
-            "standard",
-            "formula",
-            left=3,
-            caption="What the rules say",
-        ),
+        grid(rules, "rule", "standard", "formula", left=3, caption="What the rules say"),
     ]
     return section.show(tables, RESULTS, "standards")
 
@@ -188,8 +168,7 @@ def _response(made: dict[str, Any]) -> Section:
         section.words.append(
             "No damping is given to the model as a whole: heights near resonances are those of the nearest speed."
         )
-    section.figures.append(Figure("Amplitudes over speed.", svg_of(draw_response(result), "Run-up")))
-    return section
+    return section.draw("Amplitudes over speed.", result.plot(), "Run-up")
 
 
 def _teeth(made: dict[str, Any], names: list[str]) -> Section:
@@ -198,7 +177,7 @@ def _teeth(made: dict[str, Any], names: list[str]) -> Section:
     for name in names:
         label = name.partition(" ")[2]
         caption = f"{label}: stiffness k(t), transmission error, load sharing and pressure over the mesh cycle."
-        section.figures.append(Figure(caption, svg_of(draw_mesh(made[name]), name)))
+        section.draw(caption, made[name].plot(), name)
     columns = (
         Column("", "mesh"),
         Column("", "mean_stiffness", ".5g", "N/um"),
@@ -249,26 +228,19 @@ def _costs(found: Contents, studies: list[Any]) -> Section:
     )
     rows: list[tuple[Cell, ...]] = []
     for name, result in found.results.items():
+        seconds = Cell(f"{found.seconds[name]:.2f}", ("cpu_seconds", name), number=True)
         error = Cell(written(error_of(result), error_words), ("largest_error_estimate", name), number=True)
-        dofs = getattr(result, "dofs", None) or None
-        rows.append(
-            (
-                Cell(name),
-                Cell(f"{found.seconds[name]:.2f}", ("cpu_seconds", name), number=True),
-                error,
-                Cell(written(dofs, "d"), (RESULTS, name, "dofs"), number=True),
-                Cell(result.method),
-            )
-        )
+        dofs = Cell(written(getattr(result, "dofs", None) or None, "d"), (RESULTS, name, "dofs"), number=True)
+        rows.append((Cell(name), seconds, error, dofs, Cell(result.method)))
     total = Cell(f"{found.seconds_of_all:.2f}", ("cpu_seconds_of_all",), number=True)
     rows.append((Cell("all"), total, *[Cell("", number=True)] * 2, Cell("")))
     heads = ("analysis", "CPU s", "largest error", "dofs", "method")
     section.show([Table(tuple(map(Column, heads)), rows, "Cost and error")])
-    drawn = svg_of(draw_errors(found), "Error against run time")
-    section.figures.append(Figure("Estimated error against CPU seconds, an analysis a point.", drawn))
+    caption = "Estimated error against CPU seconds, an analysis a point."
+    section.draw(caption, draw_errors(found), "Error against run time")
     for k, study in enumerate(studies):
-        picture = svg_of(study.plot(), f"study {k + 1}")
-        section.figures.append(Figure(f"Stored convergence study: {getattr(study, 'title', study.kind)}.", picture))
+        caption = f"Stored convergence study: {getattr(study, 'title', study.kind)}."
+        section.draw(caption, study.plot(), f"study {k + 1}")
     if not studies:
         section.words.append(
             "Convergence studies over meshes are not run for a page: give stored ones (rotorgear accuracy --save, --study)."
@@ -278,13 +250,8 @@ def _costs(found: Contents, studies: list[Any]) -> Section:
 
 def _left_out(found: Contents) -> Section:
     """Sections that are not there, and what the analyses left out and warn about, each sentence once."""
-    tables = [
-        grid(found.missing.items(), "section", "reason", left=2, caption="Sections that are not there"),
-    ]
-    both = (
-        ("left_out", "Left out of the analyses", "what and why"),
-        ("warnings", "Warnings", "warning"),
-    )
+    tables = [grid(found.missing.items(), "section", "reason", left=2, caption="Sections that are not there")]
+    both = (("left_out", "Left out of the analyses", "what and why"), ("warnings", "Warnings", "warning"))
     for name, title, heading in both:
         said: dict[str, list[str]] = {}
         for analysis, result in found.results.items():
