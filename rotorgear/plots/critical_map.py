@@ -33,7 +33,8 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line}"
+    over = "over the radial stiffness of all bearings"
+    title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line} {over}"
     axis = axes_for(ax, (9.0, 6.0), title)
     speeds = np.abs(result.critical_speeds) * RPM_PER_RAD_S
     for column in range(speeds.shape[1]):

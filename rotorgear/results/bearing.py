@@ -142,17 +142,14 @@ class BearingSpeed(Record):
     stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
     damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
     critical_mass: float | None = of(
-        "mass of a rigid rotor on such bearings alone at its threshold",
-        "kg",
-        note=", a bearing; a heavier one whirls; `null` where none does",
+        "mass of a rigid rotor on such bearings at its threshold", "kg", note=", a bearing; `null` where none whirls"
     )
     whirl_ratio: float | None = of("frequency of that whirl over the speed of the shaft")
     film_temperature: float | None = of(
         "mean temperature of the film", "K", note="; `null` where the viscosity is given"
     )
     log_decrement: float | None = of(
-        "smallest logarithmic decrement of the gearbox",
-        note=", of its 24 lowest modes that anything damps; `null` where it was not asked for",
+        "smallest logarithmic decrement of the gearbox", note=", of its 24 lowest damped modes; `null`: not asked for"
     )
 
 
@@ -180,19 +177,14 @@ class BearingSheet(ModelResult, kind="bearing"):
     )
     over_speed: tuple[BearingSpeed, ...] = of("over speed", "", "speed", record=BearingSpeed)
     threshold_speed: float | None = of(
-        "speed at which the gearbox begins to whirl",
-        "rad/s",
-        json="threshold_rpm",
-        note=", of the input shaft, in the range of `over_speed`; `null` where it does not, or was not asked for",
+        "whirl threshold of the gearbox", "rad/s", json="threshold_rpm", note=", in the range `over_speed`, or `null`"
     )
     threshold_frequency_hz: float | None = of("frequency of that whirl", "Hz")
     consistency: float = of(
         "difference between its law at the state printed and the load of the gearbox", note=", relative"
     )
     error_estimate: float = of(
-        "estimated relative error of stiffness and damping",
-        note=": twice the change on a grid of twice the cells each way, or with twice the positions of its elements",
-        form=".0e",
+        "estimated relative error of stiffness and damping", note=": twice the change on a finer grid", form=".0e"
     )
     cpu_seconds: float = of("CPU time of the bearing at one speed and load", "s", form=".4f")
 

@@ -56,9 +56,7 @@ class Margin(Record):
     line: str = of("excitation line", column="line")
     frequency_hz: float = of("frequency", "Hz", note=" of the line at the operating speed", form=".2f", column="Hz")
     branch: int = of(
-        "branch",
-        note=", from 1: the nearest that the line can excite; 0: none, or the line lies above all",
-        column="branch",
+        "branch", note=", from 1: the nearest that the line can excite; 0: none, or all lie below it", column="branch"
     )
     mode_hz: float = of("damped frequency of that branch", "Hz", note="; `null`: none", form=".2f", column="Hz")
     margin: float = of("margin", note=": `mode_hz` over `frequency_hz`, less 1", form="+.2f", column="margin %")
@@ -67,11 +65,7 @@ class Margin(Record):
         "share of the exciting part in the energy of the mode", note=", as at a crossing", form=".2f", column="part %"
     )
     crossing_speed: float = of(
-        "nearest speed, in the range, at which the line meets a mode that it can excite",
-        "rad/s",
-        note="; `null`: none",
-        form=".1f",
-        column="crossing rpm",
+        "nearest crossing that the line can excite", "rad/s", note="; `null`: none", form=".1f", column="crossing rpm"
     )
 
 
@@ -133,12 +127,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"` or `""`; in Python numbers into `WHIRL_WORDS`',
     )
     whirl_by_shaft: dict[str, np.ndarray] = of(
-        "sense of whirl of each shaft",
-        "",
-        "SHAFT",
-        "speed",
-        "branch",
-        note=", -1 (backward circle) to +1 (forward circle)",
+        "sense of whirl of each shaft", "", "SHAFT", "speed", "branch", note=", from -1 (backward) to +1 (forward)"
     )
     kinetic_by_motion: dict[str, np.ndarray] = of(
         "share of a motion in the kinetic energy", "", "MOTION", "speed", "branch"
@@ -152,8 +141,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "estimated relative discretisation error", "", "branch", note=", the larger of both ends", form=".0e"
     )
     basis_error: float = of(
-        "largest relative error of the reduced eigenvalues",
-        note=" against true solutions at speeds outside of the basis",
+        "largest relative error of the reduced eigenvalues", note=" against true solutions at speeds outside the basis"
     )
     basis: np.ndarray = of("displacements of the basis", "m, rad", "node", "component", "vector", json=None)
     coordinates: np.ndarray = of("coordinates in the basis", "", "speed", "vector", "branch", json=None)

@@ -105,7 +105,7 @@ class Candidate(Record):
 
     mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted")
     frequency_hz: float = of("frequency", "Hz")
-    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", note=", in %")
+    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%")
     matched_elsewhere: bool = of("whether the mode belongs to another rig line", default=False)
 
     def words(self, separator: str = " ") -> str:
@@ -126,9 +126,7 @@ class Match(Record):
     mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted", column="mode")
     mode_frequency_hz: float = of("frequency of the mode", "Hz", form=".1f", column="model Hz")
     mode_description: str = of("what moves")
-    error_percent: float = of(
-        "frequency of the mode over that of the rig, less 1", "%", note=", in %", form="+.2f", column="error %"
-    )
+    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", form="+.2f", column="error %")
     within_uncertainty: bool | None = of(
         "whether the difference is within the rig's uncertainty", note="; `null`: none stated"
     )
@@ -275,8 +273,7 @@ class Comparison(Result, kind="compare"):
     )
 
     @derived(
-        "effective number of parameters that the lines teach",
-        note=": the sum of the learnt shares of `stiffnesses`; `null` where that is empty",
+        "effective number of parameters that the lines teach", note=": the sum of the learnt shares; `null` without any"
     )
     def learnt_parameters(self) -> float | None:
         """Sum of the learnt shares."""

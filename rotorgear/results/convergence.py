@@ -24,11 +24,7 @@ class Rung(Record):
     setting: float = of("the number that was asked for")
     dofs: int = of("degrees of freedom", note=" of the last solution", column="dofs")
     seconds: float = of(
-        "CPU time",
-        "s",
-        note=" of the whole analysis on one thread, the median of `timed` runs",
-        form=".3f",
-        column="CPU s",
+        "CPU time", "s", note=" of the whole analysis on one thread, median of `timed` runs", form=".3f", column="CPU s"
     )
     error: float = of(
         "largest relative error of the quantities compared",
@@ -40,21 +36,14 @@ class Rung(Record):
         "largest error of the same quantities that the analysis itself estimated", form=".1e", column="estimate"
     )
     order: float | None = of(
-        "measured order of the error in the length of elements or steps",
-        note=" against the rung before; `null` where it makes no sense",
-        form=".2f",
-        column="order",
+        "measured order of the error", note=" in the length of elements or steps, or `null`", form=".2f", column="order"
     )
     spread: float = of(
         "spread of the times", note=": difference of their quartiles over the median", default=0.0, kw_only=True
     )
     timed: int = of("number of runs timed", default=0, kw_only=True)
     memory: int = of(
-        "largest memory of arrays and objects",
-        "byte",
-        note=", without the factors of sparse matrices",
-        default=0,
-        kw_only=True,
+        "largest memory of arrays and objects", "byte", note=", without factors of matrices", default=0, kw_only=True
     )
     effectivity: float | None = of(
         "effectivity",
@@ -65,19 +54,11 @@ class Rung(Record):
         column="ratio",
     )
     effectivity_smallest: float | None = of(
-        "smallest effectivity of a single quantity",
-        note="; `null` where they have no estimates of their own",
-        default=None,
-        kw_only=True,
+        "smallest effectivity of a single quantity", note="; `null` where none is estimated", default=None, kw_only=True
     )
     effectivity_largest: float | None = of("largest effectivity of a single quantity", default=None, kw_only=True)
     notes: tuple[str, ...] = of(
-        "what to know of this row",
-        "",
-        "note",
-        note=": a missed accuracy, a time that is noise",
-        default=(),
-        kw_only=True,
+        "what to know of this row", "", "note", note=": a missed accuracy, a noisy time", default=(), kw_only=True
     )
 
 
@@ -194,22 +175,13 @@ class SweepRung(Record):
         json="peak_to_peak",
     )
     peak_to_peak_scatter: float = of(
-        "standard deviation of the peak to peak",
-        "m",
-        form=".2f",
-        column="scatter",
-        shown="um",
-        json="peak_to_peak_scatter",
+        "standard deviation of peak to peak", "m", form=".2f", column="scatter", shown="um", json="peak_to_peak_scatter"
     )
     dynamic_factor: float = of("dynamic factor", note=" of that contact", form=".2f", column="K_dyn")
     dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")
     motion: tuple[str, ...] = of("response type", "", "kind", note=": those that occurred")
     error: float = of(
-        "largest relative difference of peak to peak and dynamic factor from the reference",
-        default=float("nan"),
-        kw_only=True,
-        form=".0e",
-        column="error",
+        "largest relative error of p-p and K_dyn", default=float("nan"), kw_only=True, form=".0e", column="error"
     )
 
 

@@ -27,24 +27,14 @@ class ShapeMatch(Record):
     mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted", column="mode")
     mode_frequency_hz: float = of("frequency of the mode", "Hz", form=".2f", column="model Hz")
     error_percent: float = of(
-        "frequency of the mode over that of the rig, less 1",
-        "%",
-        note=", in %",
-        form="{:+.2f} %".format,
-        column="error",
+        "frequency of the mode over that of the rig, less 1", "%", form="{:+.2f} %".format, column="error"
     )
     mac: float = of(
-        "modal assurance criterion",
-        note="; of modes too close to each other to be told apart, share of the shape in their plane",
-        form=".3f",
-        column="MAC",
+        "modal assurance criterion", note="; of close modes the shape's share in their plane", form=".3f", column="MAC"
     )
     scale: float = of("measured shape over that of the mode", note=": modal scale factor, size", form=".3e")
     phase_collinearity: float = of(
-        "modal phase collinearity of the measured shape",
-        note=": 1 where all sensors move in phase or against it",
-        form=".2f",
-        column="phase",
+        "modal phase collinearity", note=": 1 where all sensors move in phase or against it", form=".2f", column="phase"
     )
     close_to: tuple[int, ...] = of("modes that are too close to be told apart", "", "close_mode", note=", by number")
     excitations: tuple[ExcitationLine, ...] = of(
@@ -87,21 +77,13 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
 
     points: tuple[str, ...] = of("names of the points", "", "point", note=", or places, of the sensors")
     distance: np.ndarray = of(
-        "distance from the node of the rig to the place",
-        "m",
-        "point",
-        note="; `null` where a table names the place",
-        json="distance",
+        "distance of the rig's node from the place", "m", "point", note="; `null`: a table names it", json="distance"
     )
     rig_hz: np.ndarray = of("frequency of the rig line", "Hz", "rig_shape")
     mode_number: np.ndarray = of("number of the mode", "", "mode")
     mode_hz: np.ndarray = of("frequency of the mode", "Hz", "mode")
     mac: np.ndarray = of(
-        "MAC of measured and computed shapes",
-        "",
-        "rig_shape",
-        "mode",
-        note="; of modes too close to be told apart, share of the measured shape in their plane",
+        "MAC of measured and computed shapes", "", "rig_shape", "mode", note="; of close modes the share in their plane"
     )
     auto_mac: np.ndarray = of("MAC of the measured shapes among themselves", "", "rig_shape", "rig_shape")
     model_auto_mac: np.ndarray = of("MAC of the computed shapes at the sensors among themselves", "", "mode", "mode")
@@ -117,11 +99,7 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
     tolerance: float = of("tolerance", note=": largest relative difference in frequency of a good match")
     chance: ShapeChance = of("what chance gives", record=ShapeChance)
     stiffnesses: tuple[LearntParameter, ...] = of(
-        "what the matched lines teach of each stiffness",
-        "",
-        "stiffness",
-        record=LearntParameter,
-        note=", by frequency alone",
+        "what the matched lines teach of each stiffness", "", "stiffness", record=LearntParameter, note=", by frequency"
     )
 
     @derived("effective number of parameters that the lines teach", note=": by frequency alone; the shapes teach more")

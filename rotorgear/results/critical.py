@@ -32,10 +32,7 @@ class CriticalSpeed(Record):
     excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
     description: str = of("what moves", column="what moves")
     residual: float = of(
-        "residual",
-        note=" |w - p W| / (p W): relative difference of the frequency from the line, with the eigenvalue of the system "
-        "solved for again at that speed",
-        form=".0e",
+        "residual", note=" |w - p W| / (p W), with the eigenvalue solved for again at that speed", form=".0e"
     )
     error_estimate: float = of(
         "estimated relative discretisation error",
@@ -118,14 +115,9 @@ class CriticalMap(ModelResult, kind="critical_map"):
     """
 
     line: str = of("excitation line", note=" of the map")
-    stiffness: np.ndarray = of("radial stiffness of all bearings", "N/m", "stiffness")
+    stiffness: np.ndarray = of("stiffness", "N/m", "stiffness", note=", radial, of all bearings")
     critical_speeds: np.ndarray = of(
-        "critical speeds of the input shaft",
-        "rad/s",
-        "stiffness",
-        "critical_speed",
-        json="critical_rpm",
-        note=", ascending",
+        "critical speeds of the input shaft", "rad/s", "stiffness", "critical_speed", json="critical_rpm"
     )
     whirl: np.ndarray = of(
         "sense of whirl",
@@ -136,42 +128,24 @@ class CriticalMap(ModelResult, kind="critical_map"):
         note=' of the shaft whose line it is, `""` for a torsional or axial mode; in Python numbers into `WHIRL_WORDS`',
     )
     bearings: dict[str, np.ndarray] = of(
-        "radial stiffness along x and y that the bearings of the model have",
-        "N/m",
-        "BEARING",
-        "xy",
-        json="bearing_stiffness_n_per_m",
+        "radial stiffness of the bearings along x and y", "N/m", "BEARING", "xy", json="bearing_stiffness_n_per_m"
     )
     top_speed: float = of("highest speed looked at", "rad/s")
 
-    @derived(
-        "critical speeds with forward whirl",
-        "rad/s",
-        "stiffness",
-        "forward_speed",
-        note=", ascending at each stiffness: no curves",
-    )
+    @derived("critical speeds with forward whirl", "rad/s", "stiffness", "forward_speed", note=", ascending: no curves")
     def forward(self) -> np.ndarray:
         """Those of `critical_speeds` with forward whirl, (k, f), NaN behind the last one."""
         return self._with("forward")
 
     @derived(
-        "critical speeds with backward whirl",
-        "rad/s",
-        "stiffness",
-        "backward_speed",
-        note=", ascending at each stiffness: no curves",
+        "critical speeds with backward whirl", "rad/s", "stiffness", "backward_speed", note=", ascending: no curves"
     )
     def backward(self) -> np.ndarray:
         """Those of `critical_speeds` with backward whirl, (k, b), NaN behind the last one."""
         return self._with("backward")
 
     @derived(
-        "critical speeds of modes that do not whirl",
-        "rad/s",
-        "stiffness",
-        "other_speed",
-        note=", ascending at each stiffness: no curves",
+        "critical speeds of modes that do not whirl", "rad/s", "stiffness", "other_speed", note=", ascending: no curves"
     )
     def other(self) -> np.ndarray:
         """Those of `critical_speeds` that whirl in no single sense, (k, o), NaN behind the last one."""

@@ -48,11 +48,7 @@ class GearRow(Record):
     base_radius_m: float = of("base radius", "m", form=".3f", column="r_b mm")
     z_m: tuple[float, ...] = of("z of its nodes", "m", "node", form=".5g", column="z mm")
     clocking_deg: float = of(
-        "angle of a tooth's middle from the mark of its shaft",
-        "deg",
-        note=", given or what closes a loop",
-        form=".3f",
-        column="angle deg",
+        "angle of a tooth from the mark", "deg", note=", given or closing a loop", form=".3f", column="angle deg"
     )
     mass_kg: float = of("mass", "kg", form=".3f", column="kg")
     polar_inertia_kg_m2: float = of("moment of inertia about z", "kg m^2")

@@ -58,20 +58,12 @@ class GearRow(Record):
     tip_diameter_m: float = of("tip diameter d_a", "m", form=".4f", column="tip diameter mm")
     root_diameter_m: float = of("root diameter d_f", "m", form=".4f", column="root diameter mm")
     form_diameter_m: float = of(
-        "root form diameter d_Ff",
-        "m",
-        note=", where involute and fillet meet",
-        form=".4f",
-        column="root form diameter mm",
+        "root form diameter d_Ff", "m", note=", where the fillet begins", form=".4f", column="root form diameter mm"
     )
     undercut: bool = of("whether the tool cuts away involute", column="undercut")
     virtual_teeth: float = of("virtual number of teeth z_n", form=".3f", column="virtual teeth z_n")
     normal_thickness_m: float = of(
-        "normal tooth thickness s_n at the reference circle",
-        "m",
-        note=", without allowance",
-        form=".4f",
-        column="tooth thickness s_n mm",
+        "normal tooth thickness s_n at d", "m", note=", without allowance", form=".4f", column="tooth thickness s_n mm"
     )
     tip_thickness_m: float = of("normal tip thickness s_an", "m", form=".4f", column="tip thickness s_an mm")
     upper_thickness_allowance_m: float = of("upper thickness allowance E_sns", "m")
@@ -139,24 +131,16 @@ class MeshSheetRow(Record):
     )
     base_pitch_m: float = of("transverse base pitch p_bt", "m", form=".4f", column="base pitch mm")
     approach_length_m: float = of(
-        "path of contact before the pitch point",
-        "m",
-        note=", pinion driving",
-        form=".4f",
-        column="length of approach mm",
+        "contact path before the pitch point", "m", note=", pinion drives", form=".4f", column="length of approach mm"
     )
     recess_length_m: float = of(
-        "path of contact after the pitch point", "m", note=", pinion driving", form=".4f", column="length of recess mm"
+        "contact path after the pitch point", "m", note=", pinion drives", form=".4f", column="length of recess mm"
     )
     working_pitch_diameter_m: tuple[float, float] = of(
-        "working pitch diameter d_w of pinion and gear",
-        "m",
-        "pinion_and_gear",
-        form=_both,
-        column="working pitch diameters mm",
+        "working pitch diameter d_w", "m", "pinion_and_gear", form=_both, column="working pitch diameters mm"
     )
     active_root_diameter_m: tuple[float, float] = of(
-        "active root diameter d_Nf of pinion and gear",
+        "active root diameter d_Nf",
         "m",
         "pinion_and_gear",
         note=": where contact with the mate's tip begins",
@@ -164,11 +148,7 @@ class MeshSheetRow(Record):
         column="active root diameters mm",
     )
     tip_clearance_m: tuple[float, float] = of(
-        "clearance between the tip of pinion or gear and the root of its mate",
-        "m",
-        "pinion_and_gear",
-        form=_both,
-        column="tip clearances mm",
+        "clearance from its tip to the root of its mate", "m", "pinion_and_gear", form=_both, column="tip clearances mm"
     )
     transverse_backlash_m: float = of(
         "circumferential backlash j_wt at the working circles", "m", note=", without allowances"
@@ -176,7 +156,7 @@ class MeshSheetRow(Record):
     normal_backlash_least_m: float = of(
         "least normal backlash j_bn",
         "m",
-        note=": with the upper allowances and the least centre distance",
+        note=": upper allowances, least distance",
         form=".1f",
         column="normal backlash: least um",
     )
@@ -184,11 +164,7 @@ class MeshSheetRow(Record):
         "mean normal backlash j_bn", "m", note=": in the middle of all allowances", form=".1f", column="  mean um"
     )
     normal_backlash_most_m: float = of(
-        "largest normal backlash j_bn",
-        "m",
-        note=": with the lower allowances and the largest centre distance",
-        form=".1f",
-        column="  most um",
+        "largest normal backlash j_bn", "m", note=": lower allowances, largest distance", form=".1f", column="  most um"
     )
     least_contact_line_m: float = of(
         "least length of all contact lines of one helix", "m", form=".2f", column="contact lines: least mm"
@@ -200,23 +176,15 @@ class MeshSheetRow(Record):
         "largest length of all contact lines of one helix", "m", form=".2f", column="  most mm"
     )
     iso_theoretical_stiffness_n_per_m2: float = of(
-        "theoretical single stiffness c'_th of ISO 6336-1 per face width", "N/m^2", note=", transverse plane"
+        "theoretical single stiffness c'_th of ISO 6336-1 per width", "N/m^2", note=", transverse plane"
     )
     iso_single_stiffness_n_per_m2: float = of(
-        "single stiffness c' of ISO 6336-1 per face width",
-        "N/m^2",
-        form=".3f",
-        column="ISO c' N/(mm um)",
-        shown="N/(mm um)",
+        "single stiffness c' of ISO 6336-1 per width", "N/m^2", form=".3f", column="ISO c' N/(mm um)"
     )
     iso_mesh_stiffness_n_per_m2: float = of(
-        "mesh stiffness c_γα of ISO 6336-1 per face width",
-        "N/m^2",
-        form=".3f",
-        column="ISO c_gamma_alpha N/(mm um)",
-        shown="N/(mm um)",
+        "mesh stiffness c_γα of ISO 6336-1 per width", "N/m^2", form=".3f", column="ISO c_gamma_alpha N/(mm um)"
     )
-    iso_lead_stiffness_n_per_m2: float = of("mesh stiffness c_γβ of ISO 6336-1 per face width", "N/m^2")
+    iso_lead_stiffness_n_per_m2: float = of("mesh stiffness c_γβ of ISO 6336-1 per width", "N/m^2")
     stiffness_model: str = of(
         "stiffness model", note=' that the file names, or `"given"`', column="stiffness of all helices"
     )
@@ -228,36 +196,20 @@ class MeshSheetRow(Record):
         column="  mean, normal N/m",
     )
     stiffness_peak_to_peak_n_per_m: float | None = of(
-        "peak to peak of the stiffness in use over a mesh period",
-        "N/m",
-        note="; `null` as before",
-        form=".3g",
-        column="  peak to peak N/m",
+        "peak to peak of that stiffness", "N/m", note="; `null` as before", form=".3g", column="  peak to peak N/m"
     )
     stiffness_definition: str | None = of(
         "definition of the stiffness", note=': `"secant"` or `"tangent"`; `null` as before'
     )
     stiffness_body: str | None = of("what the teeth stand on in this stiffness", note="; `null` as before")
     pitch_line_velocity_m_per_s: float | None = of(
-        "pitch line velocity v at the reference circle",
-        "m/s",
-        note="; `null` without a speed",
-        form=".2f",
-        column="pitch line velocity m/s",
+        "pitch line velocity v", "m/s", note="; `null` without a speed", form=".2f", column="pitch line velocity m/s"
     )
     tangential_force_n: float | None = of(
-        "tangential force F_t at the reference circle",
-        "N",
-        note=", of one helix; `null` without a load",
-        form=".0f",
-        column="tangential F_t, a helix N",
+        "tangential force F_t", "N", note="; `null` without load", form=".0f", column="tangential F_t, a helix N"
     )
     base_tangential_force_n: float | None = of(
-        "tangential force F_bt at the base circle",
-        "N",
-        note=", of one helix; `null` without a load",
-        form=".0f",
-        column="base force F_bt a helix N",
+        "tangential base force F_bt", "N", note="; `null` without load", form=".0f", column="base force F_bt a helix N"
     )
     dynamic_factor: float | None = of(
         "dynamic factor", note=" K_v; `null` where its inputs are not given", form=".3f", column="dynamic factor K_v"

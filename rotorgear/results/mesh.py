@@ -107,8 +107,7 @@ class MeshErrors(Record):
     peak_to_peak_stiffness: float = of("relative error of the peak to peak of the stiffness")
     ste_peak_to_peak: float = of("relative error of the peak to peak of the transmission error")
     ste_harmonics: float | None = of(
-        "largest error of the first five mesh orders of the transmission error, over the strongest of them",
-        default=None,
+        "largest error of the first five mesh orders of the transmission error, over the strongest one", default=None
     )
     largest_pressure: float | None = of("relative error of the largest contact pressure", default=None)
 

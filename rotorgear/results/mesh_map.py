@@ -32,11 +32,7 @@ class MeshMap(Result, kind="mesh_map"):
     )
     largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
     face_load_factor: np.ndarray = of(
-        "face load factor",
-        "",
-        "torque",
-        "misalignment",
-        note=" K_Hbeta: largest load per width over the mean one, mean of the mesh cycle",
+        "face load factor", "", "torque", "misalignment", note=" K_Hbeta, mean of the mesh cycle"
     )
     mean_stiffness: np.ndarray = of("mean stiffness", "N/m", "torque", "misalignment", note=", transverse")
     dofs: int = of("degrees of freedom", note=" of both gears' elements")

@@ -45,18 +45,10 @@ class MeshOptimum(Result, kind="mesh_optimum"):
     mean: float = of("weighted mean of the peak to peak", "m", note=" with the best flanks")
     mean_band: tuple[float, float] | None = of("its tolerance band", "m", "low_and_high")
     before: np.ndarray = of(
-        "peak to peak of the transmission error with the flanks of the model",
-        "m",
-        "torque",
-        "misalignment",
-        json="ste_before_m",
+        "peak to peak of the transmission error before", "m", "torque", "misalignment", json="ste_before_m"
     )
     ste: np.ndarray = of(
-        "peak to peak of the transmission error with the best flanks",
-        "m",
-        "torque",
-        "misalignment",
-        json="ste_peak_to_peak_m",
+        "peak to peak of the transmission error, best flanks", "m", "torque", "misalignment", json="ste_peak_to_peak_m"
     )
     ste_low: np.ndarray | None = of("lower end of its tolerance band", "m", "torque", "misalignment")
     ste_high: np.ndarray | None = of("upper end of its tolerance band", "m", "torque", "misalignment")

@@ -32,11 +32,7 @@ class NodeTable(Record):
     position: np.ndarray = of("position", "m", "node", "xyz", json="position")
     pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
     casing: tuple[str, ...] = of(
-        "casing or gear body whose surface the node is on",
-        "",
-        "node",
-        note=', gear bodies as `"gears.NAME.body"`, else `""`; empty without them',
-        default=(),
+        "surface that the node is on", "", "node", note=': a casing, `"gears.NAME.body"`, or `""`', default=()
     )
 
     def of_casing(self, casing: str) -> np.ndarray:
@@ -77,37 +73,17 @@ class ModalResult(AboutEquilibrium, kind="modal"):
 
     speed: float | None = of("speed of the input shaft", "rad/s", note="; `null`: undamped, at standstill")
 
-    @derived(
-        "frequency",
-        "Hz",
-        "mode",
-        note=" of each mode, the damped one; 0 for rigid-body modes",
-        form=exact(".4f"),
-        column="Hz",
-    )
+    @derived("frequency", "Hz", "mode", note=", the damped one; 0 for rigid-body modes", form=exact(".4f"), column="Hz")
     def frequency_hz(self) -> np.ndarray:
         """Damped frequency |Im s| / 2 pi, (m,)."""
         return np.where(self.rigid, 0.0, np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
 
-    @derived(
-        "natural frequency",
-        "Hz",
-        "mode",
-        note=", |s| / 2π of the eigenvalue s; equal to the former without damping",
-        form=".4f",
-    )
+    @derived("natural frequency", "Hz", "mode", note=", |s| / 2π; equal to the former without damping", form=".4f")
     def natural_frequency_hz(self) -> np.ndarray:
         """|s| / 2 pi, (m,)."""
         return np.where(self.rigid, 0.0, np.abs(self.eigenvalues) / (2.0 * np.pi))
 
-    @derived(
-        "damping ratio",
-        "",
-        "mode",
-        note=", −Re s / |s|, as a fraction; negative: unstable",
-        form=".3f",
-        column="zeta %",
-    )
+    @derived("damping ratio", "", "mode", note=", −Re s / |s|; negative: unstable", form=".3f", column="zeta %")
     def damping_ratio(self) -> np.ndarray:
         """-Re s / |s|, (m,); 0 for rigid modes, 1 for overdamped and -1 for divergent ones."""
         size = np.abs(self.eigenvalues)
@@ -117,11 +93,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
     rigid: np.ndarray = of("whether the mode is a rigid-body motion", "", "mode")
     description: tuple[str, ...] = of("what moves", "", "mode", note=", in a line", column="what moves")
     whirl: tuple[str, ...] = of(
-        "sense of whirl",
-        "",
-        "mode",
-        note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"`, or `""` where nothing whirls',
-        column="whirl",
+        "sense of whirl", "", "mode", note=': forward, backward, mixed, planar, or `""`', column="whirl"
     )
     error_estimate: np.ndarray = of(
         "estimated relative discretisation error",
@@ -141,11 +113,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         ),
     )
     kinetic_energy: dict[str, np.ndarray] = of(
-        "share in the kinetic energy",
-        "",
-        "PART",
-        "mode",
-        note=" of each mode, of a part such as `gears.pinion`; sums to 1 over the parts",
+        "share in the kinetic energy", "", "PART", "mode", note=" of a part such as `gears.pinion`; all sum to 1"
     )
     strain_energy: dict[str, np.ndarray] = of(
         "share in the strain energy", "", "PART", "mode", note=", the same; 0 for rigid-body modes"
@@ -165,12 +133,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         note=": bending, axial and torsional strain of the shafts; meshes, elastic gears, casings, supports and couplings",
     )
     whirl_by_shaft: dict[str, np.ndarray] = of(
-        "sense of whirl of each shaft",
-        "",
-        "SHAFT",
-        "mode",
-        json=None,
-        note=", -1 (backward circle) to +1 (forward circle)",
+        "sense of whirl of each shaft", "", "SHAFT", "mode", json=None, note=", from -1 (backward) to +1 (forward)"
     )
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "mode", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)

@@ -25,8 +25,7 @@ class LayoutNumber(Record):
     high: float = of("upper bound")
     at_bound: str = of("bound that the value stands at", note=': `"low"`, `"high"` or `""`')
     pull: float = of(
-        "derivative of the penalty by the share of the bounds",
-        note=": where the value would go on to, against its sign",
+        "derivative of the penalty by the share of the bounds", note=": the value would go on against its sign"
     )
 
 
@@ -73,8 +72,7 @@ class OptimiseResult(ModelResult, kind="optimise"):
     penalty_before: float = of("penalty before", note=": 0 where all margins are kept")
     penalty_after: float = of("penalty after")
     deviations_before: float | None = of(
-        "standard deviations by which the margin is kept before",
-        note=", the least of all modes that count; negative inside it, `null` where nothing scatters",
+        "standard deviations by which the margin is kept before", note="; negative inside it, `null` without scatter"
     )
     deviations_after: float | None = of("standard deviations by which the margin is kept after")
     mass_before_kg: float = of("mass of the rotors before", "kg")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from rotorgear.results.table import Block, Table, grid, heading, written
 
 # Points of a branch that are listed; all are in the files.
 _SHOWN = 12
+_NO_PLACES = partial(np.zeros, (0, 0, 2))
 
 
 class SpecialPoint(Record):
@@ -51,12 +53,7 @@ class SpecialCurve(Record):
     )
     ended: str = of("why it ended")
     place_extremes: np.ndarray = of(
-        "least and largest displacement at a place",
-        "",
-        "curve_point",
-        "place",
-        "extreme",
-        default_factory=lambda: np.zeros((0, 0, 2)),
+        "least and largest displacement at a place", "", "curve_point", "place", "extreme", default_factory=_NO_PLACES
     )
 
 
@@ -116,37 +113,26 @@ class OrbitsResult(ModelResult, kind="orbits"):
     harmonics: int = of("harmonics of the base period", default=0)
     instants: int = of("instants in a base period", default=0)
     error_estimate: float = of(
-        "error estimate",
-        note=": largest relative difference of the coefficients at some points from a finer solution of the same method",
-        default=float("nan"),
+        "error estimate", note=": largest relative change of the coefficients in a finer solution", default=float("nan")
     )
     cpu_per_point: float = of("CPU time of a point", "s", json="cpu_seconds_per_point", default=float("nan"))
     place: tuple[str, ...] = of(
-        "displacement that is told",
-        "",
-        "place",
-        note=' across a bearing, a nonlinear element or at an unbalance, as `"bearings.front x"`',
-        default=(),
+        "displacement that is told", "", "place", note=', such as `"bearings.front x"`', default=()
     )
     place_unit: tuple[str, ...] = of(
         "unit of the displacement at a place", "", "place", note=', `"m"` or `"rad"`', default=()
     )
     place_extremes: np.ndarray = of(
-        "least and largest displacement at a place",
-        "",
-        "point",
-        "place",
-        "extreme",
-        default_factory=lambda: np.zeros((0, 0, 2)),
+        "least and largest displacement at a place", "", "point", "place", "extreme", default_factory=_NO_PLACES
     )
     place_harmonics: np.ndarray = of(
-        "coefficients of the displacement at a place",
+        "coefficients of a displacement",
         "",
         "point",
         "harmonic",
         "place",
         json=None,
-        default_factory=lambda: np.zeros((0, 0, 0), complex),
+        default_factory=partial(np.zeros, (0, 0, 0), complex),
     )
 
     statistic: tuple[str, ...] = statistic_names()

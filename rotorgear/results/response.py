@@ -52,11 +52,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     orders: tuple[str, ...] = of("name of each order", "", "order", json="order")
     ratio: np.ndarray = of("frequency over that of the input shaft", "", "order", json="frequency_ratio")
     fixed_frequency: np.ndarray = of(
-        "frequency that does not go with the speed",
-        "Hz",
-        "order",
-        note=" of a load in Hz; else 0",
-        json="fixed_frequency",
+        "frequency that does not go with the speed", "Hz", "order", note=" of a load; else 0", json="fixed_frequency"
     )
 
     @property
@@ -72,36 +68,19 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
     mean_force: np.ndarray = of(
-        "mean force",
-        "N",
-        "contact",
-        note=": the static force of each contact, about which the response is linear",
-        json="mean_mesh_force_n",
+        "mean force", "N", "contact", note=": the static force, about which all is linear", json="mean_mesh_force_n"
     )
     mesh_stiffness: np.ndarray = of(
-        "stiffness along the flank normal",
-        "N/m",
-        "contact",
-        note=" about which the response is linear; of loaded teeth the mean tangent over the mesh cycle",
+        "stiffness along the flank normal", "N/m", "contact", note="; of loaded teeth the mean tangent of a mesh cycle"
     )
     mesh_force: np.ndarray = of(
         "force along the flank normal", "N", "order", "speed", "contact", note=": the dynamic force, without the mean"
     )
     transmission_error: np.ndarray = of(
-        "transmission error",
-        "m",
-        "order",
-        "speed",
-        "contact",
-        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, of each helix",
+        "transmission error", "m", "order", "speed", "contact", note=": rotation at the base circles of each helix"
     )
     approach: np.ndarray = of(
-        "approach",
-        "m",
-        "order",
-        "speed",
-        "contact",
-        note=" of the flanks in the transverse plane, bending and axial motion included",
+        "approach", "m", "order", "speed", "contact", note=" of the flanks, transverse, with bending and axial motion"
     )
     bearings: tuple[str, ...] = of("names of the bearings", "", "bearing", json=None)
     bearing_force: np.ndarray = of("force on the shaft", "N", "order", "speed", "bearing", "xyz")
@@ -189,11 +168,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "order", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
     damping_ratio: float = of("damping ratio", note=" added to every elastic mode")
-    solver_error: float = of(
-        "solver error",
-        note=": largest relative error of the reduced basis against direct solutions at the points checked; "
-        "direct: largest relative residual",
-    )
+    solver_error: float = of("solver error", note=": of the reduced basis at the points checked; direct: the residual")
     checked: int = of("number of points checked")
     error_estimate: float = of(
         "estimated relative discretisation error", note=": change of the largest forces on a finer mesh", form=".0e"

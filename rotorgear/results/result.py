@@ -22,6 +22,11 @@ _LINES = 40
 _WIDTH = 80
 
 
+def _said(key: str) -> Written:
+    """One sentence for each cause."""
+    return Written(key, lambda record, notes: sentences(notes))
+
+
 class Fact(Record):
     """One thing that a sentence of `left_out` or `warnings` says of one part."""
 
@@ -67,24 +72,14 @@ class Result(Record):
         "",
         "left_out_note",
         note=": what the model holds and the analysis did not take, and why",
-        json=Written("left_out", lambda record, notes: sentences(notes)),
+        json=_said("left_out"),
         default=(),
         kw_only=True,
     )
-    warnings: tuple[str, ...] = of(
-        "sentences",
-        "",
-        "warning",
-        json=Written("warnings", lambda record, notes: sentences(notes)),
-        default=(),
-        kw_only=True,
-    )
+    warnings: tuple[str, ...] = of("sentences", "", "warning", json=_said("warnings"), default=(), kw_only=True)
     method: str = of("method", note=": solver, and what its guards said", default="", kw_only=True)
     status: str = of(
-        "status",
-        note=': `"success"`, `"accuracy ... not reached: ..."`, or why the analysis ended early and how to go on',
-        default="success",
-        kw_only=True,
+        "status", note=': `"success"`, `"accuracy ... not reached"`, or why it ended', default="success", kw_only=True
     )
     rotorgear_version: str = of("version of rotorgear", default=VERSION, kw_only=True)
     model_hash: str = of(

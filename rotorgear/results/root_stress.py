@@ -47,9 +47,9 @@ class GearRootStress(Record):
     )
     worst_diameter: float = of("diameter of the largest stress", "m", form=".3f", column="  diameter there, mm")
     worst_z: float = of(
-        "place of the largest stress along the face",
+        "its place along the face",
         "m",
-        note=", from its middle; 0 for a plane model",
+        note=", from the middle; 0: plane model",
         form=".2f",
         column="  along the face, mm",
     )

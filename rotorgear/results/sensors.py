@@ -22,10 +22,7 @@ class PlannedSensor(Record):
     direction: str = of("direction", note=" that it looks along", column="along")
     position: np.ndarray = of("position", "m", "xyz", json="position")
     independence: float = of(
-        "effective independence",
-        note=": share of the sensor in the rank of the shapes, 1 where nothing replaces it",
-        form=".2f",
-        column="independence",
+        "effective independence", note=": its share in the rank of the shapes", form=".2f", column="independence"
     )
 
 

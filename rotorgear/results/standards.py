@@ -48,24 +48,13 @@ class ResponseCritical(Record):
     speed: float = of("speed of the input shaft", "rad/s", note=" at the peak")
     shaft_rpm: float = of("speed of the shaft", "rpm", note=" at the peak", form=".1f", column="rpm")
     below_rpm: float = of(
-        "speed N_1 of the shaft",
-        "rpm",
-        note=" at 0.707 of the peak; `null` where it does not fall",
-        form=".1f",
-        column="N1",
+        "speed N_1 of the shaft", "rpm", note=" at 0.707 of the peak; `null`: it does not fall", form=".1f", column="N1"
     )
     above_rpm: float = of(
-        "speed N_2 of the shaft",
-        "rpm",
-        note=" at 0.707 of the peak; `null` where it does not fall",
-        form=".1f",
-        column="N2",
+        "speed N_2 of the shaft", "rpm", note=" at 0.707 of the peak; `null`: it does not fall", form=".1f", column="N2"
     )
     amplification_factor: float = of(
-        "amplification factor",
-        note=" N_c/(N_2 - N_1); of one side alone N_c over twice its distance",
-        form=".4g",
-        column="AF",
+        "amplification factor", note=" N_c/(N_2 - N_1), of one side N_c/(2 |N - N_c|)", form=".4g", column="AF"
     )
     required_percent: float | None = of(
         "margin that the rule asks for", "%", note="; `null`: none, AF below 2.5", form=".2f", column="asked %"

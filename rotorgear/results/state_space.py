@@ -35,14 +35,10 @@ class StateSpace(AboutEquilibrium, kind="state_space"):
     reduced: bool = of("whether it is reduced to modes and static shapes")
     kept_modes: int = of("number of modes that were kept", note="; 0 without a reduction")
     reduction_error: float = of(
-        "estimated error of the reduction",
-        note=": twice the largest difference from the whole system that was found, over the largest size of that response",
-        form=".0e",
+        "estimated error of the reduction", note=": twice the largest change of a response over its size", form=".0e"
     )
     error_estimate: float = of(
-        "estimated relative discretisation error",
-        note=" of the frequencies that the mesh was refined for; `null` where its elements were given",
-        form=".0e",
+        "estimated relative discretisation error", note=" of the frequencies; `null`: elements given", form=".0e"
     )
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
 

@@ -44,9 +44,7 @@ class Share(Record):
     share: float = of("share", note=" of the mesh in the force of them all", form=".3f", column="share %")
     factor: float = of("factor", note=": the share times the number of meshes", form=".4f", column="times mean")
     decided_by: str = of(
-        "what decides the share",
-        note=': `"stiffness"`: a loop, which stiffness and index errors divide; `"loads"`: the torques alone decide',
-        column="decided by",
+        "what decides the share", note=': `"stiffness"` of a loop, or `"loads"`: torques alone', column="decided by"
     )
 
 
@@ -90,25 +88,13 @@ class MeshFace(Record):
         "face load factor", note=" K_Hbeta: largest load per width over the mean one", form=".3f", column="K_Hbeta"
     )
     load_place_m: float | None = of(
-        "place of the resulting force",
-        "m",
-        note=" from the middle of the face along z",
-        form="+.3f",
-        column="F at z mm",
+        "place of the resulting force", "m", note=" from the face's middle", form="+.3f", column="F at z mm"
     )
     peak_place_m: float | None = of(
-        "place of the largest load per width",
-        "m",
-        note=" from the middle of the face",
-        form="+.2f",
-        column="peak at mm",
+        "place of the largest load per width", "m", note=" from the face's middle", form="+.2f", column="peak at mm"
     )
     peak_pressure_pa: float | None = of(
-        "largest contact pressure",
-        "Pa",
-        note=" of the mesh cycle; `null` where the teeth are not looked at",
-        form=".1f",
-        column="p_max MPa",
+        "largest contact pressure", "Pa", note=" of the cycle; `null` if not looked at", form=".1f", column="p_max MPa"
     )
     tilt_stiffness_n_m: float | None = of(
         "stiffness against tilt", "N m", note=": moment for a tilt of the flanks in m/m, about the centre of stiffness"
@@ -135,21 +121,14 @@ class StaticResult(AboutEquilibrium, kind="static"):
     )
     torque: dict[str, float] = of("applied torque", "N m", "TORQUE", note=" about +z, by name")
     load_force: dict[str, np.ndarray] = of(
-        "constant force and moment of each load",
-        "N, N m",
-        "LOAD",
-        "component",
-        json=force_and_moment("load", "the structure"),
+        "constant force and moment", "N, N m", "LOAD", "component", json=force_and_moment("load", "the structure")
     )
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
     mesh_force: np.ndarray = of("force along the flank normal", "N", "contact", note=" of each contact", form=".1f")
     mesh_force_on_gear: np.ndarray = of("force of the pinion on the gear", "N", "contact", "xyz", form=".0f")
     mesh_stiffness: np.ndarray = of(
-        "stiffness along the flank normal",
-        "N/m",
-        "contact",
-        note="; of loaded teeth the mean tangent over the mesh cycle",
+        "stiffness along the flank normal", "N/m", "contact", note="; of loaded teeth the mean tangent of a mesh cycle"
     )
     mesh_deflection: np.ndarray = of("deflection of the teeth along the flank normal", "m", "contact")
     carries: np.ndarray = of("whether the contact is closed", "", "contact", json="mesh_carries")
@@ -159,7 +138,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "contact",
         json=Written(
             "mesh_driver",
-            lambda result, driver: {m: driver[result.contacts_of(m)[0]] for m in dict.fromkeys(result.contact_mesh)},
+            lambda result, driver: dict(zip(result.contact_mesh[::-1], driver[::-1], strict=True)),
             axes=("MESH",),
         ),
     )
@@ -181,10 +160,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         kw_only=True,
     )
     passes: int = of(
-        "passes until shafts and loads along the faces agreed",
-        note="; 0 where no mesh feels the tilt",
-        default=0,
-        kw_only=True,
+        "passes until shafts and faces agreed", note="; 0 where no mesh feels the tilt", default=0, kw_only=True
     )
     bearing_force: dict[str, np.ndarray] = of(
         "force and moment on the shaft", "N, N m", "BEARING", "component", json=force_and_moment("bearing")
@@ -251,9 +227,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "largest force that is missing for equilibrium", note=" of the whole, relative to the sum of all"
     )
     error_estimate: float = of(
-        "estimated relative discretisation error",
-        note=": change of mesh and bearing forces when every element is halved",
-        form=".0e",
+        "estimated relative discretisation error", note=": change of forces when every element is halved", form=".0e"
     )
     place_displacement: dict[str, np.ndarray] = of(
         "displacements of gears, disks and bearings",

@@ -30,13 +30,9 @@ class Reduction(Record):
     rigid: int = of("rigid-body motions among them", json="rigid_motions")
     static: int = of("static shapes of loads and contacts among them", json="static_shapes")
     closed: float = of(
-        "FRF error: largest relative error of the receptances at the contacts, all of them closed",
-        json="error_closed",
-        note=", against those of the whole system (solvers/frequency/contact_basis.py)",
+        "FRF error at the contacts, all closed", json="error_closed", note=": relative, against the whole system"
     )
-    apart: float = of(
-        "FRF error: largest relative error of the receptances at the contacts, all of them open", json="error_apart"
-    )
+    apart: float = of("FRF error at the contacts, all open", json="error_apart")
     up_to: float = of("frequency up to which they were compared", "Hz")
     frequencies: int = of("at how many frequencies")
     bases: int = of("how many bases there are")
@@ -75,17 +71,12 @@ class SweepContact(SteadyContact):
 
     static_deflection_m: float = of("static force over mean stiffness", "m")
     peak_to_peak_m: float = of(
-        "penetration of the flanks, peak to peak",
-        "m",
-        note=": displacement along their normal less the error of the teeth",
+        "penetration of the flanks, peak to peak", "m", note=": displacement along the normal less the teeth's error"
     )
     rms_approach_m: float = of("root mean square of the approach about its mean", "m")
     losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
     statistics_error: np.ndarray = of(
-        "estimated errors of the statistics",
-        "",
-        "statistic",
-        note=", each in its unit, by a run with half or twice the steps",
+        "estimated errors of the statistics", "", "statistic", note=", in their units, by half or twice the steps"
     )
 
     @property

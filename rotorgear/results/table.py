@@ -314,11 +314,10 @@ def _key(declared: Declared) -> str:
 
 def unit_of(declared: Declared) -> str:
     """The unit that a field is shown in: as declared, or as it is written."""
-    if declared.shown:
-        return declared.shown
-    last = declared.column.split()[-1] if declared.column else ""
-    if (declared.unit, last) in _SCALES:
-        return last
+    heading = f" {declared.column}".replace("\n", " ")
+    in_heading = [shown for unit, shown in _SCALES if unit == declared.unit and heading.endswith(f" {shown}")]
+    if declared.shown or in_heading:
+        return declared.shown or in_heading[0]
     keys = list(declared.written())
     return keys[0].unit or "" if keys and isinstance(declared.json[0], str) else declared.unit
 

@@ -25,10 +25,7 @@ class ToothField(Record):
     von_mises: np.ndarray = of("von Mises stress", "Pa", "node", json=None)
     largest_principal: np.ndarray = of("largest principal stress", "Pa", "node", json=None)
     root_stress: float = of(
-        "largest principal stress in the fillet on the loaded side of all teeth",
-        "Pa",
-        form=".4g",
-        column="root stress MPa",
+        "largest principal stress in the fillets on the loaded side", "Pa", form=".4g", column="root stress MPa"
     )
 
 

@@ -29,8 +29,8 @@ _UNSHOWN = "gears."
 _ROUNDING = 1e-9
 
 
-def _at_end(key: str, label: str) -> Written:
-    return Written(key, lambda energy, values: float(values[-1]), axes=(), label=label)
+def _at_end(key: str) -> Written:
+    return Written(key, lambda energy, values: float(values[-1]), axes=())
 
 
 class EnergyLedger(Record):
@@ -43,30 +43,20 @@ class EnergyLedger(Record):
     kinetic: np.ndarray = of("kinetic energy", "J", "instant", json=None)
     strain: np.ndarray = of("strain energy", "J", "instant", json=None)
     contact: np.ndarray = of("energy in the contacts", "J", "instant", json=None)
-    load_work: np.ndarray = of(
-        "work of the constant torques", "J", "instant", json=_at_end("load_work_j", "work of the constant torques")
-    )
+    load_work: np.ndarray = of("work of the constant torques", "J", "instant", json=_at_end("load_work_j"))
     excitation_work: np.ndarray = of(
         "work of the excitation",
         "J",
         "instant",
-        json=_at_end(
-            "excitation_work_j", "work of transmission errors, stiffness variation, unbalances and torques that vary"
-        ),
+        json=_at_end("excitation_work_j"),
+        note=": transmission errors, stiffness variation, unbalances and torques that vary",
     )
-    dissipated: np.ndarray = of(
-        "energy that dampers took", "J", "instant", json=_at_end("dissipated_j", "energy that dampers took")
-    )
+    dissipated: np.ndarray = of("energy that dampers took", "J", "instant", json=_at_end("dissipated_j"))
     numerical: np.ndarray = of(
-        "energy error",
-        "J",
-        "instant",
-        json=_at_end("numerical_j", "energy error of the integration: what it made, or lost if negative"),
+        "energy error", "J", "instant", json=_at_end("numerical_j"), note=": what the integration made, or lost"
     )
     share: float = of(
-        "numerical energy",
-        json=Written("numerical_share", lambda energy, share: share),
-        note=", its largest size over the largest of the other terms",
+        "numerical energy", json="numerical_share", note=", its largest size over the largest of the other terms"
     )
 
 
@@ -75,11 +65,7 @@ class SteadyContact(Record):
 
     name: str = of("name", note=": mesh and helix", column="contact")
     static_force_n: float = of(
-        "static force",
-        "N",
-        note=" along the flank normal, in static equilibrium, without excitation; negative on the coast flank",
-        form=short,
-        column="static\nN",
+        "static force", "N", note=" along the flank normal; negative on the coast flank", form=short, column="static\nN"
     )
     mean_force_n: float = of("mean force", "N", note=" in the time that counts", form=short, column="mean")
     rms_force_n: float = of("root mean square of the force about its mean", "N", form=short, column="rms")
@@ -88,18 +74,10 @@ class SteadyContact(Record):
         "dynamic factor", note=": largest over static force; `null` without load", form=".3f", column="K_dyn"
     )
     peak_to_peak_transmission_error_m: float = of(
-        "transmission error, peak to peak",
-        "m",
-        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, at all steps in the time that counts",
-        form=".2f",
-        column="TE\num",
+        "transmission error, peak to peak", "m", note=": rotation at the base circles", form=".2f", column="TE\num"
     )
     peak_to_peak_approach_m: float = of(
-        "approach, peak to peak",
-        "m",
-        note=" of the flanks in the transverse plane, bending and axial motion included, at all steps in the time that counts",
-        form=".2f",
-        column="appr.\num",
+        "approach, peak to peak", "m", note=" of the flanks, transverse", form=".2f", column="appr.\num"
     )
     driving_share: float = of("share of the time on the working flank")
     apart_share: float = of("contact-loss ratio", form=".1f", column="loss\n%")
