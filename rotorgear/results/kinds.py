@@ -10,7 +10,7 @@ from importlib import import_module
 
 import rotorgear.results
 from rotorgear.results.result import Result
-from rotorgear.results.schema import Record
+from rotorgear.results.schema import Record, Rows
 
 
 @cache
@@ -31,9 +31,9 @@ class Key:
     text: str
 
 
-def keys_of(cls: type[Record], prefix: str = "") -> Iterator[Key]:
+def keys_of(cls: type[Record] | Rows, prefix: str = "") -> Iterator[Key]:
     """Yield the keys that a result or a record writes, `prefix` before each."""
-    if issubclass(cls, Result):
+    if isinstance(cls, type) and issubclass(cls, Result):
         yield Key(f"{prefix}analysis", "", f'`"{cls.analysis_word}"`')
     declared = list(cls.declarations.values())
     title = [one for one in declared if one.name == "title"]
@@ -51,3 +51,5 @@ def keys_of(cls: type[Record], prefix: str = "") -> Iterator[Key]:
             if note:
                 yield Key(path.removesuffix("[]"), "", label + note)
             yield from keys_of(one.record, f"{path}.")
+    if isinstance(cls, Rows) and cls.inner is not None:
+        yield from keys_of(cls.inner, f"{prefix}{cls.inner_name}[].")

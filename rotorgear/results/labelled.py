@@ -40,7 +40,11 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
     if declared is not None and declared.record is not None and declared.axes:
         # A record is one row; what is itself a list of records stays one.
         return [
-            {name: _python(getattr(record, name)) for name, one in record.declarations.items() if not one.computed}
+            {
+                name: _python(getattr(record, name))
+                for name, one in declared.record.declarations.items()
+                if not one.computed
+            }
             for record in getattr(result, axes[0])
         ]
     columns = list(_columns(result))

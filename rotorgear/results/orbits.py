@@ -81,7 +81,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
     per_unit: np.ndarray = of("SI of one unit of the range", "", "parameter", json=None)
     excited: str = of("what excites", note="; all other parts are at their mean")
     order: float = of("base periods in a turn of the input shaft")
-    contact: tuple[str, ...] = of("names of the contacts", "", "contact")
+    contact: tuple[str, ...] = of("name of the contact", "", "contact", note=": mesh and helix")
     branches: tuple[OrbitBranch, ...] = of("branches", "", "branch", record=OrbitBranch)
     branch: np.ndarray = of("branch", "", "point", note=", counted from 0")
     value: np.ndarray = of("value of the parameter", "", "point", note=", in SI")

@@ -18,8 +18,10 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from itertools import count
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, dataclass_transform, overload
 
+from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 
 if TYPE_CHECKING:
@@ -91,7 +93,7 @@ class Declared:
     axes: tuple[str, ...]
     note: str
     form: str | Callable[[Any], str]
-    record: type[Record] | None
+    record: type[Record] | Rows | None
     json: tuple[str | Written, ...]
     stored: bool
     computed: bool
@@ -221,7 +223,7 @@ def of(
     *axes: str,
     note: str = "",
     form: str | Callable[[Any], str] = "",
-    record: type[Record] | None = None,
+    record: type[Record] | Rows | None = None,
     json: str | Written | tuple[str | Written, ...] | None = _SAME_KEY,
     stored: bool = True,
     column: str = "",
@@ -280,6 +282,103 @@ def derived(label: str, unit: str = "", *axes: str, **said: Any) -> Callable[[Ca
     return declare
 
 
+class Row(SimpleNamespace):
+    """An entry along axes of a result: what the fields say of it, by their keys in the JSON output."""
+
+    @property
+    def peak_to_peak_dte_m(self) -> float:
+        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
+        return float(self.peak_to_peak_approach_m)
+
+    @property
+    def rms_dte_m(self) -> float:
+        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
+        return float(self.rms_approach_m)
+
+
+class Rows:
+    """The fields of a result that are written as a list of rows, one for each entry along the last of its axes.
+
+    Of lists in one another, such as runs of points, a field stands in the first whose axes count it, and is a list along its
+    other axes.
+    """
+
+    def __init__(self, axes: tuple[str, ...], inner_name: str, inner: Rows | None) -> None:
+        self.axes = axes
+        self.inner_name = inner_name
+        self.inner = inner
+        self.fields: list[Declared] = []
+        self.declarations: dict[str, Declared] = {}
+
+    @property
+    def all_axes(self) -> tuple[str, ...]:
+        """The axes of this list and of those in it."""
+        return self.axes if self.inner is None else self.inner.all_axes
+
+    @property
+    def all_fields(self) -> list[Declared]:
+        """The fields of this list and of those in it."""
+        return self.fields if self.inner is None else self.fields + self.inner.all_fields
+
+    def take(self, declared: Declared, json_axes: tuple[str, ...]) -> None:
+        """Take a field that these axes count."""
+        last = [axis for axis in self.all_axes if axis in declared.axes][-1]
+        if self.inner is not None and last != self.axes[-1]:
+            self.inner.take(declared, json_axes)
+            return
+        self.fields.append(declared)
+        axes = tuple(axis for axis in declared.axes if axis not in self.axes)
+        own = replace(declared, axes=axes, along=_along(axes, json_axes), computed=False)
+        self.declarations |= {one.key: replace(own, name=one.key, json=(one.key,)) for one in declared.written()}
+
+    def of(self, record: Record, values: dict[str, Any], at: dict[str, int]) -> tuple[Row, ...]:
+        """The rows: of a record, from the values of its fields, at numbers along the axes of the outer lists."""
+        axis = self.axes[-1]
+        counting = next(declared for declared in self.fields if axis in declared.axes)
+        value = values[counting.name]
+        length = len(value) if isinstance(value, tuple) else value.shape[counting.axes.index(axis)]
+        made = []
+        for k in range(length):
+            here = at | {axis: k}
+            row: dict[str, Any] = {}
+            for declared in self.fields:
+                entry = _entry(values[declared.name], tuple(here.get(one, slice(None)) for one in declared.axes))
+                for written in declared.written():
+                    own = self.declarations[written.key]
+                    one = entry if written.value is None else written.value(record, entry)
+                    row[written.key] = one if own.along == own.axes else _arranged(record, one, own.axes, own.along)
+            if self.inner is not None:
+                row[self.inner_name] = self.inner.of(record, values, here)
+            made.append(Row(**row))
+        return tuple(made)
+
+
+def _entry(values: Any, at: tuple[Any, ...]) -> Any:
+    """An entry of a tuple or an array, nothing of what an older file does not hold; numbers as Python has them."""
+    if isinstance(values, tuple):
+        return values[at[0]]
+    entry = values[at] if values.size else values.ravel()
+    return entry.item() if getattr(entry, "ndim", 1) == 0 else entry
+
+
+def rows(label: str, axis: str, **within: str) -> Derived[tuple[Row, ...]]:
+    """Declare a list of rows: of the fields that an axis counts; `within`: lists in each row, by the axes that they go along."""
+    axes = (axis, *within.values())
+    names = (*within, "")
+    lists: Rows | None = None
+    for depth in range(len(axes), 0, -1):
+        lists = Rows(axes[:depth], names[depth - 1], lists)
+    declared: Declared = of(label, "", axis, record=lists).metadata["declared"]
+
+    def made(record: Record) -> tuple[Row, ...]:
+        assert lists is not None
+        return lists.of(record, {one.name: getattr(record, one.name) for one in lists.all_fields}, {})
+
+    return Derived(made, replace(declared, stored=False, computed=True))
+
+
 @dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(of,))
 class Record:
     """Base of results and of the records in them.
@@ -303,10 +402,15 @@ class Record:
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if isinstance(value, Derived):
-                    by_name[name] = value.declared
+                    by_name[name] = replace(value.declared, name=name)
         inherited = {name for base in cls.__mro__[1:] for name in getattr(base, "declarations", {})}
         order = sorted(by_name.values(), key=lambda one: (one.name in inherited, one.place))
         cls.declarations = {one.name: replace(one, along=_along(one.axes, cls.json_axes)) for one in order}
+        for lists in [one.record for one in order if isinstance(one.record, Rows)]:
+            for one in order:
+                if one.json and one.record is None and one.axes[:1] and one.axes[0] in lists.all_axes:
+                    lists.take(one, cls.json_axes)
+                    cls.declarations[one.name] = replace(cls.declarations[one.name], json=())
         Record.known[record_name(cls)] = cls
         Record.known.setdefault(cls.__name__, cls)  # files of 0.1 name a record by its class alone
 
@@ -378,6 +482,8 @@ def plain(value: Any) -> Any:
 
     if isinstance(value, Record):
         return value.to_dict()
+    if isinstance(value, Row):
+        return plain(vars(value))
     if isinstance(value, np.ndarray):
         return _plain_array(value)
     if isinstance(value, np.generic):

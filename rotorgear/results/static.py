@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable
-from rotorgear.results.schema import Record, Written, derived, force_and_moment, of
+from rotorgear.results.schema import Record, Written, derived, force_and_moment, of, rows
 from rotorgear.results.table import (
     Block,
     Cell,
@@ -55,17 +55,6 @@ class LoopAssembly(Record):
     gear: str = of("gear", note=' that closes it by its place on the shaft; `""` where all clockings are given')
     clocking_deg: float = of("angle of that gear's tooth from the shaft's mark", "deg")
     rest_pitches: float = of("what is missing where the gear stands at angle 0, or as the file says, in pitches")
-
-
-class Sensitivity(Record):
-    """What one parameter changes: derivatives of forces and shares."""
-
-    parameter: str = of("parameter", note=", such as `meshes.stage_1a.index_error`")
-    unit: str = of("unit", note=" of the force derivatives; for a stiffness they are for 100 % of it")
-    mesh_force_n: dict[str, np.ndarray] = of(
-        "derivative of the force of each contact", "N over the unit of the parameter", "MESH", "helix"
-    )
-    share: np.ndarray = of("derivative of each row of `shares`", "", "share")
 
 
 class MeshFace(Record):
@@ -203,24 +192,21 @@ class StaticResult(AboutEquilibrium, kind="static"):
     point_displacement: dict[str, float] = of(
         "displacement of a named point", "m, rad", "POINT", note=" along its direction"
     )
-    parameter: tuple[str, ...] = of("parameters on which the shares depend", "", "parameter", json=None)
-    parameter_unit: tuple[str, ...] = of("their units", "", "parameter", json=None)
-    force_derivative: np.ndarray = of("change of each contact's force", "N", "parameter", "contact", json=None)
-    share_derivative: np.ndarray = of("change of each row of `shares`", "", "parameter", "share", json=None)
-
-    @derived("what the forces depend on", "", "parameter", record=Sensitivity)
-    def sensitivity(self) -> tuple[Sensitivity, ...]:
-        """The derivatives, a record for each parameter."""
-        return tuple(
-            Sensitivity(
-                name,
-                unit,
-                {mesh: self.force_derivative[k, self.contacts_of(mesh)] for mesh in dict.fromkeys(self.contact_mesh)},
-                self.share_derivative[k],
-            )
-            for k, (name, unit) in enumerate(zip(self.parameter, self.parameter_unit, strict=True))
-        )
-
+    sensitivity = rows("what the forces depend on", "parameter")
+    parameter: tuple[str, ...] = of(
+        "parameter on which the shares depend", "", "parameter", note=", such as `meshes.stage_1a.index_error`"
+    )
+    parameter_unit: tuple[str, ...] = of(
+        "unit", "", "parameter", note=" of the force derivatives; for a stiffness they are for 100 % of it", json="unit"
+    )
+    force_derivative: np.ndarray = of(
+        "derivative of the force of each contact",
+        "N over the unit of the parameter",
+        "parameter",
+        "contact",
+        json="mesh_force_n",
+    )
+    share_derivative: np.ndarray = of("derivative of each row of `shares`", "", "parameter", "share", json="share")
     mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
     assembly: tuple[LoopAssembly, ...] = of("how closed loops go together", "", "loop", record=LoopAssembly)
     imbalance: float = of(

@@ -9,9 +9,8 @@ import numpy as np
 from rotorgear.old_names import warn_old
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.result import ModelResult, statistic_names
-from rotorgear.results.schema import Record, derived, of
+from rotorgear.results.schema import Record, derived, of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, written
-from rotorgear.results.transient import SteadyContact
 
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
@@ -59,60 +58,6 @@ def _hertz(value: float) -> str:
     return f"{value / 1000.0:.3g} kHz" if value >= 1000.0 else f"{value:.3g} Hz"
 
 
-class Parameter(Record):
-    """What was changed."""
-
-    address: str = of("address of a parameter", note=": what was changed")
-    unit: str = of("unit", note=' of its values, or `""` for SI')
-
-
-class SweepContact(SteadyContact):
-    """A contact in one run."""
-
-    static_deflection_m: float = of("static force over mean stiffness", "m")
-    peak_to_peak_m: float = of(
-        "penetration of the flanks, peak to peak", "m", note=": displacement along the normal less the teeth's error"
-    )
-    rms_approach_m: float = of("root mean square of the approach about its mean", "m")
-    losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
-    statistics_error: np.ndarray = of(
-        "estimated errors of the statistics", "", "statistic", note=", in their units, by half or twice the steps"
-    )
-
-    @property
-    def rms_dte_m(self) -> float:
-        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
-        return self.rms_approach_m
-
-
-class SweepRun(Record):
-    """One run of a point."""
-
-    start: str = of("where the run started", note=': `"static"`, `"start 2"`, `"up"`, `"down"`')
-    motion: str = of(
-        "response type",
-        note=': `"1T"`, `"2T"`, ..., `"quasi-periodic"`, `"chaotic"`, `"not settled"`, `"not periodic"` (without exponents), '
-        '`"failed"`',
-    )
-    lyapunov: np.ndarray = of(
-        "Lyapunov exponents", "", "exponent", note=" per period of the fastest mesh, largest first"
-    )
-    lyapunov_error: np.ndarray = of("standard errors of the Lyapunov exponents", "", "exponent")
-    contacts: tuple[SweepContact, ...] = of("contacts", "", "contact", record=SweepContact)
-
-
-class SweepPoint(Record):
-    """One point of the grid."""
-
-    values: np.ndarray = of("value of each parameter", "", "parameter")
-    mesh_frequency_hz: float = of("mesh frequency", "Hz", note=" of the fastest mesh")
-    mesh_periods: int = of("periods of the fastest mesh in the common one")
-    steps: int = of("steps", note=" in a period of the fastest mesh")
-    failure: str = of("why the point failed", note=', or `""`')
-    runs: tuple[SweepRun, ...] = of("runs", "", "run", record=SweepRun)
-
-
 class SweepResult(ModelResult, kind="sweep"):
     """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
 
@@ -122,41 +67,70 @@ class SweepResult(ModelResult, kind="sweep"):
     that `tolerance` and `chaos` belong to stands in analysis/sweep/classify.py.
     """
 
-    address: tuple[str, ...] = of("address of a parameter", "", "parameter", json=None)
-    unit: tuple[str, ...] = of("unit", "", "parameter", json=None)
-    values: np.ndarray = of("values", "", "point", "parameter", json=None)
+    parameters = rows("parameters", "parameter")
+    address: tuple[str, ...] = of("address of a parameter", "", "parameter", note=": what was changed")
+    unit: tuple[str, ...] = of("unit", "", "parameter", note=' of its values, or `""` for SI')
     shape: np.ndarray = of("points along each parameter", "", "parameter", json=None)
-    run: tuple[str, ...] = of("where the runs started", "", "run", json=None)
-    contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
-    frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json=None)
-    turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "point", json=None)
-    section: np.ndarray = of("Poincare points", "m, m/s", "point", "run", "period", "contact", "phase_space", json=None)
+    points = rows("points", "point", runs="run", contacts="contact")
+    values: np.ndarray = of("values", "", "point", "parameter", note=" of the parameters")
+    frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json="mesh_frequency_hz")
+    turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "point", json="mesh_periods")
+    steps: np.ndarray = of("steps", "", "point", note=" in a period of the fastest mesh")
+    failure: tuple[str, ...] = of("why the point failed", "", "point", note=', or `""`')
+    run: tuple[str, ...] = of(
+        "where the runs started", "", "run", note=': `"static"`, `"start 2"`, `"up"`, `"down"`', json="start"
+    )
     motion: tuple[str, ...] = of("response type", "", "point_and_run", json=None)
-    lyapunov: np.ndarray = of("Lyapunov exponents", "", "point", "run", "exponent", json=None)
-    lyapunov_error: np.ndarray = of(
-        "standard errors of the Lyapunov exponents", "", "point", "run", "exponent", json=None
+
+    @derived(
+        "response type",
+        "",
+        "point",
+        "run",
+        json="motion",
+        note=': `"1T"`, `"2T"`, ..., `"quasi-periodic"`, `"chaotic"`, `"not settled"`, `"not periodic"` (without exponents), '
+        '`"failed"`',
     )
-    peak_to_peak: np.ndarray = of("penetration of the flanks, peak to peak", "m", "point", "run", "contact", json=None)
-    peak_to_peak_transmission_error: np.ndarray = of(
-        "transmission error, peak to peak", "m", "point", "run", "contact", json=None
+    def motions(self) -> np.ndarray:
+        """(p, r)."""
+        return np.array(self.motion, dtype=object).reshape(len(self.values), len(self.run))
+
+    lyapunov: np.ndarray = of(
+        "Lyapunov exponents", "", "point", "run", "exponent", note=" per period of the fastest mesh, largest first"
     )
-    peak_to_peak_approach: np.ndarray = of("approach, peak to peak", "m", "point", "run", "contact", json=None)
-    rms_approach: np.ndarray = of(
-        "root mean square of the approach about its mean", "m", "point", "run", "contact", json=None
+    lyapunov_error: np.ndarray = of("standard errors of the Lyapunov exponents", "", "point", "run", "exponent")
+    section: np.ndarray = of("Poincare points", "m, m/s", "point", "run", "period", "contact", "phase_space", json=None)
+    contact: tuple[str, ...] = of("name of the contact", "", "contact", note=": mesh and helix", json="name")
+    static_force: np.ndarray = of(
+        "static force",
+        "N",
+        "point",
+        "contact",
+        note=" along the flank normal, in static equilibrium; negative on the coast flank",
     )
-    mean_force: np.ndarray = of("mean force", "N", "point", "run", "contact", json=None)
-    rms_force: np.ndarray = of(
-        "root mean square of the force about its mean", "N", "point", "run", "contact", json=None
+    static_deflection: np.ndarray = of("static force over mean stiffness", "m", "point", "contact")
+    peak_to_peak: np.ndarray = of("penetration of the flanks, peak to peak", "m", "point", "run", "contact")
+    peak_to_peak_transmission_error: np.ndarray = of("transmission error, peak to peak", "m", "point", "run", "contact")
+    peak_to_peak_approach: np.ndarray = of("approach, peak to peak", "m", "point", "run", "contact")
+    rms_approach: np.ndarray = of("root mean square of the approach about its mean", "m", "point", "run", "contact")
+    mean_force: np.ndarray = of("mean force", "N", "point", "run", "contact")
+    rms_force: np.ndarray = of("root mean square of the force about its mean", "N", "point", "run", "contact")
+    largest_force: np.ndarray = of("largest force", "N", "point", "run", "contact")
+
+    @derived("dynamic factor", "", "point", "run", "contact", note=": largest over static force; `null` without load")
+    def dynamic_factor(self) -> np.ndarray:
+        """(p, r, c) largest force over the static one; NaN where no load flows."""
+        static = self.static_force[:, None, :]
+        return np.where(static > 0.0, self.largest_force / np.where(static > 0.0, static, 1.0), np.nan)
+
+    driving: np.ndarray = of(
+        "share of the time on the working flank", "", "point", "run", "contact", json="driving_share"
     )
-    largest_force: np.ndarray = of("largest force", "N", "point", "run", "contact", json=None)
-    static_force: np.ndarray = of("static force", "N", "point", "contact", json=None)
-    static_deflection: np.ndarray = of("static force over mean stiffness", "m", "point", "contact", json=None)
-    driving: np.ndarray = of("share of the time on the working flank", "", "point", "run", "contact", json=None)
-    apart: np.ndarray = of("contact-loss ratio", "", "point", "run", "contact", json=None)
-    back: np.ndarray = of("share of the time on the coast flank", "", "point", "run", "contact", json=None)
-    losses: np.ndarray = of("contact losses in a period of the fastest mesh", "", "point", "run", "contact", json=None)
-    failure: tuple[str, ...] = of("why the point failed", "", "point", json=None)
-    steps: np.ndarray = of("steps", "", "point", json=None)
+    apart: np.ndarray = of("contact-loss ratio", "", "point", "run", "contact", json="apart_share")
+    back: np.ndarray = of("share of the time on the coast flank", "", "point", "run", "contact", json="back_share")
+    losses: np.ndarray = of(
+        "contact losses in a period of the fastest mesh", "", "point", "run", "contact", json="losses_per_mesh_period"
+    )
     settle: int = of("transient periods discarded (least common periods)", json="settle_periods")
     count: int = of("periods sampled (least common periods)", json="counted_periods")
     tolerance: float = of("tolerance", note=": share of the peak to peak within which a motion repeats")
@@ -173,57 +147,9 @@ class SweepResult(ModelResult, kind="sweep"):
         "run",
         "contact",
         "statistic",
-        json=None,
+        note=", in their units, by half or twice the steps",
         default_factory=lambda: np.zeros((0, 0, 0, 0)),
     )
-
-    @derived("parameters", "", "parameter", record=Parameter)
-    def parameters(self) -> tuple[Parameter, ...]:
-        """What was changed."""
-        return tuple(map(Parameter, self.address, self.unit))
-
-    @derived("points", "", "point", record=SweepPoint)
-    def points(self) -> tuple[SweepPoint, ...]:
-        """All points with their runs."""
-        return tuple(
-            SweepPoint(
-                values=self.values[p],
-                mesh_frequency_hz=float(self.frequency[p]),
-                mesh_periods=int(self.turns[p]),
-                steps=int(self.steps[p]),
-                failure=self.failure[p],
-                runs=tuple(self._run(p, r) for r in range(len(self.run))),
-            )
-            for p in range(len(self.values))
-        )
-
-    def _run(self, p: int, r: int) -> SweepRun:
-        contacts = tuple(self._contact(p, r, c) for c in range(len(self.contact)))
-        return SweepRun(self.run[r], self.motion_at(p, r), self.lyapunov[p, r], self.lyapunov_error[p, r], contacts)
-
-    def _contact(self, p: int, r: int, c: int) -> SweepContact:
-        at = (p, r, c)
-        static = float(self.static_force[p, c])
-        largest = float(self.largest_force[at])
-        return SweepContact(
-            name=self.contact[c],
-            static_force_n=static,
-            static_deflection_m=float(self.static_deflection[p, c]),
-            peak_to_peak_m=float(self.peak_to_peak[at]),
-            peak_to_peak_transmission_error_m=float(self.peak_to_peak_transmission_error[at]),
-            peak_to_peak_approach_m=float(self.peak_to_peak_approach[at]),
-            rms_approach_m=float(self.rms_approach[at]),
-            mean_force_n=float(self.mean_force[at]),
-            rms_force_n=float(self.rms_force[at]),
-            largest_force_n=largest,
-            dynamic_factor=largest / static if static > 0.0 else float("nan"),
-            driving_share=float(self.driving[at]),
-            apart_share=float(self.apart[at]),
-            back_share=float(self.back[at]),
-            losses_per_mesh_period=float(self.losses[at]),
-            # Files of earlier versions have none.
-            statistics_error=self.statistics_error[at] if self.statistic else np.zeros(0),
-        )
 
     @derived("lines of the points that keep their trajectory", "", "portrait", record=Portrait, json="portraits")
     def portrait_lines(self) -> tuple[Portrait, ...]:
@@ -257,12 +183,6 @@ class SweepResult(ModelResult, kind="sweep"):
         """Former name of `rms_approach`, from the time when it was taken along the flank normal."""
         warn_old("attribute of a sweep", "rms", "rms_approach (transverse)")
         return self.rms_approach
-
-    @property
-    def dynamic_factor(self) -> np.ndarray:
-        """(p, r, c) largest force over the static one; NaN where no load flows."""
-        static = self.static_force[:, None, :]
-        return np.where(static > 0.0, self.largest_force / np.where(static > 0.0, static, 1.0), np.nan)
 
     @property
     def period_words(self) -> str:

@@ -15,7 +15,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.schema import Declared, Record, place_of
+from rotorgear.results.schema import Declared, Record, Row, Rows, place_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -190,8 +190,8 @@ def table_of(
 
 
 def records(
-    rows: Iterable[tuple[Record, tuple[str | int, ...]]],
-    cls: type[Record],
+    rows: Iterable[tuple[Record | Row, tuple[str | int, ...]]],
+    cls: type[Record] | Rows,
     *columns: Column | str,
     at: Callable[[int, str], tuple[str | int, ...]] | None = None,
     caption: str = "",
@@ -322,7 +322,9 @@ def unit_of(declared: Declared) -> str:
     return keys[0].unit or "" if keys and isinstance(declared.json[0], str) else declared.unit
 
 
-def _cell(record: Record, known: dict[str, Declared], column: Column, path: Callable[[str], tuple[Any, ...]]) -> Cell:
+def _cell(
+    record: Record | Row, known: dict[str, Declared], column: Column, path: Callable[[str], tuple[Any, ...]]
+) -> Cell:
     if column.where and not column.where(record):
         return Cell(column.without, number=True)
     if not isinstance(column.value, str):

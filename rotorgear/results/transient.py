@@ -11,7 +11,7 @@ from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
-from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.schema import Record, Written, derived, of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, short, table_of
 
 # What a history of a contact is called, and the table it stands in; the last one by its former name.
@@ -60,66 +60,6 @@ class EnergyLedger(Record):
     )
 
 
-class SteadyContact(Record):
-    """What a transient and a run of a sweep say of a contact in the time that counts."""
-
-    name: str = of("name", note=": mesh and helix", column="contact")
-    static_force_n: float = of(
-        "static force", "N", note=" along the flank normal; negative on the coast flank", form=short, column="static\nN"
-    )
-    mean_force_n: float = of("mean force", "N", note=" in the time that counts", form=short, column="mean")
-    rms_force_n: float = of("root mean square of the force about its mean", "N", form=short, column="rms")
-    largest_force_n: float = of("largest force", "N", form=short, column="largest")
-    dynamic_factor: float = of(
-        "dynamic factor", note=": largest over static force; `null` without load", form=".3f", column="K_dyn"
-    )
-    peak_to_peak_transmission_error_m: float = of(
-        "transmission error, peak to peak", "m", note=": rotation at the base circles", form=".2f", column="TE\num"
-    )
-    peak_to_peak_approach_m: float = of(
-        "approach, peak to peak", "m", note=" of the flanks, transverse", form=".2f", column="appr.\num"
-    )
-    driving_share: float = of("share of the time on the working flank")
-    apart_share: float = of("contact-loss ratio", form=".1f", column="loss\n%")
-    back_share: float = of("share of the time on the coast flank", form=".1f", column="coast\n%")
-
-    @property
-    def peak_to_peak_dte_m(self) -> float:
-        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
-        return self.peak_to_peak_approach_m
-
-
-class ContactStatistics(SteadyContact):
-    """A contact in the time that counts."""
-
-    smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
-    driving_impulse_n_s: float = of(
-        "impulse on the working flank", "N s", note=": the integral of its force over that time"
-    )
-    back_impulse_n_s: float = of("impulse on the coast flank", "N s", note=", positive")
-    losses: int = of("contact losses", note=": how often contact was lost", column="losses")
-
-
-class ChannelStatistics(Record):
-    """A channel in the time that counts."""
-
-    name: str = of("name", note=": force of a bearing, motion of a point, a bearing or a gear")
-    unit: str = of("unit")
-    mean: float = of("mean", note=" in the time that counts")
-    rms: float = of("root mean square about the mean")
-    largest: float = of("largest value")
-    smallest: float = of("smallest value")
-
-
-class Quantity(Record):
-    """A statistic whose error is estimated."""
-
-    name: str = of("name", note=" of the statistic whose error is estimated")
-    value: float = of("value")
-    error: float = of("estimated error", note=", absolute; `null` where none was asked for")
-
-
 class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
@@ -158,7 +98,6 @@ class TransientResult(ModelResult, kind="transient"):
     steps: int = of("steps", note=" done")
     every: int = of("steps from one record to the next", json=None)
     mesh_frequency: dict[str, float] = of("mesh frequency", "Hz", "MESH", note=" of each mesh, at the first speed")
-    contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
     transmission_error: np.ndarray = of("transmission error", "m", "record", "contact", json=None)
     approach: np.ndarray = of("approach", "m", "record", "contact", json=None)
     transmission_error_range: np.ndarray = of(
@@ -168,9 +107,6 @@ class TransientResult(ModelResult, kind="transient"):
         "least and largest approach in the time that counts", "m", "contact", "end", json=None
     )
     mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
-    mean_force: np.ndarray = of("mean force", "N", "contact", json=None, note=": the static force")
-    force_mean: np.ndarray = of("mean of the force in the time that counts", "N", "contact", json=None)
-    force_rms: np.ndarray = of("root mean square of the force about that mean", "N", "contact", json=None)
     force_range: np.ndarray = of("least and largest force in the time that counts", "N", "contact", "end", json=None)
     impulse: np.ndarray = of(
         "impulse on the working and on the coast flank in the time that counts", "N s", "contact", "side", json=None
@@ -178,67 +114,113 @@ class TransientResult(ModelResult, kind="transient"):
     contact_time: np.ndarray = of(
         "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
     )
-    contact_losses: np.ndarray = of("contact losses", "", "contact", json=None)
-    channel: tuple[str, ...] = of("names of the channels", "", "channel", json=None)
-    unit: tuple[str, ...] = of("unit", "", "channel", json=None)
+    contacts = rows("contacts in the time that counts", "contact")
+    contact: tuple[str, ...] = of(
+        "name of the contact", "", "contact", note=": mesh and helix", json="name", column="contact"
+    )
+    mean_force: np.ndarray = of(
+        "mean force",
+        "N",
+        "contact",
+        json="static_force_n",
+        note=": the static force along the flank normal; negative on the coast flank",
+        form=short,
+        column="static\nN",
+    )
+    force_mean: np.ndarray = of(
+        "mean of the force in the time that counts", "N", "contact", json="mean_force_n", form=short, column="mean"
+    )
+    force_rms: np.ndarray = of(
+        "root mean square of the force about that mean", "N", "contact", json="rms_force_n", form=short, column="rms"
+    )
+
+    @derived("largest force", "N", "contact", form=short, column="largest")
+    def largest_force(self) -> np.ndarray:
+        """(c,)."""
+        return np.asarray(self.force_range[:, 1])
+
+    @derived("smallest force", "N", "contact", note="; negative on the coast flank")
+    def smallest_force(self) -> np.ndarray:
+        """(c,)."""
+        return np.asarray(self.force_range[:, 0])
+
+    @derived("dynamic factor", "", "contact", note=": largest over static force", form=".3f", column="K_dyn")
+    def dynamic_factor(self) -> np.ndarray:
+        """(c,) largest mesh force over the static mean force; NaN where no load flows."""
+        safe = np.where(self.mean_force > 0.0, self.mean_force, 1.0)
+        return np.where(self.mean_force > 0.0, self.largest_force / safe, np.nan)
+
+    @derived("transmission error, peak to peak", "m", "contact", form=".2f", column="TE\num")
+    def peak_to_peak_transmission_error(self) -> np.ndarray:
+        """(c,) of the rotation at the base circles."""
+        return np.asarray(np.ptp(self.transmission_error_range, axis=1))
+
+    @derived("approach, peak to peak", "m", "contact", form=".2f", column="appr.\num")
+    def peak_to_peak_approach(self) -> np.ndarray:
+        """(c,) of the flanks in the transverse plane."""
+        return np.asarray(np.ptp(self.approach_range, axis=1))
+
+    @derived("impulse on the working flank", "N s", "contact", json="driving_impulse_n_s")
+    def driving_impulse(self) -> np.ndarray:
+        """(c,) integral of its force over the time that counts."""
+        return np.asarray(self.impulse[:, 0])
+
+    @derived("impulse on the coast flank", "N s", "contact", note=", positive", json="back_impulse_n_s")
+    def back_impulse(self) -> np.ndarray:
+        """(c,)."""
+        return np.asarray(self.impulse[:, 1])
+
+    @derived("share of the time on the working flank", "", "contact", json="driving_share")
+    def driving(self) -> np.ndarray:
+        """(c,)."""
+        return np.asarray(self.contact_time[:, 0])
+
+    @derived("contact-loss ratio", "", "contact", json="apart_share", form=".1f", column="loss\n%")
+    def apart(self) -> np.ndarray:
+        """(c,)."""
+        return np.asarray(self.contact_time[:, 1])
+
+    @derived("share of the time on the coast flank", "", "contact", json="back_share", form=".1f", column="coast\n%")
+    def back(self) -> np.ndarray:
+        """(c,)."""
+        return np.asarray(self.contact_time[:, 2])
+
+    contact_losses: np.ndarray = of("contact losses", "", "contact", json="losses", column="losses")
     values: np.ndarray = of("values", "", "record", "channel", json=None)
-    value_mean: np.ndarray = of("mean values of the channels in the time that counts", "", "channel", json=None)
-    value_rms: np.ndarray = of("root mean squares of the channels about these", "", "channel", json=None)
     value_range: np.ndarray = of(
         "least and largest values of the channels in the time that counts", "", "channel", "end", json=None
     )
-    quantity: tuple[str, ...] = of("names of the statistics with an error", "", "quantity", json=None)
-    quantity_value: np.ndarray = of("values of the statistics", "", "quantity", json=None)
-    quantity_error: np.ndarray = of("estimated errors of the statistics", "", "quantity", json=None)
+    channels = rows("channels in the time that counts", "channel")
+    channel: tuple[str, ...] = of(
+        "name of the channel",
+        "",
+        "channel",
+        note=": force of a bearing, motion of a point, a bearing or a gear",
+        json="name",
+    )
+    unit: tuple[str, ...] = of("unit", "", "channel")
+    value_mean: np.ndarray = of("mean in the time that counts", "", "channel", json="mean")
+    value_rms: np.ndarray = of("root mean square about the mean", "", "channel", json="rms")
+
+    @derived("largest value", "", "channel", json="largest")
+    def largest_value(self) -> np.ndarray:
+        """(p,)."""
+        return np.asarray(self.value_range[:, 1])
+
+    @derived("smallest value", "", "channel", json="smallest")
+    def smallest_value(self) -> np.ndarray:
+        """(p,)."""
+        return np.asarray(self.value_range[:, 0])
+
+    quantities = rows("statistics with an error", "quantity")
+    quantity: tuple[str, ...] = of("name of the statistic whose error is estimated", "", "quantity", json="name")
+    quantity_value: np.ndarray = of("value", "", "quantity", json="value")
+    quantity_error: np.ndarray = of(
+        "estimated error", "", "quantity", note=", absolute; `null` where none was asked for", json="error"
+    )
     quantity_scale: np.ndarray = of(
         "sizes that the errors of the statistics are taken relative to", "", "quantity", json=None
     )
-
-    @derived("contacts in the time that counts", "", "contact", record=ContactStatistics)
-    def contacts(self) -> tuple[ContactStatistics, ...]:
-        """Statistics of the contacts."""
-        return tuple(self._contact(i) for i in range(len(self.contact)))
-
-    def _contact(self, i: int) -> ContactStatistics:
-        return ContactStatistics(
-            name=self.contact[i],
-            static_force_n=float(self.mean_force[i]),
-            mean_force_n=float(self.force_mean[i]),
-            rms_force_n=float(self.force_rms[i]),
-            largest_force_n=float(self.force_range[i, 1]),
-            smallest_force_n=float(self.force_range[i, 0]),
-            driving_impulse_n_s=float(self.impulse[i, 0]),
-            back_impulse_n_s=float(self.impulse[i, 1]),
-            dynamic_factor=float(self.dynamic_factor[i]),
-            peak_to_peak_transmission_error_m=float(np.ptp(self.transmission_error_range[i])),
-            peak_to_peak_approach_m=float(np.ptp(self.approach_range[i])),
-            driving_share=float(self.contact_time[i, 0]),
-            apart_share=float(self.contact_time[i, 1]),
-            back_share=float(self.contact_time[i, 2]),
-            losses=int(self.contact_losses[i]),
-        )
-
-    @derived("channels in the time that counts", "", "channel", record=ChannelStatistics)
-    def channels(self) -> tuple[ChannelStatistics, ...]:
-        """Statistics of the channels."""
-        return tuple(
-            ChannelStatistics(
-                name=name,
-                unit=self.unit[i],
-                mean=float(self.value_mean[i]),
-                rms=float(self.value_rms[i]),
-                largest=float(self.value_range[i, 1]),
-                smallest=float(self.value_range[i, 0]),
-            )
-            for i, name in enumerate(self.channel)
-        )
-
-    @derived("statistics with an error", "", "quantity", record=Quantity)
-    def quantities(self) -> tuple[Quantity, ...]:
-        """The statistics whose error is estimated."""
-        rows = zip(self.quantity, self.quantity_value.tolist(), self.quantity_error.tolist(), strict=True)
-        return tuple(Quantity(name, value, error) for name, value, error in rows)
-
     error_estimate: float = of(
         "largest relative error of the statistics", note=", each relative to the size of its kind", form=".1e"
     )
@@ -257,13 +239,6 @@ class TransientResult(ModelResult, kind="transient"):
     def spacing(self) -> float:
         """Time between two records in s."""
         return self.step * self.every
-
-    @property
-    def dynamic_factor(self) -> np.ndarray:
-        """(c,) largest mesh force over the static mean force; NaN where no load flows."""
-        peak = self.force_range[:, 1]
-        safe = np.where(self.mean_force > 0.0, self.mean_force, 1.0)
-        return np.where(self.mean_force > 0.0, peak / safe, np.nan)
 
     @property
     def deflection(self) -> np.ndarray:
@@ -303,8 +278,7 @@ class TransientResult(ModelResult, kind="transient"):
                 f"ended at {self.time[-1]:.4g} s, before the {self.settle:.4g} s that are discarded: nothing counts"
             )
         yield heading(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
-        columns = [one.name for one in SteadyContact.declarations.values() if one.column]
-        yield from (table_of(self, "contacts", *columns, "losses", tight=True), "")
+        yield from (table_of(self, "contacts", tight=True), "")
         if self.channel:
             yield self._channels()
         yield ""

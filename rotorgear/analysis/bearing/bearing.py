@@ -169,7 +169,7 @@ def bearing(
     told: dict[str, Any] = {}
     if inside is not None:
         declared = BearingSheet.declarations[inside.told_as]
-        assert declared.record is not None
+        assert isinstance(declared.record, type)
         records = tuple(declared.record(**row) for row in inside.told(law, here.force, here.d, ratio * given))
         told = {inside.told_as: records if declared.axes else records[0]}
     progress(1.0, "done")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from rotorgear.results.transient import ChannelStatistics, TransientResult
+from rotorgear.results.schema import Row
+from rotorgear.results.transient import TransientResult
 
 
-def row(name: str, mean: float, rms: float, largest: float, smallest: float) -> ChannelStatistics:
-    return ChannelStatistics(name=name, unit="N", mean=mean, rms=rms, largest=largest, smallest=smallest)
+def row(name: str, mean: float, rms: float, largest: float, smallest: float) -> Row:
+    return Row(name=name, unit="N", mean=mean, rms=rms, largest=largest, smallest=smallest)
 
 
 def test_components_that_rounding_leaves_of_a_vector_are_shown_as_zero_and_small_vectors_are_not() -> None:
