@@ -5,7 +5,7 @@ The site shows the whole page: every key with its unit and meaning.
 
 from __future__ import annotations
 
-from rotorgear.results.kinds import Key, keys_of, kinds
+from rotorgear.results.kinds import keys_of, kinds
 from rotorgear.results.result import ModelResult
 
 HEAD = """# JSON output
@@ -209,14 +209,14 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
 
 def pages() -> dict[str, str]:
     """Return the summary by its path: the rules, what every result says, and a line for each command."""
-    common = {key.path: key for key in keys_of(ModelResult)}
-    shared = "".join(row(key) for key in common.values() if key.path != "analysis")
+    common = {path: (path, unit, text) for path, unit, text in keys_of(ModelResult)}
+    shared = "".join(row(*key) for path, key in common.items() if path != "analysis")
     lines = []
     for heading, _, parts in SECTIONS:
         for kind, prefix in parts:
             cls = kinds()[kind]
             about = (cls.__doc__ or "").strip().split("\n")[0].replace("|", "\\|")
-            own = dict.fromkeys(key.path.partition(".")[0] for key in keys_of(cls) if key.path not in common)
+            own = dict.fromkeys(path.partition(".")[0] for path, _, _ in keys_of(cls) if path not in common)
             fields = [f"`{prefix}{name}`" for name in own if not name.startswith(("analysis", "facts"))]
             more = f" and {len(fields) - _MAIN} more" if len(fields) > _MAIN else ""
             lines.append(f"| {heading} | {about} | {', '.join(fields[:_MAIN])}{more} |\n")
@@ -235,11 +235,11 @@ def site_pages() -> dict[str, str]:
 
 def section(heading: str, words: str, parts: tuple[tuple[str, str], ...]) -> str:
     """The section of one command."""
-    rows = "".join(row(key) for kind, prefix in parts for key in keys_of(kinds()[kind], prefix))
+    rows = "".join(row(*key) for kind, prefix in parts for key in keys_of(kinds()[kind], prefix))
     return f"## {heading}\n\n{words}\n\n| key | unit | value |\n|---|---|---|\n{rows}"
 
 
-def row(key: Key) -> str:
+def row(path: str, unit: str, text: str) -> str:
     """A line of the table; a vertical bar would end the cell."""
-    text = key.text.replace("|", "\\|")
-    return f"| `{key.path}` | {key.unit} | {text} |\n"
+    cell = text.replace("|", "\\|")
+    return f"| `{path}` | {unit} | {cell} |\n"

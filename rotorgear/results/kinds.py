@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pkgutil
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 
@@ -22,19 +21,13 @@ def kinds() -> dict[str, type[Result]]:
     return dict(Result.kinds)
 
 
-@dataclass(frozen=True)
-class Key:
-    """A key: its path, with `[]` for the entries of a list and a word in capitals for a name; its unit and its meaning."""
+def keys_of(cls: type[Record] | Rows, prefix: str = "") -> Iterator[tuple[str, str, str]]:
+    """Yield path, unit and meaning of each key that a result or a record writes, `prefix` before the path.
 
-    path: str
-    unit: str
-    text: str
-
-
-def keys_of(cls: type[Record] | Rows, prefix: str = "") -> Iterator[Key]:
-    """Yield the keys that a result or a record writes, `prefix` before each."""
+    In a path `[]` stands for the entries of a list and a word in capitals for a name.
+    """
     if isinstance(cls, type) and issubclass(cls, Result):
-        yield Key(f"{prefix}analysis", "", f'`"{cls.analysis_word}"`')
+        yield f"{prefix}analysis", "", f'`"{cls.analysis_word}"`'
     declared = list(cls.declarations.values())
     title = [one for one in declared if one.name == "title"]
     for one in [*title, *(one for one in declared if one.name != "title")]:
@@ -46,10 +39,10 @@ def keys_of(cls: type[Record] | Rows, prefix: str = "") -> Iterator[Key]:
             # A label of the key's own does without the note of the field.
             note = written.note if written.note is not None else one.note if written.label is None else ""
             if one.record is None or written.label is not None:
-                yield Key(path, unit, label + note)
+                yield path, unit, label + note
                 continue
             if note:
-                yield Key(path.removesuffix("[]"), "", label + note)
+                yield path.removesuffix("[]"), "", label + note
             yield from keys_of(one.record, f"{path}.")
     if isinstance(cls, Rows) and cls.inner is not None:
         yield from keys_of(cls.inner, f"{prefix}{cls.inner_name}[].")

@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError, MissingExtraError
-from rotorgear.results.schema import Declared, Record
-
-
-@dataclass(frozen=True)
-class Series:
-    """Values over counted axes: an array whose dimensions are `axes`, with the words of its declaration."""
-
-    name: str
-    axes: tuple[str, ...]
-    values: np.ndarray
-    declared: Declared
+from rotorgear.results.schema import Declared, Record, Rows
 
 
 def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
@@ -39,33 +28,23 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
     declared = result.declarations.get(axes[0]) if len(axes) == 1 else None
     if declared is not None and declared.record is not None and declared.axes:
         # A record is one row; what is itself a list of records stays one.
-        return [
-            {
-                name: _python(getattr(record, name))
-                for name, one in declared.record.declarations.items()
-                if not one.computed
-            }
-            for record in getattr(result, axes[0])
-        ]
+        stored = [name for name, one in declared.record.declarations.items() if not one.computed]
+        if isinstance(declared.record, Rows) and declared.record.inner is not None:
+            stored.append(declared.record.inner_name)
+        return [{name: _python(getattr(record, name)) for name in stored} for record in getattr(result, axes[0])]
     columns = list(_columns(result))
-    known = sorted({axis for column in columns for axis in column.axes})
+    sizes = {axis: size for _, along, values, _ in columns for axis, size in zip(along, values.shape, strict=True)}
     lists = [one.name for one in result.declarations.values() if one.record is not None and one.axes]
     for axis in axes:
-        if axis not in known:
-            raise AnalysisError(f"rows: got '{axis}', expected one of {', '.join([*known, *lists])}")
-    sizes = {
-        axis: size
-        for column in columns
-        for axis, size in zip(column.axes, column.values.shape, strict=True)
-        if axis in axes
-    }
-    shown = [column for column in columns if column.axes and set(column.axes) <= set(axes)]
+        if axis not in sizes:
+            raise AnalysisError(f"rows: got '{axis}', expected one of {', '.join([*sorted(sizes), *lists])}")
     entries = []
     for place in product(*(range(sizes[axis]) for axis in axes)):
         at = dict(zip(axes, place, strict=True))
         row: dict[str, Any] = {axis: number + 1 for axis, number in at.items()}
-        for column in shown:
-            row[column.name] = _python(column.values[tuple(at[axis] for axis in column.axes)])
+        for name, along, values, _ in columns:
+            if along and set(along) <= set(axes):
+                row[name] = _python(values[tuple(at[axis] for axis in along)])
         entries.append(row)
     return entries
 
@@ -74,8 +53,8 @@ def _python(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _columns(record: Record, prefix: str = "") -> Iterator[Series]:
-    """Yield everything that is counted by axes, dictionaries taken apart."""
+def _columns(record: Record, prefix: str = "") -> Iterator[tuple[str, tuple[str, ...], np.ndarray, Declared]]:
+    """Yield everything that is counted by axes, dictionaries taken apart: its name, axes, values and declaration."""
     for declared in record.declarations.values():
         value = getattr(record, declared.name)
         name = f"{prefix}{declared.name}"
@@ -87,16 +66,16 @@ def _columns(record: Record, prefix: str = "") -> Iterator[Series]:
         elif isinstance(value, dict):
             for key, entry in value.items():
                 if len(declared.axes) == np.ndim(entry) + 1:
-                    yield Series(f"{name}.{key}", declared.axes[1:], np.asarray(entry), declared)
+                    yield f"{name}.{key}", declared.axes[1:], np.asarray(entry), declared
         elif isinstance(value, np.ndarray):
-            yield Series(name, declared.axes, value, declared)
+            yield name, declared.axes, value, declared
         elif isinstance(value, tuple) and declared.axes:
             # Empty by its default, a field says that the model has nothing of its kind: it isn't counted by its axis.
             if value == () and type(record).__dataclass_fields__[declared.name].default == ():
                 continue
             texts = np.empty(len(value), dtype=object)
             texts[:] = value
-            yield Series(name, declared.axes, texts, declared)
+            yield name, declared.axes, texts, declared
 
 
 def data_set(result: Record) -> Any:
@@ -128,15 +107,14 @@ def data_set(result: Record) -> Any:
                     attrs=about,
                 )
             )
-    for column in _columns(result):
-        about = {"long_name": column.declared.label, "units": column.declared.unit}
-        if isinstance(getattr(result, column.declared.name, None), dict) or not column.axes:
+    for name, axes, values, declared in _columns(result):
+        about = {"long_name": declared.label, "units": declared.unit}
+        if isinstance(getattr(result, declared.name, None), dict) or not axes:
             continue
-        axis = column.axes[0]
-        if len(column.axes) == 1 and column.name in (axis, f"{axis}s"):
-            coordinates[axis] = (axis, column.values, about)
+        if len(axes) == 1 and name in (axes[0], f"{axes[0]}s"):
+            coordinates[axes[0]] = (axes[0], values, about)
         else:
-            arrays.append(xr.DataArray(column.values, dims=column.axes, name=column.name, attrs=about))
+            arrays.append(xr.DataArray(values, dims=axes, name=name, attrs=about))
     merged = xr.merge(arrays, join="outer", compat="no_conflicts", combine_attrs="drop")
     # Newer versions of xarray drop the attributes of the variables as well as those of the whole.
     for array in arrays:

@@ -263,6 +263,9 @@ class Derived(Generic[T]):
         self.declared = declared
         self.__doc__ = function.__doc__
 
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.declared = replace(self.declared, name=name)
+
     @overload
     def __get__(self, obj: None, owner: type) -> Derived[T]: ...
     @overload
@@ -277,7 +280,7 @@ def derived(label: str, unit: str = "", *axes: str, **said: Any) -> Callable[[Ca
 
     def declare(function: Callable[[Any], T]) -> Derived[T]:
         words = "str" in str(function.__annotations__.get("return"))
-        return Derived(function, replace(declared, name=function.__name__, stored=False, computed=True, words=words))
+        return Derived(function, replace(declared, stored=False, computed=True, words=words))
 
     return declare
 
@@ -311,6 +314,10 @@ class Rows:
         self.inner = inner
         self.fields: list[Declared] = []
         self.declarations: dict[str, Declared] = {}
+
+    def emptied(self) -> Rows:
+        """The same lists without fields."""
+        return Rows(self.axes, self.inner_name, self.inner and self.inner.emptied())
 
     @property
     def all_axes(self) -> tuple[str, ...]:
@@ -370,13 +377,15 @@ def rows(label: str, axis: str, **within: str) -> Derived[tuple[Row, ...]]:
     lists: Rows | None = None
     for depth in range(len(axes), 0, -1):
         lists = Rows(axes[:depth], names[depth - 1], lists)
-    declared: Declared = of(label, "", axis, record=lists).metadata["declared"]
 
     def made(record: Record) -> tuple[Row, ...]:
-        assert lists is not None
-        return lists.of(record, {one.name: getattr(record, one.name) for one in lists.all_fields}, {})
+        own = record.declarations[here.declared.name].record
+        assert isinstance(own, Rows)
+        return own.of(record, {one.name: getattr(record, one.name) for one in own.all_fields}, {})
 
-    return Derived(made, replace(declared, stored=False, computed=True))
+    declared: Declared = of(label, "", axis, record=lists).metadata["declared"]
+    here = Derived(made, replace(declared, stored=False, computed=True))
+    return here
 
 
 @dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(of,))
@@ -402,15 +411,18 @@ class Record:
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if isinstance(value, Derived):
-                    by_name[name] = replace(value.declared, name=name)
+                    by_name[name] = value.declared
         inherited = {name for base in cls.__mro__[1:] for name in getattr(base, "declarations", {})}
         order = sorted(by_name.values(), key=lambda one: (one.name in inherited, one.place))
         cls.declarations = {one.name: replace(one, along=_along(one.axes, cls.json_axes)) for one in order}
-        for lists in [one.record for one in order if isinstance(one.record, Rows)]:
-            for one in order:
-                if one.json and one.record is None and one.axes[:1] and one.axes[0] in lists.all_axes:
-                    lists.take(one, cls.json_axes)
-                    cls.declarations[one.name] = replace(cls.declarations[one.name], json=())
+        for listed in order:
+            if isinstance(listed.record, Rows):
+                lists = listed.record.emptied()  # a subclass may have fields of its own in them
+                cls.declarations[listed.name] = replace(listed, record=lists, along=listed.axes)
+                for one in order:
+                    if one.json and one.record is None and one.axes and one.axes[0] in lists.all_axes:
+                        lists.take(one, cls.json_axes)
+                        cls.declarations[one.name] = replace(cls.declarations[one.name], json=())
         Record.known[record_name(cls)] = cls
         Record.known.setdefault(cls.__name__, cls)  # files of 0.1 name a record by its class alone
 
