@@ -38,8 +38,7 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
     rows = 3 if result.curves else 2
     size = (_SIZE[0], _SIZE[1] * (1.4 if result.curves else 1.0))
     axes = figure_for(fig, size, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 2)[:rows])
-    told = result.shown()
-    sizes = 1e6 * told.peak_to_peak(result)
+    sizes = 1e6 * result.peak_to_peak_of(result)
     c = int(np.argmax(sizes.max(axis=0))) if contact is None else contact
     x = result.value / result.per_unit[0]
     largest = np.nanmax(np.abs(result.multipliers), axis=1)
@@ -60,11 +59,12 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
         points = [one for one in result.special_points if one.kind == kind]
         if points:
             at = [one.value / result.per_unit[0] for one in points]
-            height = [1e6 * float(told.peak_to_peak(one)[c]) for one in points]
+            height = [1e6 * float(result.peak_to_peak_of(one)[c]) for one in points]
             axes[0].plot(at, height, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
     axes[1].axhline(1.0, color="k", lw=0.6)
-    moved = label(result, "peak_to_peak_approach" if told.of_contacts else "place_peak_to_peak", f"u{told.unit}")
-    name_axes(axes[0], "", moved, title=f"{told.label[c]}: periodic motions")
+    moved = "peak_to_peak_approach" if result.contact else "place_peak_to_peak"
+    up = label(result, moved, f"u{result.shown_unit}")
+    name_axes(axes[0], "", up, title=f"{result.shown[c]}: periodic motions")
     axes[0].legend(fontsize=7)
     axes[1].set_ylabel("largest |mu|")
     for curve in result.curves:

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.quantity import millimetres
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, grid, heading, table_of, written
+from rotorgear.results.table import Block, Column, grid, table_of, written
 
 # Products of inertia below this share of the largest are shown as 0.
 _ROUNDING = 1e-9
@@ -102,8 +102,7 @@ class CasingSurvey(Result, kind="casing"):
 
     def tables(self) -> Iterator[Block]:
         """Each casing: what it is, its modes and its seats."""
-        if self.title:
-            yield heading(self.title)
+        yield from self.titled()
         for name, row in self.casings.items():
             yield grid(row.facts(), "", "", left=2, caption=f"casing {name}", titled=True, headed=False)
             yield from (*(f"  {note}" for note in row.notes), "")

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.results.comparison import ExcitationLine, LearntParameter, RigLine, learnt_words
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, heading, table_of
+from rotorgear.results.table import Block, Column, table_of
 
 # Two shapes more alike than this at the sensors are one shape to the test.
 SAME = 0.9
@@ -144,8 +144,7 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
 
     def tables(self) -> Iterator[Block]:
         """Measured modes beside those of the model, and what the agreement is worth."""
-        if self.title:
-            yield heading(self.title)
+        yield from self.titled()
         close = Column("", lambda m: f"with {', '.join(map(str, m.close_to))}" if m.close_to else "", left=False)
         own = ("mode_number", "mode_frequency_hz", "error_percent", "mac", "phase_collinearity")
         yield table_of(self, "matches", Column("rig Hz", "rig.frequency_hz", ".2f"), *own, close)

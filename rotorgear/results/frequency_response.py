@@ -63,17 +63,29 @@ def peak_between(x: np.ndarray, size: np.ndarray, power: int) -> Peak | None:
     return Peak(w / (2.0 * np.pi), float(w**power / np.sqrt(least)), resolved)
 
 
-class FrequencyResponse(AboutEquilibrium, kind="frf"):
-    """Response of o places to unit forces (or moments) at i places, at f frequencies; Re(x e^{+iwt})."""
-
-    json_axes = ("output", "input", "frequency")
+class BetweenPlaces(AboutEquilibrium):
+    """A result of o places that answer to unit forces (or moments) at i places."""
 
     speed: float = of("speed of the input shaft", "rad/s")
-    frequency_hz: np.ndarray = of("frequency", "Hz", "frequency")
     inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
     outputs: tuple[str, ...] = of("where the response is read", "", "output", json="output")
     input_units: tuple[str, ...] = of("units of what acts", "", "input", note=": N or N m")
     output_units: tuple[str, ...] = of("units of the displacements read", "", "output", note=": m or rad")
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
+
+    @property
+    def at_speed(self) -> str:
+        """The speed in words."""
+        turns = f"{self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
+        return turns if self.speed else "at standstill"
+
+
+class FrequencyResponse(BetweenPlaces, kind="frf"):
+    """Response of o places to unit forces (or moments) at i places, at f frequencies; Re(x e^{+iwt})."""
+
+    json_axes = ("output", "input", "frequency")
+
+    frequency_hz: np.ndarray = of("frequency", "Hz", "frequency")
     receptance: np.ndarray = of(
         "receptance: displacement over force",
         "m/N, rad/N, m/(N m) or rad/(N m)",
@@ -96,7 +108,6 @@ class FrequencyResponse(AboutEquilibrium, kind="frf"):
         note=": change on a finer mesh at the largest responses, relative to the largest; 0 without shaft elements",
         form=".0e",
     )
-    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
 
     def of(self, quantity: str) -> np.ndarray:
         """Receptance, mobility or accelerance, (f, o, i)."""
@@ -125,11 +136,7 @@ class FrequencyResponse(AboutEquilibrium, kind="frf"):
     def tables(self, *, quantity: str = "receptance") -> Iterator[Block]:
         """The highest peaks of each response, of receptance, mobility or accelerance."""
         hz = self.frequency_hz
-        at = "standstill"
-        if self.speed:
-            at = f"{self.speed * RPM_PER_RAD_S:.6g} rpm"
-        shaft = f"{self.model.reference_shaft} at " if self.speed else "at "
-        yield heading(f"{self.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz, {shaft}{at}")
+        yield heading(f"{self.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz, {self.at_speed}")
         rows = []
         coarse = False
         for i, entry in enumerate(self.inputs):

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, heading, table_of
+from rotorgear.results.table import Block, table_of
 
 
 class FrfMatch(Record):
@@ -59,8 +59,7 @@ class FrfComparison(ModelResult, kind="compare_frf"):
 
     def tables(self) -> Iterator[Block]:
         """Each pair of places, and what the agreement is worth."""
-        if self.title:
-            yield heading(self.title)
+        yield from self.titled()
         hz = self.frequency_hz
         yield from (table_of(self, "pairs"), "")
         yield f"Mean FRAC {self.mean_frac:.3f} over {len(hz)} frequencies, {hz[0]:.5g} to {hz[-1]:.5g} Hz."
@@ -96,8 +95,7 @@ class OrderComparison(ModelResult, kind="compare_orders"):
 
     def tables(self) -> Iterator[Block]:
         """Each cut, and those that the model has no order for."""
-        if self.title:
-            yield heading(self.title)
+        yield from self.titled()
         columns = ("point", "order", "level_db", "correlation", "rig_peak_rpm", "model_peak_rpm")
         yield from (table_of(self, "cuts", *columns), "")
         if self.without:

@@ -11,7 +11,7 @@ from rotorgear.results.schema import of
 from rotorgear.results.table import Block, grid, heading
 
 
-class MeshMap(Result, kind="mesh_map"):
+class OverLoads(Result):
     """One mesh at t torques and m misalignments; arrays are (t, m)."""
 
     title: str = of("title of the model")
@@ -19,18 +19,32 @@ class MeshMap(Result, kind="mesh_map"):
     pinion: str = of("gear that the file calls the pinion")
     gear: str = of("gear that meshes with the pinion")
     preset: str = of("preset of the finite elements")
-    body: str = of("what the teeth stand on", note=", in words")
-    helices: int = of("number of helices")
     positions: int = of("positions in the mesh period")
     pinion_torque: np.ndarray = of("torque on the pinion about +z", "N m", "torque")
     misalignment: np.ndarray = of(
         "misalignment over the face", "m", "misalignment", note=", positive where the flanks stand apart at larger z"
     )
+    largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
+
+    def _head(self) -> Block:
+        return heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+
+    def _points(self) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
+        """Numbers of torque and misalignment, and the words of both, of each point."""
+        for i, torque in enumerate(self.pinion_torque):
+            for j, misalignment in enumerate(self.misalignment):
+                yield (i, j), (f"{torque:.5g}", f"{1e6 * misalignment:.4g}")
+
+
+class MeshMap(OverLoads, kind="mesh_map"):
+    """One mesh at t torques and m misalignments; arrays are (t, m)."""
+
+    body: str = of("what the teeth stand on", note=", in words")
+    helices: int = of("number of helices")
     ste_peak_to_peak: np.ndarray = of("peak to peak of the transmission error", "m", "torque", "misalignment")
     ste_harmonics: np.ndarray = of(
         "amplitudes of mesh orders 1 to 3 of the transmission error", "m", "torque", "misalignment", "order"
     )
-    largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
     face_load_factor: np.ndarray = of(
         "face load factor", "", "torque", "misalignment", note=" K_Hbeta, mean of the mesh cycle"
     )
@@ -39,22 +53,19 @@ class MeshMap(Result, kind="mesh_map"):
 
     def tables(self) -> Iterator[Block]:
         """A row for each torque and misalignment."""
-        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
-        yield from (f"preset {self.preset}, {self.positions} positions", f"body: {self.body}", "")
+        yield from (self._head(), f"preset {self.preset}, {self.positions} positions", f"body: {self.body}", "")
         rows: list[tuple[str, ...]] = [("N m", "um", "um", "um", "um", "um", "MPa", "", "N/m")]
-        for i, torque in enumerate(self.pinion_torque):
-            for j, misalignment in enumerate(self.misalignment):
-                rows.append(
-                    (
-                        f"{torque:.5g}",
-                        f"{1e6 * misalignment:.4g}",
-                        f"{1e6 * self.ste_peak_to_peak[i, j]:.3f}",
-                        *(f"{1e6 * value:.3f}" for value in self.ste_harmonics[i, j]),
-                        f"{1e-6 * self.largest_pressure[i, j]:.4g}",
-                        f"{self.face_load_factor[i, j]:.3f}",
-                        f"{self.mean_stiffness[i, j]:.4g}",
-                    )
+        for at, words in self._points():
+            errors = (self.ste_peak_to_peak[at], *self.ste_harmonics[at])
+            rows.append(
+                (
+                    *words,
+                    *(f"{1e6 * value:.3f}" for value in errors),
+                    f"{1e-6 * self.largest_pressure[at]:.4g}",
+                    f"{self.face_load_factor[at]:.3f}",
+                    f"{self.mean_stiffness[at]:.4g}",
                 )
+            )
         heads = ("torque", "misalignment", "STE pp", "order 1", "2", "3", "p_max", "K_Hbeta", "k mean")
         yield from (grid(rows, *heads, caption="Over torque and misalignment", no_wrap=True), "")
         yield from self.remarks()

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.results.result import Result
+from rotorgear.results.mesh_map import OverLoads
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Table, grid, heading
+from rotorgear.results.table import Block, Table, grid
 
 
 class FlankVariable(Record):
@@ -21,24 +21,14 @@ class FlankVariable(Record):
     tolerance_m: float = of("tolerance", "m", note=": up and down, for the band")
 
 
-class MeshOptimum(Result, kind="mesh_optimum"):
+class MeshOptimum(OverLoads, kind="mesh_optimum"):
     """Flanks with the smallest weighted peak to peak of the transmission error over t torques and m misalignments.
 
     The band holds 90 % of flanks whose modifications lie evenly within their tolerances: it runs from the 5 % to the 95 %
     quantile, at each operating point and of the weighted mean. It is None where no band was asked for.
     """
 
-    title: str = of("title of the model")
-    mesh: str = of("mesh", note=": its name")
-    pinion: str = of("gear that the file calls the pinion")
-    gear: str = of("gear that meshes with the pinion")
-    preset: str = of("preset of the finite elements")
-    positions: int = of("positions in the mesh period")
     variables: tuple[FlankVariable, ...] = of("what was looked for", "", "variable", record=FlankVariable)
-    pinion_torque: np.ndarray = of("torque on the pinion about +z", "N m", "torque")
-    misalignment: np.ndarray = of(
-        "misalignment over the face", "m", "misalignment", note=", positive where the flanks stand apart at larger z"
-    )
     weight: np.ndarray = of("share of an operating point in the mean", "", "torque", "misalignment")
     pressure_limit: float | None = of("largest contact pressure that is allowed", "Pa")
     mean_before: float = of("weighted mean of the peak to peak with the flanks of the model", "m")
@@ -52,7 +42,6 @@ class MeshOptimum(Result, kind="mesh_optimum"):
     )
     ste_low: np.ndarray | None = of("lower end of its tolerance band", "m", "torque", "misalignment")
     ste_high: np.ndarray | None = of("upper end of its tolerance band", "m", "torque", "misalignment")
-    largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
     evaluations: int = of("flanks that were tried", note=", without those of the band")
     samples: int = of("flanks of the tolerance band")
     changes: dict[str, str] = of("values for the model by address", "", "ADDRESS", note=": what `model.with_` takes")
@@ -68,7 +57,7 @@ class MeshOptimum(Result, kind="mesh_optimum"):
 
     def tables(self) -> Iterator[Block]:
         """The best modifications, what they do at each operating point, and their lines for the model file."""
-        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+        yield self._head()
         limit = "no limit" if self.pressure_limit is None else f"p_max up to {1e-6 * self.pressure_limit:.4g} MPa"
         yield f"preset {self.preset}, {self.positions} positions, {limit}, {self.evaluations} flanks tried"
         rows = [
@@ -81,33 +70,30 @@ class MeshOptimum(Result, kind="mesh_optimum"):
             for variable in self.variables
         ]
         heads = ("modification", "bounds um", "best um", "tolerance um")
-        yield from ("", grid(rows, *heads, caption="Modifications", no_wrap=True), "", self._points(), "")
+        yield from ("", grid(rows, *heads, caption="Modifications", no_wrap=True), "", self._at_loads(), "")
         yield from self.remarks()
         if self.status != "success":
             yield f"Warning: {self.status}"
         yield from (f"{self.seconds['total']:.1f} s", "", "for the model file:", *self.lines.splitlines())
 
-    def _points(self) -> Table:
+    def _at_loads(self) -> Table:
         """What the best flanks do at each operating point, and in the mean."""
 
         def band(low: float | None, high: float | None) -> str:
             return "-" if low is None or high is None else f"{1e6 * low:.3f} ... {1e6 * high:.3f}"
 
         rows: list[tuple[str, ...]] = [("N m", "um", "", "um", "um", "um", "MPa")]
-        for i, torque in enumerate(self.pinion_torque):
-            for j, misalignment in enumerate(self.misalignment):
-                ends = (None if ste is None else ste[i, j] for ste in (self.ste_low, self.ste_high))
-                rows.append(
-                    (
-                        f"{torque:.5g}",
-                        f"{1e6 * misalignment:.4g}",
-                        f"{self.weight[i, j]:.3f}",
-                        f"{1e6 * self.before[i, j]:.3f}",
-                        f"{1e6 * self.ste[i, j]:.3f}",
-                        band(*ends),
-                        f"{1e-6 * self.largest_pressure[i, j]:.4g}",
-                    )
+        for at, words in self._points():
+            rows.append(
+                (
+                    *words,
+                    f"{self.weight[at]:.3f}",
+                    f"{1e6 * self.before[at]:.3f}",
+                    f"{1e6 * self.ste[at]:.3f}",
+                    band(*(None if ste is None else ste[at] for ste in (self.ste_low, self.ste_high))),
+                    f"{1e-6 * self.largest_pressure[at]:.4g}",
                 )
+            )
         mean = band(*(self.mean_band or (None, None)))
         rows.append(("mean", "", "", f"{1e6 * self.mean_before:.3f}", f"{1e6 * self.mean:.3f}", mean, ""))
         heads = ("torque", "misalignment", "weight", "STE pp before", "best", "90 % band", "p_max")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -171,13 +170,24 @@ class OrbitsResult(ModelResult, kind="orbits"):
         """Of each point."""
         return np.asarray(np.ptp(self.place_extremes, axis=-1))
 
-    def shown(self) -> Shown:
-        """What tables and pictures show of the motions."""
-        if self.contact:
-            return Shown("approach", self.contact, "m", np.arange(len(self.contact)), of_contacts=True)
-        unit = "m" if "m" in self.place_unit else "rad"
-        own = np.array([k for k, one in enumerate(self.place_unit) if one == unit], int)
-        return Shown("displacement", tuple(self.place[k] for k in own), unit, own, of_contacts=False)
+    @property
+    def shown_unit(self) -> str:
+        """The unit of what tables and pictures show of the motions: metres where anything moves along a line."""
+        return "m" if self.contact or "m" in self.place_unit else "rad"
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """What tables and pictures show of the motions: the approach of contacts; without any, displacements of places."""
+        return self.contact or tuple(self.place[k] for k in self._shown_places)
+
+    @property
+    def _shown_places(self) -> list[int]:
+        return [k for k, unit in enumerate(self.place_unit) if unit == self.shown_unit]
+
+    def peak_to_peak_of(self, motions: OrbitsResult | SpecialPoint | SpecialCurve) -> np.ndarray:
+        """Peak to peak of what is shown, over it in the last place, in its unit."""
+        extremes = motions.approach_extremes if self.contact else motions.place_extremes[..., self._shown_places, :]
+        return np.asarray(np.ptp(extremes, axis=-1))
 
     def tables(self) -> Iterator[Block]:
         """Special points, branches, curves, transients started on orbits, and notes."""
@@ -190,7 +200,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
             yield from ("", *self._curve(curve))
         if self.verifications:
             yield from ("", "Transients started on orbits", self._started())
-        shown = f"p-p: largest peak to peak of {', '.join(self.shown().label)}"
+        shown = f"p-p: largest peak to peak of {', '.join(self.shown)}"
         if self.contact:
             shown = "p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact"
         yield from ("", f"|mu|: largest Floquet multiplier; {shown}", f"{self.dofs} dofs; {self.method}")
@@ -218,8 +228,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
         own = np.flatnonzero(self.branch == number)
         branch = self.branches[number]
         yield f"Branch {branch.name}: {_points(len(own))}, {int(self.stable[own].sum())} stable, to {branch.ended}"
-        shown = self.shown()
-        sizes = shown.peak_to_peak(self)
+        sizes = self.peak_to_peak_of(self)
         rows = []
         for i in own[_spread(len(own))]:
             worst = int(np.argmax(sizes[i]))
@@ -231,14 +240,13 @@ class OrbitsResult(ModelResult, kind="orbits"):
                 cells.append(f"{100.0 * self.apart[i, worst]:.1f}")
             rows.append(cells)
         forces = ("F mean\nN", "F max\nN", "loss\n%") if self.contact else ()
-        heads = (self._head(), "stable", "|mu|", f"p-p\nu{shown.unit}", *forces)
+        heads = (self._head(), "stable", "|mu|", f"p-p\nu{self.shown_unit}", *forces)
         yield grid(rows, *heads, left=0, caption=f"Branch {branch.name}")
 
     def _curve(self, curve: SpecialCurve) -> Iterator[Block]:
         name = self.branches[curve.branch].name
         yield f"Curve of the {curve.kind} of branch {name}: {_points(len(curve.value))}, to {curve.ended}"
-        shown = self.shown()
-        sizes = shown.peak_to_peak(curve)
+        sizes = self.peak_to_peak_of(curve)
         rows = [
             (
                 self._value(float(curve.value[i])),
@@ -248,7 +256,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
             )
             for i in _spread(len(curve.value))
         ]
-        heads = (self._head(), self._head(1), "period\nms", f"p-p\nu{shown.unit}")
+        heads = (self._head(), self._head(1), "period\nms", f"p-p\nu{self.shown_unit}")
         yield grid(rows, *heads, left=0, caption=f"Curve of the {curve.kind}")
 
     def _started(self) -> Table:
@@ -264,26 +272,6 @@ class OrbitsResult(ModelResult, kind="orbits"):
         ]
         heads = (self._head(), "stable", "deviation", "growth", "|mu|")
         return grid(rows, *heads, left=0, caption="Transients started on orbits")
-
-
-@dataclass(frozen=True)
-class Shown:
-    """The approach of the contacts; without any, the displacements of the places, in metres where there are such.
-
-    Attributes:
-        what: the quantity. label, unit: of each, and of all. number: among contacts or places.
-    """
-
-    what: str
-    label: tuple[str, ...]
-    unit: str
-    number: np.ndarray
-    of_contacts: bool
-
-    def peak_to_peak(self, motions: OrbitsResult | SpecialPoint | SpecialCurve) -> np.ndarray:
-        """Over what is shown in the last place, in its unit."""
-        extremes = motions.approach_extremes if self.of_contacts else motions.place_extremes
-        return np.asarray(np.ptp(extremes[..., self.number, :], axis=-1))
 
 
 def _points(number: int) -> str:

@@ -27,6 +27,10 @@ def _said(key: str) -> Written:
     return Written(key, lambda record, notes: sentences(notes))
 
 
+def _by_step(record: Record, seconds: dict[str, float]) -> dict[str, float]:
+    return {step: float(value) for step, value in seconds.items() if step != "total"}
+
+
 class Fact(Record):
     """One thing that a sentence of `left_out` or `warnings` says of one part."""
 
@@ -55,14 +59,8 @@ class Result(Record):
         "s",
         "STEP",
         json=(
-            Written("seconds", lambda record, seconds: float(seconds.get("total", 0.0)), "s", ()),
-            Written(
-                "seconds_by_step",
-                lambda record, seconds: {step: float(value) for step, value in seconds.items() if step != "total"},
-                "s",
-                ("STEP",),
-                note=" of each step of the analysis",
-            ),
+            Written("seconds", lambda record, seconds: float(seconds.get("total", 0.0)), axes=()),
+            Written("seconds_by_step", _by_step, note=" of each step of the analysis"),
         ),
         default_factory=dict,
         kw_only=True,
@@ -137,6 +135,12 @@ class Result(Record):
             if one.record is not None and one.axes and any(d.column for d in one.record.declarations.values()):
                 yield from ("", table_of(self, one.name))
         yield from ("", *self.remarks())
+
+    def titled(self) -> Iterator[Block]:
+        """The title, if there is one."""
+        title = getattr(self, "title", "")
+        if title:
+            yield heading(title)
 
     def remarks(self) -> list[str]:
         """What all tables end with: what the analysis left out, and its warnings, one sentence for each cause."""

@@ -47,11 +47,7 @@ class GearRootStress(Record):
     )
     worst_diameter: float = of("diameter of the largest stress", "m", form=".3f", column="  diameter there, mm")
     worst_z: float = of(
-        "its place along the face",
-        "m",
-        note=", from the middle; 0: plane model",
-        form=".2f",
-        column="  along the face, mm",
+        "its place along the face", "m", note="; 0: plane model", form=".2f", column="  along the face, mm"
     )
     nominal: float | None = of(
         "nominal stress of ISO 6336-3 without factors of load",

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.results.correlation import pairs_alike
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, heading, table_of
+from rotorgear.results.table import Block, Column, table_of
 
 
 class PlannedSensor(Record):
@@ -48,8 +48,7 @@ class SensorPlan(ModelResult, kind="sensors"):
 
     def tables(self) -> Iterator[Block]:
         """The sensors, and what they can't tell."""
-        if self.title:
-            yield heading(self.title)
+        yield from self.titled()
         where = [Column(f"{x} mm", "position", ".1f", "mm", entry=(j,)) for j, x in enumerate("xyz")]
         along = Column("", "direction", left=False)
         yield from (table_of(self, "sensors", "place", "node", along, *where, "independence"), "")

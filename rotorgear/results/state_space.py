@@ -7,26 +7,19 @@ from collections.abc import Iterator
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.laws import AboutEquilibrium
-from rotorgear.results.modal import Piece
+from rotorgear.results.frequency_response import BetweenPlaces
 from rotorgear.results.schema import of
 from rotorgear.results.table import Block, error_words, grid, heading
 
 
-class StateSpace(AboutEquilibrium, kind="state_space"):
+class StateSpace(BetweenPlaces, kind="state_space"):
     """M x'' + D x' + K x = B u,  y = C x  with s coordinates x, forces u and displacements y.
 
     Whole, x are the free displacements; reduced, they are coordinates of modes and of static shapes. D = C + W G holds damping
     and gyroscopic moments at the speed.
     """
 
-    speed: float = of("speed of the input shaft", "rad/s")
     fmax: float = of("highest frequency that the system is meant for", "Hz")
-    inputs: tuple[str, ...] = of("where the unit forces or moments act", "", "input", json="input")
-    outputs: tuple[str, ...] = of("where the response is read", "", "output", json="output")
-    input_units: tuple[str, ...] = of("units of what acts", "", "input", note=": N or N m")
-    output_units: tuple[str, ...] = of("units of the displacements read", "", "output", note=": m or rad")
     mass_matrix: np.ndarray = of("mass matrix", "", "coordinate", "coordinate", json=None)
     velocity_terms: np.ndarray = of("damping and gyroscopic matrix", "", "coordinate", "coordinate", json=None)
     stiffness_matrix: np.ndarray = of("stiffness matrix", "", "coordinate", "coordinate", json=None)
@@ -40,7 +33,6 @@ class StateSpace(AboutEquilibrium, kind="state_space"):
     error_estimate: float = of(
         "estimated relative discretisation error", note=" of the frequencies; `null`: elements given", form=".0e"
     )
-    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
 
     @property
     def size(self) -> int:
@@ -78,10 +70,7 @@ class StateSpace(AboutEquilibrium, kind="state_space"):
 
     def tables(self) -> Iterator[Block]:
         """Inputs and outputs with their units, the size, and how far the reduction is off."""
-        speed = "at standstill"
-        if self.speed:
-            speed = f"{self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
-        yield from (heading(f"{self.model.title or 'Model'}: state space, {speed}"), "")
+        yield from (heading(f"{self.model.title or 'Model'}: state space, {self.at_speed}"), "")
         rows = [("input", *one) for one in zip(self.inputs, self.input_units, strict=True)]
         rows += [("output", *one) for one in zip(self.outputs, self.output_units, strict=True)]
         yield from (grid(rows, "kind", "place", "unit", left=3, caption="Inputs and outputs"), "")

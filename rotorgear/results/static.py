@@ -200,11 +200,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "unit", "", "parameter", note=" of the force derivatives; for a stiffness they are for 100 % of it", json="unit"
     )
     force_derivative: np.ndarray = of(
-        "derivative of the force of each contact",
-        "N over the unit of the parameter",
-        "parameter",
-        "contact",
-        json="mesh_force_n",
+        "derivative of each contact's force", "N over the parameter's unit", "parameter", "contact", json="mesh_force_n"
     )
     share_derivative: np.ndarray = of("derivative of each row of `shares`", "", "parameter", "share", json="share")
     mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
@@ -332,14 +328,13 @@ class StaticResult(AboutEquilibrium, kind="static"):
             for name, load in loads.items():
                 if kind == "support" and not load.any():
                     continue
-                force = (
-                    Cell(written(x, ".1f"), (f"{kind}_force_n", name, j), number=True) for j, x in enumerate(load[:3])
-                )
-                moment = (
-                    Cell(written(x, ".2f"), (f"{kind}_moment_n_m", name, j), number=True)
-                    for j, x in enumerate(load[3:])
-                )
-                rows.append((Cell(f"support {name}" if kind == "support" else name), *force, *moment))
+                parts = ((f"{kind}_force_n", load[:3], ".1f"), (f"{kind}_moment_n_m", load[3:], ".2f"))
+                cells = [
+                    Cell(written(x, form), (key, name, j), number=True)
+                    for key, part, form in parts
+                    for j, x in enumerate(part)
+                ]
+                rows.append((Cell(f"support {name}" if kind == "support" else name), *cells))
         heads = ("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
         return Table(tuple(map(Column, heads)), rows, "Forces and moments on the shafts")
 

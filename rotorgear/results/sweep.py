@@ -102,11 +102,7 @@ class SweepResult(ModelResult, kind="sweep"):
     section: np.ndarray = of("Poincare points", "m, m/s", "point", "run", "period", "contact", "phase_space", json=None)
     contact: tuple[str, ...] = of("name of the contact", "", "contact", note=": mesh and helix", json="name")
     static_force: np.ndarray = of(
-        "static force",
-        "N",
-        "point",
-        "contact",
-        note=" along the flank normal, in static equilibrium; negative on the coast flank",
+        "static force", "N", "point", "contact", note=" along the flank normal; negative on the coast flank"
     )
     static_deflection: np.ndarray = of("static force over mean stiffness", "m", "point", "contact")
     peak_to_peak: np.ndarray = of("penetration of the flanks, peak to peak", "m", "point", "run", "contact")

@@ -192,11 +192,7 @@ class TransientResult(ModelResult, kind="transient"):
     )
     channels = rows("channels in the time that counts", "channel")
     channel: tuple[str, ...] = of(
-        "name of the channel",
-        "",
-        "channel",
-        note=": force of a bearing, motion of a point, a bearing or a gear",
-        json="name",
+        "name of the channel", "", "channel", note=": force of a bearing, or motion of a part", json="name"
     )
     unit: tuple[str, ...] = of("unit", "", "channel")
     value_mean: np.ndarray = of("mean in the time that counts", "", "channel", json="mean")

@@ -11,7 +11,7 @@ from rotorgear.model.numbers import free_numbers
 from rotorgear.results.comparison import IDENTIFIED, LearntParameter, RigLine, learnt_words
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, Form, grid, heading, table_of
+from rotorgear.results.table import Block, Column, Form, grid, table_of
 
 # Rarer than this by chance, the misfit is the model's: no numbers of it fit the lines.
 MISFIT = 0.01
@@ -168,8 +168,7 @@ class UpdateResult(ModelResult, kind="update"):
 
     def tables(self) -> Iterator[Block]:
         """The numbers, lines and frequency responses before and after, and what the update is worth."""
-        if self.title:
-            yield heading(self.title)
+        yield from self.titled()
         columns = (
             Column("number", "address"),
             Column("prior", "prior", lambda value: f"±{value:.3g} %", "%"),
