@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
 from rotorgear.results.result import ModelResult
-from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.schema import Declared, Record, Written, derived, of
 from rotorgear.results.table import Block, Column, error_words, grid, heading, table_of
 
 
@@ -43,21 +44,13 @@ class CriticalSpeed(Record):
     )
 
 
-def _columns_of_speeds() -> tuple[Written, ...]:
+def _column(one: Declared) -> Written:
     """The critical speeds are written by columns: a list over all of them for each field but the speed."""
 
-    def column(name: str) -> Written:
-        one = CriticalSpeed.declarations[name]
-        return Written(
-            name,
-            lambda result, speeds: [getattr(item, name) for item in speeds],
-            unit=one.unit,
-            axes=("critical_speed",),
-            label=one.label,
-            note=one.note,
-        )
+    def entries(result: CriticalResult, speeds: tuple[CriticalSpeed, ...]) -> list[Any]:
+        return [getattr(item, one.name) for item in speeds]
 
-    return tuple(column(name) for name in CriticalSpeed.declarations if name != "speed")
+    return Written(one.name, entries, one.unit, ("critical_speed",), one.label, one.note)
 
 
 class CriticalResult(AboutEquilibrium, kind="critical"):
@@ -73,7 +66,11 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
         return np.array([item.speed * RPM_PER_RAD_S for item in self.speeds])
 
     speeds: tuple[CriticalSpeed, ...] = of(
-        "critical speeds", "", "critical_speed", record=CriticalSpeed, json=_columns_of_speeds()
+        "critical speeds",
+        "",
+        "critical_speed",
+        record=CriticalSpeed,
+        json=tuple(_column(one) for one in CriticalSpeed.declarations.values() if one.name != "speed"),
     )
     lines: tuple[ExcitationOrder, ...] = of("excitation lines", "", "line", record=ExcitationOrder)
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "critical_speed", json=None)

@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import Piece
-from rotorgear.results.schema import Written, of
+from rotorgear.results.schema import Written, imaginary_part, of, real_part
 from rotorgear.results.table import Block, error_words, grid, heading
 
 # What the receptance is multiplied with: a power of i w.
@@ -93,12 +93,8 @@ class FrequencyResponse(BetweenPlaces, kind="frf"):
         "output",
         "input",
         json=(
-            Written("receptance_real", lambda result, values: values.real, note=", real part"),
-            Written(
-                "receptance_imag",
-                lambda result, values: values.imag,
-                note=", imaginary part; negative where the response lags",
-            ),
+            Written("receptance_real", real_part, note=", real part"),
+            Written("receptance_imag", imaginary_part, note=", imaginary part; negative where the response lags"),
         ),
     )
     damping_ratio: float = of("damping ratio", note=" added to every elastic mode")

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
-from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.schema import Record, Written, derived, imaginary_part, of, real_part
 from rotorgear.results.table import Block, Column, error_words, exact, heading, table_over
 
 # The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
@@ -108,8 +108,8 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         "rad/s",
         "mode",
         json=(
-            Written("eigenvalue_real_1_per_s", lambda r, s: s.real, label="real part of s in rad/s"),
-            Written("eigenvalue_imag_1_per_s", lambda r, s: s.imag, label="imaginary part of s in rad/s"),
+            Written("eigenvalue_real_1_per_s", real_part, label="real part of s in rad/s"),
+            Written("eigenvalue_imag_1_per_s", imaginary_part, label="imaginary part of s in rad/s"),
         ),
     )
     kinetic_energy: dict[str, np.ndarray] = of(

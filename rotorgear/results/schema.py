@@ -30,27 +30,10 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _SAME_KEY = "\0"  # the field's name, with its unit
 _places = count()  # fields and computed fields of a class share one order, that of the page
-# A key is the field's name with its unit behind it, where the name does not say that already.
-_ENDINGS = {
-    "N": "_n",
-    "m": "_m",
-    "N m": "_n_m",
-    "N/m": "_n_per_m",
-    "Pa": "_pa",
-    "s": "_s",
-    "rad/s": "_rpm",
-    "rad": "_deg",
-    "W": "_w",
-    "K": "_k",
-    "Pa s": "_pa_s",
-    "kg": "_kg",
-    "J": "_j",
-    "Hz": "_hz",
-    "m/s": "_m_per_s",
-    "m^3/s": "_m3_per_s",
-    "mm/s": "_mm_per_s",
-    "byte": "_bytes",
-}
+# A key is the field's name with its unit behind it, where the name does not say that already: these units, in small letters.
+_IN_KEYS = ("N", "m", "N m", "N/m", "Pa", "s", "W", "K", "Pa s", "kg", "J", "Hz", "m/s", "m^3/s", "mm/s")
+_ENDINGS = {"rad/s": "_rpm", "rad": "_deg", "byte": "_bytes"}
+_ENDINGS |= {unit: f"_{unit.lower().replace('/', '_per_').replace('^', '').replace(' ', '_')}" for unit in _IN_KEYS}
 # A key that ends so is written in its unit: the unit stands with the written key, SI with the stored field.
 _WRITTEN_UNITS = {("rad/s", "_rpm"): ("rpm", RPM_PER_RAD_S), ("rad", "_deg"): ("deg", 180.0 / math.pi)}
 
@@ -113,6 +96,16 @@ class Declared:
             converted = (into for (si, end), into in _WRITTEN_UNITS.items() if self.unit == si and key.endswith(end))
             unit, factor = next(converted, (self.unit, None))
             yield Written(key, None if factor is None else _scaled(factor), unit)
+
+
+def real_part(record: Record, values: Any) -> Any:
+    """What is written of complex numbers under a key for their real part."""
+    return values.real
+
+
+def imaginary_part(record: Record, values: Any) -> Any:
+    """What is written of complex numbers under a key for their imaginary part."""
+    return values.imag
 
 
 def force_and_moment(kind: str, on: str = "the shaft") -> tuple[Written, Written]:
@@ -283,6 +276,16 @@ def derived(label: str, unit: str = "", *axes: str, **said: Any) -> Callable[[Ca
         return Derived(function, replace(declared, stored=False, computed=True, words=words))
 
     return declare
+
+
+def part_of(field: str, k: int, label: str, unit: str, *axes: str, **said: Any) -> Derived[np.ndarray]:
+    """Declare entry k along the last axis of an array as a field of its own."""
+
+    def part(record: Record) -> np.ndarray:
+        entries: np.ndarray = getattr(record, field)[..., k]
+        return entries
+
+    return derived(label, unit, *axes, **said)(part)
 
 
 class Row(SimpleNamespace):

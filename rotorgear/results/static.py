@@ -212,13 +212,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "estimated relative discretisation error", note=": change of forces when every element is halved", form=".0e"
     )
     place_displacement: dict[str, np.ndarray] = of(
-        "displacements of gears, disks and bearings",
-        "m, rad",
-        "PLACE",
-        "component",
-        json="displacement",
-        note=": x, y, z in m, tilts and twist in rad",
-        default_factory=dict,
+        "displacements of parts on shafts", "m, rad", "PLACE", "component", json="displacement", default_factory=dict
     )
 
     def contacts_of(self, mesh: str) -> list[int]:

@@ -11,7 +11,7 @@ from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
-from rotorgear.results.schema import Record, Written, derived, of, rows
+from rotorgear.results.schema import Record, Written, derived, of, part_of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, short, table_of
 
 # What a history of a contact is called, and the table it stands in; the last one by its former name.
@@ -29,8 +29,17 @@ _UNSHOWN = "gears."
 _ROUNDING = 1e-9
 
 
-def _at_end(key: str) -> Written:
-    return Written(key, lambda energy, values: float(values[-1]), axes=())
+_SPEEDS = Written(
+    "speed_rpm",
+    lambda result, speed: RPM_PER_RAD_S * speed[[0, -1]],
+    "rpm",
+    ("end",),
+    note=" at the start and at the end",
+)
+
+
+def _at_end(key: str, label: str | None = None) -> Written:
+    return Written(key, lambda energy, values: float(values[-1]), axes=(), label=label)
 
 
 class EnergyLedger(Record):
@@ -71,25 +80,14 @@ class TransientResult(ModelResult, kind="transient"):
     records.
     """
 
-    speed: np.ndarray = of(
-        "speed of the input shaft",
-        "rad/s",
-        "record",
-        json=Written(
-            "speed_rpm",
-            lambda result, speed: [float(speed[k] * RPM_PER_RAD_S) for k in (0, -1)],
-            "rpm",
-            ("end",),
-            note=" at the start and at the end",
-        ),
-    )
+    speed: np.ndarray = of("speed of the input shaft", "rad/s", "record", json=_SPEEDS)
     angle: np.ndarray = of("angle of the input shaft", "rad", "record", json=None)
     time: np.ndarray = of(
         "time",
         "s",
         "record",
         json=(
-            Written("time_s", lambda result, time: float(time[-1]), axes=(), label="end of the run"),
+            _at_end("time_s", "end of the run"),
             Written("records", lambda result, time: len(time), "", (), "number of recorded instants"),
         ),
     )
@@ -134,15 +132,8 @@ class TransientResult(ModelResult, kind="transient"):
         "root mean square of the force about that mean", "N", "contact", json="rms_force_n", form=short, column="rms"
     )
 
-    @derived("largest force", "N", "contact", form=short, column="largest")
-    def largest_force(self) -> np.ndarray:
-        """(c,)."""
-        return np.asarray(self.force_range[:, 1])
-
-    @derived("smallest force", "N", "contact", note="; negative on the coast flank")
-    def smallest_force(self) -> np.ndarray:
-        """(c,)."""
-        return np.asarray(self.force_range[:, 0])
+    largest_force = part_of("force_range", 1, "largest force", "N", "contact", form=short, column="largest")
+    smallest_force = part_of("force_range", 0, "smallest force", "N", "contact", note="; negative on the coast flank")
 
     @derived("dynamic factor", "", "contact", note=": largest over static force", form=".3f", column="K_dyn")
     def dynamic_factor(self) -> np.ndarray:
@@ -160,31 +151,26 @@ class TransientResult(ModelResult, kind="transient"):
         """(c,) of the flanks in the transverse plane."""
         return np.asarray(np.ptp(self.approach_range, axis=1))
 
-    @derived("impulse on the working flank", "N s", "contact", json="driving_impulse_n_s")
-    def driving_impulse(self) -> np.ndarray:
-        """(c,) integral of its force over the time that counts."""
-        return np.asarray(self.impulse[:, 0])
-
-    @derived("impulse on the coast flank", "N s", "contact", note=", positive", json="back_impulse_n_s")
-    def back_impulse(self) -> np.ndarray:
-        """(c,)."""
-        return np.asarray(self.impulse[:, 1])
-
-    @derived("share of the time on the working flank", "", "contact", json="driving_share")
-    def driving(self) -> np.ndarray:
-        """(c,)."""
-        return np.asarray(self.contact_time[:, 0])
-
-    @derived("contact-loss ratio", "", "contact", json="apart_share", form=".1f", column="loss\n%")
-    def apart(self) -> np.ndarray:
-        """(c,)."""
-        return np.asarray(self.contact_time[:, 1])
-
-    @derived("share of the time on the coast flank", "", "contact", json="back_share", form=".1f", column="coast\n%")
-    def back(self) -> np.ndarray:
-        """(c,)."""
-        return np.asarray(self.contact_time[:, 2])
-
+    driving_impulse = part_of(
+        "impulse", 0, "impulse on the working flank", "N s", "contact", json="driving_impulse_n_s"
+    )
+    back_impulse = part_of(
+        "impulse", 1, "impulse on the coast flank", "N s", "contact", note=", positive", json="back_impulse_n_s"
+    )
+    driving = part_of("contact_time", 0, "share of the time on the working flank", "", "contact", json="driving_share")
+    apart = part_of(
+        "contact_time", 1, "contact-loss ratio", "", "contact", json="apart_share", form=".1f", column="loss\n%"
+    )
+    back = part_of(
+        "contact_time",
+        2,
+        "share of the time on the coast flank",
+        "",
+        "contact",
+        json="back_share",
+        form=".1f",
+        column="coast\n%",
+    )
     contact_losses: np.ndarray = of("contact losses", "", "contact", json="losses", column="losses")
     values: np.ndarray = of("values", "", "record", "channel", json=None)
     value_range: np.ndarray = of(
@@ -198,16 +184,8 @@ class TransientResult(ModelResult, kind="transient"):
     value_mean: np.ndarray = of("mean in the time that counts", "", "channel", json="mean")
     value_rms: np.ndarray = of("root mean square about the mean", "", "channel", json="rms")
 
-    @derived("largest value", "", "channel", json="largest")
-    def largest_value(self) -> np.ndarray:
-        """(p,)."""
-        return np.asarray(self.value_range[:, 1])
-
-    @derived("smallest value", "", "channel", json="smallest")
-    def smallest_value(self) -> np.ndarray:
-        """(p,)."""
-        return np.asarray(self.value_range[:, 0])
-
+    largest_value = part_of("value_range", 1, "largest value", "", "channel", json="largest")
+    smallest_value = part_of("value_range", 0, "smallest value", "", "channel", json="smallest")
     quantities = rows("statistics with an error", "quantity")
     quantity: tuple[str, ...] = of("name of the statistic whose error is estimated", "", "quantity", json="name")
     quantity_value: np.ndarray = of("value", "", "quantity", json="value")
