@@ -12,7 +12,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S, ZERO_CELSIUS
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, Table, error_words, grid, heading, table_of, written
+from rotorgear.results.table import Block, Column, Line, Table, error_words, grid, table_of, written
 
 _COMPONENTS = ("x", "y", "z", "tilt_x", "tilt_y")
 _NEGLIGIBLE = 1e-9
@@ -207,7 +207,7 @@ class BearingSheet(ModelResult, kind="bearing"):
         """Its state with stiffness and damping, what is inside, the same over speed, and notes."""
         own = f", its shaft at {self.shaft_speed * RPM_PER_RAD_S:.6g} rpm" if self.shaft_speed != self.speed else ""
         turns = f"{self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
-        yield from (heading(f"{self.bearing}: {self.law}", f", {turns}{own}"), "", self._state())
+        yield from (Line(f"{self.bearing}: {self.law}", f", {turns}{own}"), "", self._state())
         if self.oil is not None:
             yield from ("", grid(self._film(self.oil), "", "", left=2, caption="Film", headed=False))
         if self.rolling_elements:

@@ -10,7 +10,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, exact, heading, table_of, table_over
+from rotorgear.results.table import Block, Column, Line, exact, table_of, table_over
 
 # So many crossings are listed; sidebands of a gearbox give thousands.
 _MOST_CROSSINGS = 100
@@ -166,7 +166,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     def tables(self, *, crossings: bool = False) -> Iterator[Block]:
         """Branches, margins and, where asked for, crossings."""
         first, last = self.speed_rpm[[0, -1]]
-        yield heading(f"{self.model.title or 'Modes'}: {self.model.reference_shaft} at {first:.6g} to {last:.6g} rpm")
+        yield Line(f"{self.model.title or 'Modes'}: {self.model.reference_shaft} at {first:.6g} to {last:.6g} rpm")
         small = exact(".4f")
         end = len(self.speeds) - 1
         columns = (

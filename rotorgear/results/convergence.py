@@ -9,7 +9,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.mesh import MeshErrors
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, grid, heading, table_of
+from rotorgear.results.table import Block, Column, Line, grid, table_of
 
 
 class Rung(Record):
@@ -79,7 +79,7 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
         for rung in self.rungs:
             for note in rung.notes:
                 marks.setdefault(note, "*+'\"^~"[len(marks) % 6])
-        yield heading(self.title, f": {self.analysis}, {self.modes} {self.compared}")
+        yield Line(self.title, f": {self.analysis}, {self.modes} {self.compared}")
         yield f"error: the largest relative one, against {self.reference}"
         yield "ratio: estimate over error"
         yield from (*(f"{sign} {note}" for note, sign in marks.items()), *self.remarks(), "")
@@ -141,7 +141,7 @@ class MeshConvergenceStudy(Result, kind="mesh_convergence", analysis="accuracy")
 
     def tables(self) -> Iterator[Block]:
         """What was measured, and the meshes with their errors, real and estimated."""
-        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', F_bt {self.base_force_n:.6g} N on a helix")
+        yield Line(self.title or "Mesh", f": mesh '{self.mesh}', F_bt {self.base_force_n:.6g} N on a helix")
         yield from (f"body: {self.body}", f"errors in % against {self.reference};")
         yield from ("after the stroke what the analysis itself estimates", "")
         rows = []
@@ -199,7 +199,7 @@ class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy
         """Values of a point, their scatter and its cost."""
         kinds = ", ".join(sorted({kind for rung in self.rungs for kind in rung.motion}))
         at = "" if self.speed is None else f" at {self.speed * RPM_PER_RAD_S:.6g} rpm"
-        yield from (heading(f"{self.title}: one point{at} from {self.runs} states ({kinds})"), "")
+        yield from (Line(f"{self.title}: one point{at} from {self.runs} states ({kinds})"), "")
         time = Column("seconds", "seconds", lambda seconds: f"{seconds:.3f} s")
         values = ("exponent", "scatter", "stated", "peak_to_peak", "peak_to_peak_scatter", "dynamic_factor", "error")
         yield from (table_of(self, "rungs", "steps", "count", time, *values), "")

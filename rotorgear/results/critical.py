@@ -14,7 +14,7 @@ from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Declared, Record, Written, derived, of
-from rotorgear.results.table import Block, Column, error_words, grid, heading, table_of
+from rotorgear.results.table import Block, Column, Line, error_words, grid, table_of
 
 
 class CriticalSpeed(Record):
@@ -89,7 +89,7 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
         """The critical speeds and the notes."""
         kind = "damped" if self.damped else "undamped"
         title = self.model.title or "Critical speeds"
-        yield heading(f"{title}: {kind} critical speeds to {self.top_speed * RPM_PER_RAD_S:.6g} rpm")
+        yield Line(f"{title}: {kind} critical speeds to {self.top_speed * RPM_PER_RAD_S:.6g} rpm")
         part = Column("part %", "participation", ".2f", "%", where=lambda one: one.excited, without="none")
         columns = ("speed", "frequency_hz", "line", *(("damping_ratio",) if self.damped else ()), "whirl", part)
         # A critical speed is written by columns.

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from rotorgear.model.parts.tables import counted
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Table, grid, heading, legend, table_of, written
+from rotorgear.results.table import Block, Line, Table, grid, table_of, written
 
 _GEAR_LEGEND = "r_b: base radius; z of its nodes; angle of a tooth's middle from the mark of its shaft"
 _MESH_LEGEND = (
@@ -118,11 +118,11 @@ class ModelDescription(Result, kind="check"):
         speed = "no speed given"
         if self.speed_rpm is not None:
             speed = f"input shaft '{self.reference_shaft}' at {self.speed_rpm:.6g} rpm"
-        yield heading(self.title or "Model")
+        yield Line(self.title or "Model")
         yield f"{speed}; {', '.join(counted(number, name) for name, number in self.counts.items())}"
         yield from ("", table_of(self, "shafts"))
         if self.gears:
-            yield from ("", table_of(self, "gears"), legend(_GEAR_LEGEND))
+            yield from ("", table_of(self, "gears"), Line(rest=_GEAR_LEGEND, dim=True))
         if self.places:
             parts_on: dict[str, list[str]] = {}
             for place in self.places:
@@ -130,8 +130,8 @@ class ModelDescription(Result, kind="check"):
             rows = [(shaft, ", ".join(parts)) for shaft, parts in parts_on.items()]
             yield from ("", grid(rows, "shaft", "z mm of the other parts on it", left=2, caption="Other parts"))
         if self.meshes:
-            yield from ("", table_of(self, "meshes"), legend(_MESH_LEGEND))
-            yield from ("", self._forces(), legend(_FORCE_LEGEND))
+            yield from ("", table_of(self, "meshes"), Line(rest=_MESH_LEGEND, dim=True))
+            yield from ("", self._forces(), Line(rest=_FORCE_LEGEND, dim=True))
         if self.torques:
             yield from ("", table_of(self, "torques"))
         mass = f"total mass {self.total_mass_kg:.6g} kg; " if self.total_mass_kg else ""

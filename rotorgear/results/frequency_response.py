@@ -11,7 +11,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import Piece
 from rotorgear.results.schema import Written, imaginary_part, of, real_part
-from rotorgear.results.table import Block, error_words, grid, heading
+from rotorgear.results.table import Block, Line, error_words, grid
 
 # What the receptance is multiplied with: a power of i w.
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
@@ -132,7 +132,7 @@ class FrequencyResponse(BetweenPlaces, kind="frf"):
     def tables(self, *, quantity: str = "receptance") -> Iterator[Block]:
         """The highest peaks of each response, of receptance, mobility or accelerance."""
         hz = self.frequency_hz
-        yield heading(f"{self.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz, {self.at_speed}")
+        yield Line(f"{self.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz, {self.at_speed}")
         rows = []
         coarse = False
         for i, entry in enumerate(self.inputs):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rotorgear.note import NAMED, Note, sentences
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, heading, upright
+from rotorgear.results.table import Block, Column, Line, upright
 
 if TYPE_CHECKING:
     from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -233,7 +233,7 @@ class GearSheet(Result, kind="gear"):
 
     def tables(self) -> Iterator[Block]:
         """The sheets of gears and meshes, side by side, and notes."""
-        yield heading(self.title or "Gears")
+        yield Line(self.title or "Gears")
         for first in range(0, len(self.gears), _ABREAST):
             yield from ("", upright(self, "gears", "gear", *_gear_lines(), first=first, count=_ABREAST))
         # The involutes that are left are told where a tip reaches below one of them.

@@ -11,7 +11,7 @@ from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.old_names import warn_old
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of, plain
-from rotorgear.results.table import Block, Table, grid, heading
+from rotorgear.results.table import Block, Line, Table, grid
 
 PLANE = "transverse, along the line of action: base force over approach"
 # So many orders are written where nothing else is asked for.
@@ -283,7 +283,7 @@ class MeshResult(Result, kind="mesh"):
 
     def tables(self, *, harmonics: int = 0) -> Iterator[Block]:
         """Stiffness, transmission error, loads and, where asked for, so many orders of the mesh."""
-        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+        yield Line(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
         preset = "" if self.preset is None else f", preset {self.preset}"
         yield f"stiffness model {self.stiffness_model}{preset}: {self.definition}, {PLANE}"
         yield f"body: {self.body}"

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import of
-from rotorgear.results.table import Block, grid, heading
+from rotorgear.results.table import Block, Line, grid
 
 
 class OverLoads(Result):
@@ -27,7 +27,7 @@ class OverLoads(Result):
     largest_pressure: np.ndarray = of("largest contact pressure", "Pa", "torque", "misalignment")
 
     def _head(self) -> Block:
-        return heading(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
+        return Line(self.title or "Mesh", f": mesh '{self.mesh}', {self.pinion} and {self.gear}")
 
     def _points(self) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
         """Numbers of torque and misalignment, and the words of both, of each point."""

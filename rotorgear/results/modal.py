@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.schema import Record, Written, derived, imaginary_part, of, real_part
-from rotorgear.results.table import Block, Column, error_words, exact, heading, table_over
+from rotorgear.results.table import Block, Column, Line, error_words, exact, table_over
 
 # The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
 WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
@@ -169,7 +169,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         if self.speed is not None:
             how = f"damped, {self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
             damped = ("damping_ratio", "whirl")
-        yield heading(f"{self.model.title or 'Modes'}: {how}")
+        yield Line(f"{self.model.title or 'Modes'}: {how}")
         number = Column("mode", lambda k: k + 1)
         # A rigid body has no frequency whose error could be relative to it.
         error = Column("", "error_estimate", where=lambda k: not self.rigid[k])

@@ -11,7 +11,7 @@ from rotorgear.model.numbers import numbers_of
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Table, grid, heading
+from rotorgear.results.table import Block, Line, Table, grid
 
 
 class LayoutNumber(Record):
@@ -112,7 +112,7 @@ class OptimiseResult(ModelResult, kind="optimise"):
         for row in self.numbers:
             values = (value_words(row, value) for value in (row.before, row.after, row.low, row.high))
             rows.append((row.address, *values, f"at {row.at_bound}" if row.at_bound else ""))
-        yield heading(self.title or "Layout")
+        yield Line(self.title or "Layout")
         yield from (grid(rows, "number", "before", "after", "low", "high", "", caption="Free numbers"), "")
         yield from (self._margins(), "")
         yield from (*self._said(), *self.remarks())

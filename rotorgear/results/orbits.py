@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Table, grid, heading, written
+from rotorgear.results.table import Block, Line, Table, grid, written
 
 # Points of a branch that are listed; all are in the files.
 _SHOWN = 12
@@ -191,7 +191,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
 
     def tables(self) -> Iterator[Block]:
         """Special points, branches, curves, transients started on orbits, and notes."""
-        yield heading(f"{self.model.title or 'Orbits'}: periodic motions over {self.address[0]}")
+        yield Line(f"{self.model.title or 'Orbits'}: periodic motions over {self.address[0]}")
         yield from ("", f"excited by {self.excited}", "", "Special points")
         yield self._special() if self.special_points else "none"
         for number in range(len(self.branches)):

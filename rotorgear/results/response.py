@@ -11,7 +11,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
 from rotorgear.results.schema import Record, derived, force_and_moment, of
-from rotorgear.results.table import TRANSMISSION_WORDS, Block, Column, Table, error_words, grid, heading, table_of
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Column, Line, Table, error_words, grid, table_of
 
 # Rows of a run of orders before the rest of it shares one.
 _SHOWN = 5
@@ -198,7 +198,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         """The orders, the largest amplitude of each quantity, and notes."""
         first, last = self.speed_rpm[[0, -1]]
         at = f"{first:.6g} rpm" if len(self.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
-        yield heading(f"{self.model.title or 'Model'}: forced response, {self.model.reference_shaft} at {at}")
+        yield Line(f"{self.model.title or 'Model'}: forced response, {self.model.reference_shaft} at {at}")
         rows = []
         for one, other in _rows_of_orders(self.orders):
             ends = dict.fromkeys((one, other))

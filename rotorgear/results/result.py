@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rotorgear.drawing import picture_of
 from rotorgear.note import NAMED, as_notes, sentences
 from rotorgear.results.schema import Record, Written, derived, of
-from rotorgear.results.table import Block, as_html, as_rich, heading, table_of, table_over
+from rotorgear.results.table import Block, Line, as_html, as_rich, table_of, table_over
 from rotorgear.version import VERSION
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ class Result(Record):
 
         A kind of result that has more to say does so itself; the options are those of the command that choose tables.
         """
-        yield heading(getattr(self, "title", "") or self.kind)
+        yield Line(getattr(self, "title", "") or self.kind)
         declared = self.declarations.values()
         counted = dict.fromkeys(
             one.axes[0] for one in declared if one.column and one.record is None and len(one.axes) == 1
@@ -140,7 +140,7 @@ class Result(Record):
         """The title, if there is one."""
         title = getattr(self, "title", "")
         if title:
-            yield heading(title)
+            yield Line(title)
 
     def remarks(self) -> list[str]:
         """What all tables end with: what the analysis left out, and its warnings, one sentence for each cause."""

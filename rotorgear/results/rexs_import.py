@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, heading
+from rotorgear.results.table import Block, Line
 
 
 class Assumption(Record):
@@ -34,7 +34,7 @@ class RexsImport(Result, kind="import"):
     def tables(self) -> Iterator[Block]:
         """What was read, the assumptions, and what was left out."""
         made = f"REXS {self.version}" + (f" by {self.application}" if self.application else "")
-        yield heading(self.file, f": {made}" + (f", load case {self.load_case}" if self.load_case else ""))
+        yield Line(self.file, f": {made}" + (f", load case {self.load_case}" if self.load_case else ""))
         yield f"{self.shafts} shafts, {self.gears} gears, {self.meshes} meshes, {self.bearings} bearings"
         yield from ("", *self._assumed(), "")
         yield f"{len(self.assumptions)} assumptions; each stands as a comment in the model file"

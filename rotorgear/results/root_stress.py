@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, heading, upright
+from rotorgear.results.table import Block, Line, upright
 
 # What is told of a gear, in this order.
 _TOLD = (
@@ -70,7 +70,7 @@ class RootStress(Result, kind="root_stress"):
 
     def tables(self) -> Iterator[Block]:
         """The largest stresses of the cycle, of both gears side by side."""
-        yield heading(self.title or "Mesh", f": mesh '{self.mesh}', root stress over the mesh cycle")
+        yield Line(self.title or "Mesh", f": mesh '{self.mesh}', root stress over the mesh cycle")
         yield f"{self.pinion_torque_n_m:.6g} N m on the pinion, preset {self.preset}, {self.positions} positions"
         yield from ("", upright(self, "gears", "largest principal stress", *_TOLD), "")
         yield from self.remarks()

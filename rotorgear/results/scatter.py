@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, Table, grid, heading, table_of
+from rotorgear.results.table import Block, Column, Line, Table, grid, table_of
 
 # Ends of the bands that are written, as shares of the samples below.
 LOW = 0.05
@@ -143,7 +143,7 @@ class ScatterResult(ModelResult, kind="scatter"):
     def tables(self) -> Iterator[Block]:
         """Bands of modes, margins and load shares, the numbers that make them, and how far to trust them."""
         at = "at standstill" if self.speed_rpm is None else f"at {self.speed_rpm:.6g} rpm"
-        yield heading(self.title or "Scatter", f": scatter {at}, {self.sample_count} samples")
+        yield Line(self.title or "Scatter", f": scatter {at}, {self.sample_count} samples")
         # Addresses without their last key where that tells them apart all the same.
         whole = [row.address for row in self.numbers]
         short = [address.rpartition(".")[0] for address in whole]

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of, rows
-from rotorgear.results.table import Block, Column, heading, table_of
+from rotorgear.results.table import Block, Column, Line, table_of
 
 
 class Spectrum(Record):
@@ -37,7 +37,7 @@ class SpectralLines(Result, kind="spectral_lines", analysis="spectrum"):
 
     def tables(self) -> Iterator[Block]:
         """The lines of the spectrum."""
-        yield heading(f"Spectrum of {self.name}, {self.window} window, {self.resolution_hz:.3g} Hz apart")
+        yield Line(f"Spectrum of {self.name}, {self.window} window, {self.resolution_hz:.3g} Hz apart")
         columns = (
             Column("Hz", "frequency_hz"),
             Column(f"amplitude {self.unit}", "amplitude"),
@@ -64,7 +64,7 @@ class RigSpectrum(Result, kind="rig_spectrum", analysis="compare spectrum"):
 
     def tables(self) -> Iterator[Block]:
         """Rig lines beside spectral lines."""
-        yield heading(f"Rig lines within {100.0 * self.tolerance:g} %")
+        yield Line(f"Rig lines within {100.0 * self.tolerance:g} %")
         columns = (
             Column("rig Hz", "rig_hz", ".6g"),
             Column("Hz", "frequency_hz", where=lambda line: not line.reason),

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, heading, table_of
+from rotorgear.results.table import Block, Column, Line, table_of
 
 WITHIN = "within"
 NOT_WITHIN = "not within"
@@ -92,7 +92,7 @@ class StandardsResult(ModelResult, kind="standards"):
     def tables(self) -> Iterator[Block]:
         """Peaks of the unbalance response, each rule with value, limit and verdict, and what the rules say."""
         at = f"{self.model.reference_shaft} at {self.operating_rpm:.6g} rpm"
-        yield from (heading(f"{self.model.title or 'Model'}: rules of standards, {at}"), "")
+        yield from (Line(f"{self.model.title or 'Model'}: rules of standards, {at}"), "")
         if self.criticals:
             asked = Column("", "required_percent", where=lambda one: one.required_percent is not None, without="none")
             peak = ("shaft", "shaft_rpm", "below_rpm", "above_rpm", "amplification_factor", "margin_percent", asked)

@@ -9,7 +9,7 @@ import scipy.linalg as la
 
 from rotorgear.results.frequency_response import BetweenPlaces
 from rotorgear.results.schema import of
-from rotorgear.results.table import Block, error_words, grid, heading
+from rotorgear.results.table import Block, Line, error_words, grid
 
 
 class StateSpace(BetweenPlaces, kind="state_space"):
@@ -70,7 +70,7 @@ class StateSpace(BetweenPlaces, kind="state_space"):
 
     def tables(self) -> Iterator[Block]:
         """Inputs and outputs with their units, the size, and how far the reduction is off."""
-        yield from (heading(f"{self.model.title or 'Model'}: state space, {self.at_speed}"), "")
+        yield from (Line(f"{self.model.title or 'Model'}: state space, {self.at_speed}"), "")
         rows = [("input", *one) for one in zip(self.inputs, self.input_units, strict=True)]
         rows += [("output", *one) for one in zip(self.outputs, self.output_units, strict=True)]
         yield from (grid(rows, "kind", "place", "unit", left=3, caption="Inputs and outputs"), "")

@@ -11,18 +11,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable
 from rotorgear.results.schema import Record, Written, derived, force_and_moment, of, rows
-from rotorgear.results.table import (
-    Block,
-    Cell,
-    Column,
-    Table,
-    error_words,
-    grid,
-    heading,
-    table_of,
-    table_over,
-    written,
-)
+from rotorgear.results.table import Block, Cell, Column, Line, Table, error_words, grid, table_of, table_over, written
 
 # The change that one line of the sensitivity table is for, by the end of the parameter's name, and its words.
 _STEPS = {
@@ -222,7 +211,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
     def tables(self, *, sensitivity: bool = False) -> Iterator[Block]:
         """Forces of meshes, faces and supports, load sharing, loops, displacements and notes; sensitivities where asked for."""
         at = "" if self.speed is None else f", {self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
-        yield heading(f"{self.model.title or 'Model'}: statics{at}")
+        yield Line(f"{self.model.title or 'Model'}: statics{at}")
         if self.torque:
             yield f"torques about z: {'; '.join(f'{name} {value:.2f} N m' for name, value in self.torque.items())}"
         for name, load in self.load_force.items():
@@ -311,7 +300,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         )  # mirrored parts are equal but for rounding: as in the file
         cut = f" (the {_MOST_SENSITIVE} largest of {len(rows)}; --json has all)" if len(rows) > _MOST_SENSITIVE else ""
         first = self.shares[0]
-        yield heading(f"Share of {first.mesh} in {first.gear}", f", change in percentage points{cut}")
+        yield Line(f"Share of {first.mesh} in {first.gear}", f", change in percentage points{cut}")
         shown = [(part, words, f"{100.0 * change:+.3f}") for change, part, words in rows[:_MOST_SENSITIVE]]
         yield grid(shown, "what changes", "by", "share, points", left=2, caption="Sensitivity of the load sharing")
 

@@ -10,7 +10,7 @@ from rotorgear.old_names import warn_old
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of, rows
-from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, written
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, grid, written
 
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
@@ -205,7 +205,7 @@ class SweepResult(ModelResult, kind="sweep"):
 
     def tables(self) -> Iterator[Block]:
         """The route, the points, the lines of the trajectories that are kept, and notes."""
-        yield heading(f"{self.model.title or 'Sweep'}: {len(self.values)} points over {' and '.join(self.address)}")
+        yield Line(f"{self.model.title or 'Sweep'}: {len(self.values)} points over {' and '.join(self.address)}")
         yield ""
         if len(self.shape) == 1:
             yield from (self._route(r) for r in range(len(self.run)))
@@ -286,5 +286,5 @@ class SweepResult(ModelResult, kind="sweep"):
                 cells = [f"{x:.6g}" for x in self.values[p]] + [self.run[r]] * several + [self.motion_at(p, r)]
                 rows.append([*cells, *lines, *[""] * (most - len(lines))])
         heads = self._heads()[: len(self.address)] + ["start"] * several
-        yield from ("", heading("Strongest lines of the displacement: f over the mesh frequency, amplitude"))
+        yield from ("", Line("Strongest lines of the displacement: f over the mesh frequency, amplitude"))
         yield grid(rows, *heads, "response", *["f: um"] * most, left=0, caption="Strongest lines")

@@ -48,7 +48,7 @@ _SCALES = {
 
 @dataclass(frozen=True)
 class Line:
-    """A line of text: its beginning in bold, then the rest; `dim`: a legend."""
+    """A line of text: its beginning in bold, such as a title, then the rest; `dim`: a legend."""
 
     bold: str = ""
     rest: str = ""
@@ -105,16 +105,6 @@ class Table:
 
 
 Block = str | Line | Table
-
-
-def heading(title: str, rest: str = "") -> Line:
-    """A title in bold, and what follows it on the line."""
-    return Line(title, rest)
-
-
-def legend(text: str) -> Line:
-    """What a table's headings mean."""
-    return Line(rest=text, dim=True)
 
 
 def error_words(value: float) -> str:

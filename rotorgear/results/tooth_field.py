@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, heading, table_of
+from rotorgear.results.table import Block, Column, Line, table_of
 
 
 class ToothField(Record):
@@ -49,7 +49,7 @@ class ToothFields(Result, kind="tooth_field"):
 
     def tables(self) -> Iterator[Block]:
         """The largest stresses and pressure."""
-        yield heading(f"Mesh '{self.mesh}' at {self.position:g} mesh periods")
+        yield Line(f"Mesh '{self.mesh}' at {self.position:g} mesh periods")
         nodes = Column("nodes", lambda gear: len(gear.points))
         cells = Column("cells", lambda gear: len(gear.cells))
         yield table_of(self, "gears", Column("gear", "name"), nodes, cells, "root_stress")

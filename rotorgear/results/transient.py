@@ -12,7 +12,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of, part_of, rows
-from rotorgear.results.table import TRANSMISSION_WORDS, Block, Table, grid, heading, short, table_of
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, grid, short, table_of
 
 # What a history of a contact is called, and the table it stands in; the last one by its former name.
 _OF_CONTACTS = {
@@ -251,7 +251,7 @@ class TransientResult(ModelResult, kind="transient"):
             counted = (
                 f"ended at {self.time[-1]:.4g} s, before the {self.settle:.4g} s that are discarded: nothing counts"
             )
-        yield heading(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
+        yield Line(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
         yield from (table_of(self, "contacts", tight=True), "")
         if self.channel:
             yield self._channels()
