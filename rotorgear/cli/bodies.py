@@ -132,11 +132,8 @@ def export(call: Call) -> None:
         typer.echo(f"wrote {rg.write_matrices(call.source, matrices, **call.arguments('write_matrices'))}")
     if uff:
         asked = {name: call.asked(name) for name in ("speed", "elements")}
-        by = (
-            {"fmax": call["fmax"]}
-            if call["fmax"] is not None and call["modes"] is None
-            else {"modes": call["modes"] or 12}
-        )
+        to_fmax = call["fmax"] is not None and call["modes"] is None
+        by = {"fmax": call["fmax"]} if to_fmax else {"modes": call["modes"] or 12}
         with progress_bar("modes") as progress:
             modes = rg.modal(call.source, **by, **asked, progress=progress)
         typer.echo(f"wrote {rg.write_uff(modes, uff)}")

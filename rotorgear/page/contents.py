@@ -141,13 +141,13 @@ def loaded_meshes(model: Model) -> list[str]:
 
 def error_of(result: Any) -> float | None:
     """The largest error estimate that a result has, relative; None where it states none."""
-    error = getattr(result, "error_estimate", None)
-    if error is None and getattr(result, "errors", None) is not None:
-        error = result.errors.worst
-    if error is None and hasattr(result, "criticals"):
-        error = [item.error_estimate for item in result.criticals]
-    if error is None and hasattr(result, "worst_residual"):
-        error = [item.error_estimate for item in result.speeds]
+    rows = {"standards": "criticals", "critical": "speeds"}.get(result.kind)
+    if rows is not None:
+        error = [item.error_estimate for item in getattr(result, rows)]
+    elif result.kind == "mesh":
+        error = result.errors and result.errors.worst
+    else:
+        error = getattr(result, "error_estimate", None)
     if error is None:
         return None
     values = np.atleast_1d(np.asarray(error, float))

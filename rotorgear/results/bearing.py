@@ -54,6 +54,7 @@ class OilState(Record):
     smooth: ClassVar[bool] = False
     over_gap: ClassVar[str] = "Film: eccentricity {0.eccentricity:.3f} of the clearance"
 
+    minimum_gap: float = of("smallest gap", "m")
     largest_pressure: float = of("largest pressure", "Pa")
     power_loss: float = of("power loss", "W")
     film_temperature: float | None = of(
@@ -80,7 +81,6 @@ class FilmState(OilState):
     attitude: float = of(
         "attitude angle", "rad", note=": from the load to the line of centres, in the sense of rotation"
     )
-    minimum_gap: float = of("smallest gap of the film", "m")
     sommerfeld: float = of("Sommerfeld number", note=" mu N L D / W (R/c)^2")
     side_flow: float = of("oil that leaves at both ends", "m^3/s")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad")
@@ -114,7 +114,6 @@ class ThrustState(OilState):
     smooth: ClassVar[bool] = True
     over_gap: ClassVar[str] = "Least gap over the radius"
 
-    minimum_gap: float = of("smallest gap of the films", "m")
     side_flow: float = of("oil that leaves at the inner and the outer radius", "m^3/s")
     side: np.ndarray = of("sense of the push that the pad takes", "", "angle", note=", 1 towards +z, -1 towards -z")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad", note=", over all pads")
@@ -142,7 +141,7 @@ class BearingSpeed(Record):
     stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
     damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
     critical_mass: float | None = of(
-        "mass of a rigid rotor on such bearings at its threshold", "kg", note=", a bearing; `null` where none whirls"
+        "mass a bearing of a rigid rotor at its threshold", "kg", note=" on such bearings; `null` where none whirls"
     )
     whirl_ratio: float | None = of("frequency of that whirl over the speed of the shaft")
     film_temperature: float | None = of(

@@ -84,26 +84,15 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
         yield "ratio: estimate over error"
         yield from (*(f"{sign} {note}" for note, sign in marks.items()), *self.remarks(), "")
 
-        def timed(rung: Rung) -> bool:
-            return math.isfinite(rung.seconds)
-
         def known(name: str) -> Column:
-            return Column(
-                "", name, where=lambda rung: getattr(rung, name) == getattr(rung, name) is not None, without=""
-            )
+            return Column("", name, without="")
 
+        spread = "{:.0f}%".format
         columns = (
             Column("discretisation", lambda rung: rung.method + "".join(marks[note] for note in rung.notes)),
             Column("", "dofs", where=lambda rung: rung.dofs > 0, without=""),
-            Column("", "seconds", where=timed, without=""),
-            Column(
-                "+-",
-                "spread",
-                lambda spread: f"{spread:.0f}%",
-                "%",
-                where=lambda r: timed(r) and r.timed > 1,
-                without="",
-            ),
+            known("seconds"),
+            Column("+-", "spread", spread, "%", where=lambda r: math.isfinite(r.seconds) and r.timed > 1, without=""),
             Column("MB", lambda r: r.memory / 1e6, ".1f", where=lambda rung: bool(rung.memory), without=""),
         )
         last = (known("estimate"), known("effectivity"), known("order"))

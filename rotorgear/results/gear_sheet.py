@@ -97,7 +97,8 @@ class MeshSheetRow(Record):
 
     Pairs of numbers are of pinion and gear. `stiffness_n_per_m` is what the rotor model uses, along the flank normal, of all
     helices; the ISO values c'_th, c', c_gamma_alpha and c_gamma_beta are per face width in the transverse plane, in N/m^2
-    (1e9 of it are 1 N/(mm um)). Velocity and tangential force F_t are those at the reference circle, forces of one helix.
+    (1e9 of it are 1 N/(mm um)). Velocity and tangential force F_t are those at the reference circle, forces of one helix; the
+    pinion drives.
     """
 
     name: str = of("name")
@@ -131,11 +132,9 @@ class MeshSheetRow(Record):
     )
     base_pitch_m: float = of("transverse base pitch p_bt", "m", form=".4f", column="base pitch mm")
     approach_length_m: float = of(
-        "contact path before the pitch point", "m", note=", pinion drives", form=".4f", column="length of approach mm"
+        "path of contact before the pitch point", "m", form=".4f", column="length of approach mm"
     )
-    recess_length_m: float = of(
-        "contact path after the pitch point", "m", note=", pinion drives", form=".4f", column="length of recess mm"
-    )
+    recess_length_m: float = of("path of contact after the pitch point", "m", form=".4f", column="length of recess mm")
     working_pitch_diameter_m: tuple[float, float] = of(
         "working pitch diameter d_w", "m", "pinion_and_gear", form=_both, column="working pitch diameters mm"
     )
@@ -234,18 +233,17 @@ class GearSheet(Result, kind="gear"):
     def tables(self) -> Iterator[Block]:
         """The sheets of gears and meshes, side by side, and notes."""
         yield Line(self.title or "Gears")
-        for first in range(0, len(self.gears), _ABREAST):
-            yield from ("", upright(self, "gears", "gear", *_gear_lines(), first=first, count=_ABREAST))
         # The involutes that are left are told where a tip reaches below one of them.
         cut = Column(
             "",
             "involute_contact_ratio",
             where=lambda mesh: mesh.involute_contact_ratio < mesh.transverse_contact_ratio * (1.0 - 1e-9),
         )
-        said = [one.name for one in MeshSheetRow.declarations.values() if one.column or one.name == cut.value]
+        said = [one.name for one in MeshSheetRow.declarations.values() if one.column]
         lines = ["name", *(cut if name == cut.value else name for name in said)]
-        for first in range(0, len(self.meshes), _ABREAST):
-            yield from ("", upright(self, "meshes", "mesh", *lines, first=first, count=_ABREAST))
+        for table, kind, shown in (("gears", "gear", list(_gear_lines())), ("meshes", "mesh", lines)):
+            for first in range(0, len(getattr(self, table)), _ABREAST):
+                yield from ("", upright(self, table, kind, *shown, first=first, count=_ABREAST))
         yield from ("", *self.remarks())
         both = (("gears", self.gears), ("meshes", self.meshes))
         own = [Note(f"{table}.{one.name}", text) for table, members in both for one in members for text in one.warnings]

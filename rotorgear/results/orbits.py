@@ -116,7 +116,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
     )
     cpu_per_point: float = of("CPU time of a point", "s", json="cpu_seconds_per_point", default=float("nan"))
     place: tuple[str, ...] = of(
-        "displacement that is told", "", "place", note=', such as `"bearings.front x"`', default=()
+        "place of the displacement", "", "place", note=', such as `"bearings.front x"`', default=()
     )
     place_unit: tuple[str, ...] = of(
         "unit of the displacement at a place", "", "place", note=', `"m"` or `"rad"`', default=()

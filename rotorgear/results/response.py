@@ -68,7 +68,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
     mean_force: np.ndarray = of(
-        "mean force", "N", "contact", note=": the static force, about which all is linear", json="mean_mesh_force_n"
+        "mean force", "N", "contact", note=": the static force about which it is linear", json="mean_mesh_force_n"
     )
     mesh_stiffness: np.ndarray = of(
         "stiffness along the flank normal", "N/m", "contact", note="; of loaded teeth the mean tangent of a mesh cycle"

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, Line, Table, grid, table_of
+from rotorgear.results.table import Block, Column, Form, Line, Table, grid, table_of
 
 # Ends of the bands that are written, as shares of the samples below.
 LOW = 0.05
@@ -183,15 +183,13 @@ class ScatterResult(ModelResult, kind="scatter"):
         yield from self.remarks()
 
     def _margins(self) -> Table:
-        def percent(name: str, form: str, without: str = "-", head: str = "") -> Column:
-            words = lambda value: f"{value:{form}} %"  # noqa: E731
+        def percent(name: str, words: Form, without: str = "-", head: str = "") -> Column:
             return Column(head, name, words, "%", where=lambda row: bool(np.isfinite(row.median)), without=without)
 
-        margin = percent("nominal", "+.2f", "no mode")
-        below = percent("below", ".1f", head=f"below {100 * self.least_margin:.3g} %")
-        return table_of(
-            self, "margins", "line", "frequency_hz", margin, percent("low", ".2f"), percent("median", ".2f"), below
-        )
+        margin = percent("nominal", "{:+.2f} %".format, "no mode")
+        below = percent("below", "{:.1f} %".format, head=f"below {100 * self.least_margin:.3g} %")
+        ends = [percent(name, "{:.2f} %".format) for name in ("low", "median")]
+        return table_of(self, "margins", "line", "frequency_hz", margin, *ends, below)
 
     def _ranks(self) -> Table:
         rows = []

@@ -72,7 +72,7 @@ class MeshFace(Record):
         "place of the largest load per width", "m", note=" from the face's middle", form="+.2f", column="peak at mm"
     )
     peak_pressure_pa: float | None = of(
-        "largest contact pressure", "Pa", note=" of the cycle; `null` if not looked at", form=".1f", column="p_max MPa"
+        "largest contact pressure", "Pa", note="; `null` without loaded teeth", form=".1f", column="p_max MPa"
     )
     tilt_stiffness_n_m: float | None = of(
         "stiffness against tilt", "N m", note=": moment for a tilt of the flanks in m/m, about the centre of stiffness"

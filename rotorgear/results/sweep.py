@@ -143,7 +143,7 @@ class SweepResult(ModelResult, kind="sweep"):
         "run",
         "contact",
         "statistic",
-        note=", in their units, by half or twice the steps",
+        note=", each in its unit, by a run with half or twice the steps",
         default_factory=lambda: np.zeros((0, 0, 0, 0)),
     )
 

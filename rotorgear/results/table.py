@@ -73,7 +73,8 @@ class Column:
     """A column: its heading, its declared field or what says its cells, and what the declaration does not say, or otherwise.
 
     `left`: words, which stand to the left; None: as its cells are. `label`: its heading where there is room for it. `where`: what
-    says of a row whether it has such a number, `without` what stands there if not. `entry`: which one of an array.
+    says of a row whether it has such a number, `without` what stands there if not, or where it is not known. `entry`: which one
+    of an array.
     """
 
     heading: str
@@ -338,7 +339,9 @@ def _number(value: Any, declared: Declared, column: Column, path: tuple[str | in
     if hasattr(value, "item"):
         value = value.item()
     form = column.form or declared.form
-    if value is None or isinstance(value, str | bool) or value != value:
+    if value is None or value != value:
+        return Cell(column.without, number=True)
+    if isinstance(value, str | bool):
         return _plain(value, form)
     shown = column.shown or unit_of(declared)
     factor = scale(declared.unit, shown)

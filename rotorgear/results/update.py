@@ -11,16 +11,12 @@ from rotorgear.model.numbers import free_numbers
 from rotorgear.results.comparison import IDENTIFIED, LearntParameter, RigLine, learnt_words
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, Form, grid, table_of
+from rotorgear.results.table import Block, Column, grid, table_of
 
 # Rarer than this by chance, the misfit is the model's: no numbers of it fit the lines.
 MISFIT = 0.01
 # Two estimates that move together beyond this are one piece of knowledge.
 TIED = 0.7
-
-
-def _percent(form: str) -> Form:
-    return lambda value: f"{value:{form}} %"
 
 
 def _error_of(head: str, frequency: str) -> Column:
@@ -29,7 +25,7 @@ def _error_of(head: str, frequency: str) -> Column:
     def error(line: UpdatedLine) -> float:
         return 100.0 * (float(getattr(line, frequency)) / line.rig.frequency_hz - 1.0)
 
-    return Column(head, error, _percent("+.2f"))
+    return Column(head, error, "{:+.2f} %".format)
 
 
 class UpdatedParameter(LearntParameter):
@@ -171,19 +167,15 @@ class UpdateResult(ModelResult, kind="update"):
         yield from self.titled()
         columns = (
             Column("number", "address"),
-            Column("prior", "prior", lambda value: f"±{value:.3g} %", "%"),
+            Column("prior", "prior", "±{:.3g} %".format, "%"),
             Column("times", "factor", ".4f"),
-            Column("after", "sigma", lambda value: f"±{value:.2g} %", "%"),
-            Column("learnt", "learnt", _percent(".0f"), "%"),
+            Column("after", "sigma", "±{:.2g} %".format, "%"),
+            Column("learnt", "learnt", "{:.0f} %".format, "%"),
             Column(" ", lambda row: "" if row.identified else "not identified", left=False),
         )
         yield from (table_of(self, "parameters", *columns), "")
         if self.lines:
-            error = (
-                _error_of("before", "before_hz"),
-                _error_of("after", "after_hz"),
-                _error_of("held out", "held_out_hz"),
-            )
+            error = [_error_of(when.replace("_", " "), f"{when}_hz") for when in ("before", "after", "held_out")]
             several = ("campaign",) if any(line.campaign for line in self.lines) else ()
             shapes = ("mac_before", "mac_after") if self.points else ()
             rig = Column("rig Hz", "rig.frequency_hz", ".2f")
