@@ -20,14 +20,6 @@ HIGH = 0.95
 _RANKED = 3
 
 
-def _spread(sigma: float) -> str:
-    return f"±{100 * sigma:.2f} %"
-
-
-def _spread_of_share(sigma: float) -> str:
-    return f"±{sigma:.4f}"
-
-
 class ScatteredNumber(Record):
     """A number of the model that scatters."""
 
@@ -45,9 +37,11 @@ class FrequencyBand(Record):
     nominal_hz: float = of("frequency", "Hz", note=" of the nominal model", form=".2f", column="Hz")
     group: int = of("number of the group", note=", from 1: modes of one group turn into each other within the scatter")
     sigma_first_order: float = of(
-        "relative standard deviation", note=", to first order, from energies", form=_spread, column="1st order"
+        "relative standard deviation", note=", to first order", form="±{:.2f} %".format, shown="%", column="1st order"
     )
-    sigma: float = of("relative standard deviation", note=" of the samples", form=_spread, column="sampled")
+    sigma: float = of(
+        "relative standard deviation", note=" of the samples", form="±{:.2f} %".format, shown="%", column="sampled"
+    )
     mean_hz: float = of("mean frequency", "Hz", note=" of the samples")
     low_hz: float = of("5 % quantile of the frequency", "Hz", form=".2f", column="5 %")
     high_hz: float = of("95 % quantile of the frequency", "Hz", form=".2f", column="95 %")
@@ -85,11 +79,11 @@ class ShareBand(Record):
     mesh: str = of("mesh", column="mesh")
     nominal: float = of("share in the nominal model", form=".4f", column="share")
     sigma_first_order: float = of(
-        "standard deviation", note=" to first order", form=_spread_of_share, column="1st order"
+        "standard deviation", note=" to first order", form="±{:.4f}".format, column="1st order"
     )
-    sigma: float = of("standard deviation", note=" of the samples", form=_spread_of_share, column="sampled")
-    low: float = of("5 % quantile", form=".4f", column="5 %")
-    high: float = of("95 % quantile", form=".4f", column="95 %")
+    sigma: float = of("standard deviation", note=" of the samples", form="±{:.4f}".format, column="sampled")
+    low: float = of("5 % quantile", form=".4f", column="5 % under")
+    high: float = of("95 % quantile", form=".4f", column="95 % under")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
     leading_share: float = of("share of that number in the variance", note=", to first order")
 

@@ -9,7 +9,8 @@
 
 JSON, HDF5, rows, data sets, the text of a result and docs/json.md follow from these declarations. An axis in small letters is
 counted ("mode"), one in capitals is a dictionary's ("PART"). Subclasses of `Record` are frozen dataclasses without a decorator;
-two of them are equal if all their values are, arrays by their entries and NaN to NaN, and their arrays are read-only.
+two of them are equal if all their values are, arrays by their entries and NaN to NaN, and their arrays are read-only. `rows`
+writes the fields that an axis counts as a list of rows.
 """
 
 from __future__ import annotations
@@ -317,6 +318,7 @@ class Rows:
         self.inner = inner
         self.fields: list[Declared] = []
         self.declarations: dict[str, Declared] = {}
+        self.keys: list[tuple[Declared, Written]] = []
 
     def emptied(self) -> Rows:
         """The same lists without fields."""
@@ -341,7 +343,9 @@ class Rows:
         self.fields.append(declared)
         axes = tuple(axis for axis in declared.axes if axis not in self.axes)
         own = replace(declared, axes=axes, along=_along(axes, json_axes), computed=False)
-        self.declarations |= {one.key: replace(own, name=one.key, json=(one.key,)) for one in declared.written()}
+        for written in declared.written():
+            self.keys.append((declared, written))
+            self.declarations[written.key] = replace(own, name=written.key, json=(written.key,))
 
     def of(self, record: Record, values: dict[str, Any], at: dict[str, int]) -> tuple[Row, ...]:
         """The rows: of a record, from the values of its fields, at numbers along the axes of the outer lists."""
@@ -353,12 +357,11 @@ class Rows:
         for k in range(length):
             here = at | {axis: k}
             row: dict[str, Any] = {}
-            for declared in self.fields:
+            for declared, written in self.keys:
                 entry = _entry(values[declared.name], tuple(here.get(one, slice(None)) for one in declared.axes))
-                for written in declared.written():
-                    own = self.declarations[written.key]
-                    one = entry if written.value is None else written.value(record, entry)
-                    row[written.key] = one if own.along == own.axes else _arranged(record, one, own.axes, own.along)
+                one = entry if written.value is None else written.value(record, entry)
+                own = self.declarations[written.key]
+                row[written.key] = one if own.along == own.axes else _arranged(record, one, own.axes, own.along)
             if self.inner is not None:
                 row[self.inner_name] = self.inner.of(record, values, here)
             made.append(Row(**row))
