@@ -141,13 +141,12 @@ def loaded_meshes(model: Model) -> list[str]:
 
 def error_of(result: Any) -> float | None:
     """The largest error estimate that a result has, relative; None where it states none."""
+    error: Any = getattr(result, "error_estimate", None)
     rows = {"standards": "criticals", "critical": "speeds"}.get(result.kind)
     if rows is not None:
         error = [item.error_estimate for item in getattr(result, rows)]
     elif result.kind == "mesh":
         error = result.errors and result.errors.worst
-    else:
-        error = getattr(result, "error_estimate", None)
     if error is None:
         return None
     values = np.atleast_1d(np.asarray(error, float))
