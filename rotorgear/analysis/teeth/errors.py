@@ -91,7 +91,7 @@ def error_parts(
     share = 1.0 if fe.size is not None else _remaining(teeth, size, space)
     of_pressure = _OF_PRESSURE[fe.preset] if space and fe.size is None else share
     elements = _apart(here, curves(coarser, part_of(progress, 0.0, 0.4)), share, of_pressure)
-    if space and fe.size is None and fe.preset in _OF_SECTION and not _on_wheels(teeth):
+    if space and fe.size is None and fe.preset in _OF_SECTION and not teeth.on_wheel:
         elements = _combined(elements, _section_errors(coarser, curves), how=math.hypot)
     slices = None
     if space:
@@ -100,11 +100,6 @@ def error_parts(
     known = [part for part in (elements, slices, sampling) if part is not None]
     total = _combined(*known, how=lambda *values: max(_LEAST, sum(values)))
     return ErrorParts(elements, slices, sampling, total)
-
-
-def _on_wheels(teeth: ToothPair) -> bool:
-    """Whether a gear of the pair is a wheel, whose blank has most of the elements' error."""
-    return any(teeth.fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body))
 
 
 def _section_errors(coarser: ToothPair, curves: Callable[[ToothPair, Progress], np.ndarray]) -> MeshErrors:
@@ -132,12 +127,11 @@ def _section_errors(coarser: ToothPair, curves: Callable[[ToothPair, Progress], 
 def _remaining(teeth: ToothPair, coarser: MeshSize, space: bool) -> float:
     """Share of the difference to a coarser mesh that remains on a preset's own."""
     fe = teeth.fe
-    on_wheels = _on_wheels(teeth)
     if not space or fe.preset == "preview":
-        return (_OF_WHEELS if on_wheels else _REMAINING)[fe.preset]
+        return (_OF_WHEELS if teeth.on_wheel else _REMAINING)[fe.preset]
     layers = fe.mesh_size(teeth.width / teeth.first.normal_module, space=True).face
     share = 1.0 / ((layers / coarser.face) ** _ORDER - 1.0)
-    return max(share, _OF_WHEELS[fe.preset]) if on_wheels else share
+    return max(share, _OF_WHEELS[fe.preset]) if teeth.on_wheel else share
 
 
 def _apart(here: np.ndarray, there: np.ndarray, share: float = 1.0, of_pressure: float = 1.0) -> MeshErrors:

@@ -221,7 +221,7 @@ def tooth_fields(
     request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
     assert request.teeth is not None
     teeth = _with_inside(request.teeth, request.senses[0], "body")
-    if any(teeth.fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body)):
+    if teeth.on_wheel:
         teeth = replace(teeth, fe=replace(teeth.fe, space=True))  # a web carries a part of the face only
     problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
     pinion, gear = (

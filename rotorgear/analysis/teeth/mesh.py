@@ -158,6 +158,9 @@ def _common(model: Model, request: MeshRequest, clock: Clock) -> dict[str, Any]:
         "gear": request.mesh.gear.name,
         "helices": request.helices,
         "stagger": request.mesh.part.stagger,
+        "stiffness_model": request.model,
+        "face_width": request.teeth.width if request.teeth else request.mesh.pinion.part.width or 0.0,
+        "base_helix_angle": request.mesh.pinion.base_helix_angle,
         "load": request.load,
         "memory_bytes": largest_memory(),
         "seconds": clock.total(),
@@ -171,15 +174,11 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
     curve: MeshStiffness = request.mesh.stiffness(normal, positions, name=name, sense=request.sense)
     error = None if request.load is None else request.load.base_force_n / curve.transverse
     clock.lap("stiffness")
-    width = request.teeth.width if request.teeth else request.mesh.pinion.part.width or 0.0
     return MeshResult(
         **_common(model, request, clock),
-        stiffness_model=curve.model,
         preset=None,
         definition=curve.definition,
         body=curve.body,
-        face_width=width,
-        base_helix_angle=curve.base_helix_angle,
         position=curve.position,
         event=np.zeros(len(curve.position), bool),
         stiffness=curve.transverse,
@@ -220,12 +219,9 @@ def _result(
     line = found.problem.line
     return MeshResult(
         **_common(model, request, clock),
-        stiffness_model="tooth_fe",
         preset=teeth.fe.preset,
         definition="secant",
         body=found.problem.body,
-        face_width=teeth.width,
-        base_helix_angle=teeth.pair.base_helix_angle,
         position=found.curve.position,
         event=found.curve.event,
         stiffness=found.stiffness,

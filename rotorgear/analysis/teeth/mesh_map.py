@@ -5,7 +5,7 @@ What a mesh does at one torque and misalignment, in a few figures: what maps and
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -34,22 +34,23 @@ _MOST_POINTS = 10_000
 
 @dataclass(frozen=True)
 class MeshFigures:
-    """One operating point.
+    """What a mesh does at all torques (t,) and misalignments (m,).
 
     Attributes:
-        ste_peak_to_peak: of the transmission error (m), mean of the helices.
-        ste_harmonics: (3,) amplitudes of its first mesh orders (m).
-        largest_pressure: of both helices (Pa).
-        face_load_factor: K_Hbeta, largest load per width over the mean one, mean of the mesh cycle; the larger of both helices.
-        mean_stiffness: transverse, of all helices (N/m).
+        ste_peak_to_peak: (t, m) of the transmission error (m), mean of the helices.
+        ste_harmonics: (t, m, 3) amplitudes of its first mesh orders (m).
+        largest_pressure: (t, m) of both helices (Pa).
+        face_load_factor: (t, m) K_Hbeta, largest load per width over the mean one, mean of the mesh cycle; the larger of both
+            helices.
+        mean_stiffness: (t, m) transverse, of all helices (N/m).
         warnings: sentences.
     """
 
-    ste_peak_to_peak: float
+    ste_peak_to_peak: np.ndarray
     ste_harmonics: np.ndarray
-    largest_pressure: float
-    face_load_factor: float
-    mean_stiffness: float
+    largest_pressure: np.ndarray
+    face_load_factor: np.ndarray
+    mean_stiffness: np.ndarray
     warnings: tuple[str, ...]
 
 
@@ -60,7 +61,7 @@ def figures_at(
     misalignment: np.ndarray,
     positions: int,
     progress: Progress = silent,
-) -> list[MeshFigures]:
+) -> MeshFigures:
     """Solve one mesh period at each of some operating points, torque by torque.
 
     Args:
@@ -72,7 +73,8 @@ def figures_at(
         progress: told how far it is.
     """
     points = list(product(torque.tolist(), misalignment.tolist()))
-    found = []
+    rows = []
+    notes: list[str] = []
     for number, (load, askew) in enumerate(points):
         told = part_of(progress, number / len(points), (number + 1) / len(points))
         base_force = abs(load) / request.mesh.pinion.base_radius / request.helices
@@ -80,25 +82,23 @@ def figures_at(
         solved = solve_helices(request, misaligned, positions, base_force=base_force, progress=told)
         normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
         places = min(_PLACES, solved.problem.slices)
-        largest = [float(load_per_width(cycle, teeth.width, places)[1].max()) for cycle in solved.cycles]
-        notes = [note for cycle in solved.cycles for note in cycle.warnings]
-        found.append(
-            MeshFigures(
-                ste_peak_to_peak=float(np.ptp(solved.error)),
-                ste_harmonics=np.abs(solved.curve.harmonics(ORDERS)[:, 0]),
-                largest_pressure=float(solved.curve.values[:, 3].max()),
-                face_load_factor=max(largest) * teeth.width / normal_force,
-                mean_stiffness=float(solved.curve.mean()[1]),
-                warnings=(*solved.problem.warnings, *notes),
+        largest = [load_per_width(cycle, teeth.width, places)[1].max() for cycle in solved.cycles]
+        curve = solved.curve
+        rows.append(
+            (
+                np.ptp(solved.error),
+                np.abs(curve.harmonics(ORDERS)[:, 0]),
+                curve.values[:, 3].max(),
+                max(largest) * teeth.width / normal_force,
+                curve.mean()[1],
             )
         )
-    return found
-
-
-def of_points(figures: Sequence[MeshFigures], name: str, torque: np.ndarray, misalignment: np.ndarray) -> np.ndarray:
-    """One figure of all operating points as a table (t, m, ...)."""
-    values = np.array([getattr(point, name) for point in figures])
-    return values.reshape(len(torque), len(misalignment), *values.shape[1:])
+        notes += [*solved.problem.warnings, *(note for cycle in solved.cycles for note in cycle.warnings)]
+    columns = [np.array(column) for column in zip(*rows, strict=True)]
+    ste, harmonics, pressure, factor, stiffness = (
+        column.reshape(len(torque), len(misalignment), *column.shape[1:]) for column in columns
+    )
+    return MeshFigures(ste, harmonics, pressure, factor, stiffness, tuple(dict.fromkeys(notes)))
 
 
 def operating_values(given: Mapping[str, object], name: str) -> np.ndarray | None:
@@ -194,10 +194,6 @@ def mesh_map(
     problem = contact_problem(teeth, part_of(progress, 0.0, 0.3))
     figures = figures_at(request, teeth, load, misalignment, positions, part_of(progress, 0.3, 1.0))
     clock.lap("teeth and contact")
-
-    def table(name: str) -> np.ndarray:
-        return of_points(figures, name, load, misalignment)
-
     missing = ["error estimates: `rotorgear mesh` gives them for one point"]
     if teeth.first_flank.single_teeth or teeth.second_flank.single_teeth:
         missing.append("errors of single teeth beyond the first mesh period: `rotorgear mesh` follows them all")
@@ -212,13 +208,8 @@ def mesh_map(
         positions=positions,
         pinion_torque=load,
         misalignment=misalignment,
-        ste_peak_to_peak=table("ste_peak_to_peak"),
-        ste_harmonics=table("ste_harmonics"),
-        largest_pressure=table("largest_pressure"),
-        face_load_factor=table("face_load_factor"),
-        mean_stiffness=table("mean_stiffness"),
         dofs=problem.unknowns,
         seconds=clock.total(),
         left_out=tuple(missing),
-        warnings=tuple(dict.fromkeys(note for point in figures for note in point.warnings)),
+        **vars(figures),
     )

@@ -23,7 +23,7 @@ import numpy as np
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import quantity
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
-from rotorgear.analysis.teeth.mesh_map import MeshFigures, figures_at, of_points, operating_points, operating_values
+from rotorgear.analysis.teeth.mesh_map import MeshFigures, figures_at, operating_points, operating_values
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.loaded.tooth_contact import contact_problem
@@ -57,7 +57,7 @@ class _Search:
 
     teeth: ToothPair
     variables: tuple[Variable, ...]
-    points: Callable[[ToothPair], list[MeshFigures]]
+    points: Callable[[ToothPair], MeshFigures]
     weight: np.ndarray
     limit: float | None
     most: int
@@ -67,15 +67,15 @@ class _Search:
     best: np.ndarray | None = None
     least: float = np.inf
 
-    def mean(self, points: Sequence[MeshFigures]) -> float:
+    def mean(self, points: MeshFigures) -> float:
         """Weighted mean of the peak to peak (m)."""
-        return float(np.dot(self.weight.ravel(), [point.ste_peak_to_peak for point in points]))
+        return float(np.dot(self.weight.ravel(), points.ste_peak_to_peak.ravel()))
 
-    def excess(self, points: Sequence[MeshFigures]) -> float:
+    def excess(self, points: MeshFigures) -> float:
         """Share by which the largest pressure is above its limit, 0 below."""
         if self.limit is None:
             return 0.0
-        return max(0.0, max(point.largest_pressure for point in points) / self.limit - 1.0)
+        return max(0.0, float(points.largest_pressure.max()) / self.limit - 1.0)
 
     def __call__(self, shares: np.ndarray) -> float:
         """The objective, for variables (v,) as shares of their bounds."""
@@ -152,7 +152,7 @@ class _Search:
         for number, shares in enumerate(varied[:samples]):
             changed = np.maximum(values + tolerance * (2.0 * shares - 1.0), least)
             points = self.points(with_values(self.teeth, self.variables, changed))
-            found.append([self.mean(points), *(point.ste_peak_to_peak for point in points)])
+            found.append([self.mean(points), *points.ste_peak_to_peak.ravel()])
             progress((number + 1) / samples, f"tolerances {number + 1} of {samples}")
         low, high = np.quantile(np.array(found), _BAND, axis=0)
         return low, high
@@ -225,7 +225,7 @@ def optimise_flanks(
     if most < 10 * len(chosen):
         raise AnalysisError(f"evaluations: got {most}, expected at least 10 for each of {len(chosen)} variables")
 
-    def points(flanks: ToothPair) -> list[MeshFigures]:
+    def points(flanks: ToothPair) -> MeshFigures:
         return figures_at(request, flanks, load, misalignment, positions)
 
     weight = _weights(weights, operating_values(over, "torque"), load, len(misalignment))
@@ -238,22 +238,21 @@ def optimise_flanks(
     values = search.values(search.best)
     found = search.points(with_values(teeth, chosen, values))
     if search.excess(found) > 0.0:
-        worst = max(point.largest_pressure for point in found)
         raise AnalysisError(
             f"No flank within the bounds keeps the pressure limit of {1e-6 * (limit or 0.0):.4g} MPa at all points; "
-            f"the best reaches {1e-6 * worst:.4g} MPa: raise the limit, or leave out the highest torque."
+            f"the best reaches {1e-6 * found.largest_pressure.max():.4g} MPa: raise the limit, or leave out the highest torque."
         )
     clock.lap("search")
     band = None
     if samples and status == "success":
         band = search.band(values, spread, samples, part_of(progress, _SHARES[1], 1.0))
         clock.lap("tolerance band")
-    notes = dict.fromkeys(note for point in found for note in point.warnings)
+    notes = [*found.warnings]
     at_bounds = [
         variable.text for variable, share in zip(chosen, search.best, strict=True) if share < 1e-3 or share > 1.0 - 1e-3
     ]
     if at_bounds:
-        notes[f"the best value lies at the bound of {', '.join(at_bounds)}: wider bounds may give better ones"] = None
+        notes.append(f"the best value lies at the bound of {', '.join(at_bounds)}: wider bounds may give better ones")
     return MeshOptimum(
         title=model.title,
         mesh=request.mesh.name,
@@ -278,11 +277,11 @@ def optimise_flanks(
         mean_before=search.scale,
         mean=search.mean(found),
         mean_band=None if band is None else (float(band[0][0]), float(band[1][0])),
-        before=of_points(before, "ste_peak_to_peak", load, misalignment),
-        ste=of_points(found, "ste_peak_to_peak", load, misalignment),
+        before=before.ste_peak_to_peak,
+        ste=found.ste_peak_to_peak,
         ste_low=None if band is None else band[0][1:].reshape(weight.shape),
         ste_high=None if band is None else band[1][1:].reshape(weight.shape),
-        largest_pressure=of_points(found, "largest_pressure", load, misalignment),
+        largest_pressure=found.largest_pressure,
         evaluations=search.tried,
         samples=0 if band is None else samples,
         changes=model_values(request.mesh, chosen, values),

@@ -224,8 +224,7 @@ def _followed(
         beyond = beyond_line(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
     for _ in range(_PASSES):
         cycle = _swept(problem, load, positions, beyond, progress, passes)
-        approach = float((cycle.deflection - cycle.no_load).max())
-        wanted = beyond_line(problem, approach + problem.largest_gap)
+        wanted = beyond_line(problem, float((cycle.deflection - cycle.no_load).max()) + problem.largest_gap)
         near = all(have <= _MORE_BEYOND**2 * want for have, want in zip(beyond, wanted, strict=True))
         if near and all(np.array(wanted) <= beyond):
             break
@@ -256,8 +255,7 @@ def _swept(
     """One sweep over all positions; passes: for the widths of patches at most; least: of oblique lines, in normal modules."""
     cosine = problem.cosine
     slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
-    gap = problem.gap(slices)
-    found = settled(problem, slices, gap, load / cosine, progress, passes=passes, least=least)
+    found = settled(problem, slices, problem.gap(slices), load / cosine, progress, passes=passes, least=least)
     states = found.states
     force = np.concatenate([state.force for state in states])
     strip = np.concatenate([state.strip for state in states])

@@ -134,8 +134,7 @@ def settled(
 
 def same_patches(first: Settled, second: Settled) -> bool:
     """Whether both have the same compliances, the second having grown from the first or the other way round."""
-    both = zip(first.contacts, second.contacts, strict=True)
-    return all(one.compliance is other.compliance for one, other in both)
+    return all(one.compliance is other.compliance for one, other in zip(first.contacts, second.contacts, strict=True))
 
 
 def _with_patches(

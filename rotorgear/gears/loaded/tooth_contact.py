@@ -92,9 +92,7 @@ class ContactProblem:
         """The same at the places (n, q) along each slice."""
         gap = slices.gap + self.misalignment * slices.z / self.width
         for i, flank in enumerate(self.flanks):
-            form = self.line.form[i]
-            tip = self.line.tip[i]
-            gap = gap + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
+            gap = gap + flank.depth(slices.roll[i], slices.z, self.line.form[i], self.line.tip[i], self.width)
             # Pair -n comes into mesh n periods after pair 0.
             tooth = period - slices.pair
             gap = gap + flank.measured_depth(slices.roll[i], slices.z, tooth, self.teeth[i])

@@ -131,13 +131,6 @@ def _contacts(
     return [*found, (group[-1:], last)]
 
 
-def of_period_ahead(problem: ContactProblem, slices: Slices, commonest: Settled, load: float, ahead: int) -> Settled:
-    """Contacts of the period so many after the commonest, under a normal force (N)."""
-    if not any(flank.single_teeth for flank in problem.flanks):
-        return commonest
-    return settled(problem, slices, problem.gap(slices, ahead), load, known=commonest)
-
-
 # Change of the forces over the load in the last round: 1e-7 of the approach is left at most, and loads and positions lie farther
 # apart than that.
 _TOLERANCE = 1e-6
@@ -171,8 +164,7 @@ def _few_slices(contacts: Sequence[PositionContact], loads: list[float]) -> np.n
         def stacked(name: str, which: list[int] = which) -> np.ndarray:
             return np.repeat(np.stack([getattr(contacts[i], name) for i in which]), len(loads), axis=0)
 
-        many = contacts[which[0]].with_arrays(stacked)
-        approach, tangent = solve_many(many, np.tile(loads, len(which)))
+        approach, tangent = solve_many(contacts[which[0]].with_arrays(stacked), np.tile(loads, len(which)))
         found[:2, :, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads)).swapaxes(1, 2)
     return found
 
@@ -193,8 +185,7 @@ def _row(
     at = loads[-1]
     found = [(state.approach, 1.0 / state.tangent, float(state.force @ place))]
     for load in reversed(loads[:-1]):
-        start = np.maximum(force + rate * (load - at), 0.0)
-        state = solve_contact(fewer, load, start, _TOLERANCE)
+        state = solve_contact(fewer, load, np.maximum(force + rate * (load - at), 0.0), _TOLERANCE)
         rate = (force - state.force) / (at - load)
         force = state.force
         at = load
@@ -250,8 +241,7 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         ConvergenceError: a position has no solution to the tolerance.
         MissingExtraError: scikit-fem is needed and not installed.
     """
-    uncoupled = in_space(teeth)[1]
-    return _kept(teeth, load, positions, near and (uncoupled or not teeth.first.helix_angle))
+    return _kept(teeth, load, positions, near and (in_space(teeth)[1] or not teeth.first.helix_angle))
 
 
 @lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
@@ -311,6 +301,7 @@ def solved_map(
     # Patches are those of the commonest period: where an odd tooth carries they are wider, and would move all the others.
     common = of_period.index(max(kinds, key=of_period.count))
     place = common + positions.position
+    odd_teeth = any(flank.single_teeth for flank in problem.flanks)
     solved: list[list[np.ndarray]] = [[] for _ in kinds]
     below: dict[int, Settled] = {}
     touch: list[np.ndarray] = []
@@ -337,7 +328,10 @@ def solved_map(
             contacts = []
         for group, commonest in contacts:
             for kind, errors in enumerate(kinds):
-                found = of_period_ahead(problem, slices, commonest, load * group[-1], of_period.index(errors) - common)
+                found = commonest
+                if odd_teeth:
+                    gap = problem.gap(slices, of_period.index(errors) - common)
+                    found = settled(problem, slices, gap, load * group[-1], known=commonest)
                 # Where patches are those of the group below, its last load needs no second solution; a single load fades nothing.
                 new = bool(factors) and len(group) > 1 and not same_patches(found, below[kind])
                 bound = factors[-1:] if new else []

@@ -107,8 +107,7 @@ def iso_dynamic_factor(
     C7 = 0.75 if eps <= 1.5 else 1.0 if eps > 2.5 else 0.125 * math.sin(math.pi * (eps - 2.0)) + 0.875
 
     # N_S: under light load the range of the main resonance begins at a lower speed.
-    light = line_load < _LOW_LINE_LOAD
-    subcritical_end = 0.5 + 0.35 * math.sqrt(line_load / _LOW_LINE_LOAD) if light else 0.85
+    subcritical_end = 0.5 + 0.35 * math.sqrt(line_load / _LOW_LINE_LOAD) if line_load < _LOW_LINE_LOAD else 0.85
     # Over w_E1, where the mesh frequency meets the pair's own.
     N = pinion_speed / (math.sqrt(mesh_stiffness / reduced_mass) / pinion_teeth)
     resonance = 1.0 + C1 * B_p + C2 * B_f + C4 * B_k

@@ -140,8 +140,7 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
     # behind it, wherever the positions happen to fall.
     inside = (np.arange(_FINER) + 0.5) / _FINER - 0.5
     start = np.arange(positions) / positions
-    u = (start[:, None] + inside / positions).ravel()
-    xi, low, high = contact_lines(teeth, u)
+    xi, low, high = contact_lines(teeth, (start[:, None] + inside / positions).ravel())
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     z = 0.5 * (low + high)[..., None] + 0.5 * (high - low)[..., None] * nodes
     along = np.interp(xi[..., None] + z * math.tan(teeth.pair.base_helix_angle), path, per_width)

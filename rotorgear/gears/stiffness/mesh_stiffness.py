@@ -89,6 +89,11 @@ class ToothPair:
         """p_bt (m)."""
         return self.first.transverse_base_pitch
 
+    @property
+    def on_wheel(self) -> bool:
+        """Whether a gear of the pair stands on a blank of rim, web and hub."""
+        return any(self.fe.body_of(body.blank) == "wheel" for body in (self.first_body, self.second_body))
+
 
 @dataclass(frozen=True)
 class MeshStiffness:
@@ -221,7 +226,6 @@ class MeshStiffness:
         # (F_1 + F_2) / mean(delta) = 4 / (1/k_1 + 1/k_2).
         secant = 4.0 / (self._at(position, 1.0 / self.transverse) + other._at(theirs, 1.0 / other.transverse))
         tangent = 4.0 / (self._at(position, 1.0 / self.tangent) + other._at(theirs, 1.0 / other.tangent))
-        notes = tuple(dict.fromkeys(self.warnings + other.warnings))
         return replace(
             self,
             position=position,
@@ -230,7 +234,7 @@ class MeshStiffness:
             tangent=tangent,
             helices=2 * self.helices,
             load=load,
-            warnings=notes,
+            warnings=tuple(dict.fromkeys(self.warnings + other.warnings)),
         )
 
 

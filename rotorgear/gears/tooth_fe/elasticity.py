@@ -48,8 +48,7 @@ def assembled(elements: np.ndarray, dofs: np.ndarray, size: int) -> sp.csc_array
     """Sum of element matrices (e, n, n) on their degrees of freedom (e, n), sparse (size, size)."""
     n = dofs.shape[1]
     rows = np.repeat(dofs, n, axis=1).ravel()
-    columns = np.tile(dofs, n).ravel()
-    return sp.csc_array(sp.coo_array((elements.ravel(), (rows, columns)), (size, size)))
+    return sp.csc_array(sp.coo_array((elements.ravel(), (rows, np.tile(dofs, n).ravel())), (size, size)))
 
 
 def factorised(K: sp.csc_array) -> Any:

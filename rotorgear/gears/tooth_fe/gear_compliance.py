@@ -71,8 +71,7 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
         left = middle + o
         right = (left + 1) % len(cuts) if ring else left + 1
         if left >= 0 and left + 1 < len(cuts) + ring:
-            moved = np.vstack([cuts[left], cuts[right]])
-            G[reach + o] = (held_cuts if o == 0 else 0.0) - carried @ moved
+            G[reach + o] = (held_cuts if o == 0 else 0.0) - carried @ np.vstack([cuts[left], cuts[right]])
 
     # Maxwell: entry -o is the transpose of entry o. Rounding breaks it; the contact needs it exact, for a symmetric matrix.
     mirrored = G[::-1].transpose(0, 2, 1)

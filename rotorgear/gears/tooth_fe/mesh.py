@@ -128,8 +128,7 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
     )
 
     # A Jacobian that is not positive at a quadrature point: the flank of a deep undercut folds the mapped elements over.
-    jacobian = skfem.Basis(mesh, skfem.ElementQuad2(), intorder=4).dx
-    if not jacobian.min() > 0.0:
+    if not skfem.Basis(mesh, skfem.ElementQuad2(), intorder=4).dx.min() > 0.0:
         g = outline.geometry
         raise AnalysisError(
             f"The teeth of a gear with z = {g.teeth}, x = {g.profile_shift:.4g} are undercut so deeply that they can't be "

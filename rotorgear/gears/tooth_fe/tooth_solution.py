@@ -192,8 +192,7 @@ class ToothInside:
         """Superelement and factorisation of a pitch."""
         self.key = key
         self._mesh = pitch_of(key)[1]
-        layers = key.size.face if key.width else 0
-        self.pitch = whole_pitch(self._mesh, key.poisson_ratio, key.width, layers)
+        self.pitch = whole_pitch(self._mesh, key.poisson_ratio, key.width, key.size.face if key.width else 0)
         if key.blank and not key.width:
             raise AnalysisError("The inside of the teeth of a wheel needs the model in space.")
         self._sector = sector_of(key, self._mesh, part_of(progress, 0.0, 0.6))
