@@ -87,7 +87,7 @@ def root_stress(
     left_out = ["a strength rating: factors of load, size, surface and material"]
     if any(flank.single_teeth for flank in flanks):
         left_out.append("errors of single teeth: all teeth are taken alike")
-    if request.helices > 1:
+    if request.mesh.helices > 1:
         left_out.append("the second helix")
     return RootStress(
         title=model.title,

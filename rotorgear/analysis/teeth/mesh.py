@@ -96,7 +96,7 @@ def mesh(
                 mean_stiffness_n_per_m=float(at.curve.mean()[1]),
                 peak_to_peak_stiffness_n_per_m=float(np.ptp(at.stiffness)),
                 ste_peak_to_peak_m=float(np.ptp(at.error)),
-                contact_ratio=at.contact_ratio,
+                contact_ratio=float(np.mean([helix.contact_ratio for helix in at.cycles])),
                 ste_harmonics_m=tuple(np.abs(at.curve.harmonics(3)[:, 0]).tolist()),
                 largest_pressure_pa=float(at.curve.values[:, 3].max()),
                 position=at.curve.position,
@@ -156,7 +156,7 @@ def _common(model: Model, request: MeshRequest, clock: Clock) -> dict[str, Any]:
         "mesh": request.mesh.name,
         "pinion": request.mesh.pinion.name,
         "gear": request.mesh.gear.name,
-        "helices": request.helices,
+        "helices": request.mesh.helices,
         "stagger": request.mesh.part.stagger,
         "stiffness_model": request.model,
         "face_width": request.teeth.width if request.teeth else request.mesh.pinion.part.width or 0.0,
@@ -169,7 +169,7 @@ def _common(model: Model, request: MeshRequest, clock: Clock) -> dict[str, Any]:
 
 def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> MeshResult:
     """A mesh with another stiffness model: its curve, and the transmission error that follows from it at the load."""
-    normal = request.load.normal_force_n / request.helices if request.load else None
+    normal = request.load.normal_force_n / request.mesh.helices if request.load else None
     name = None if request.model == "given" else request.model
     curve: MeshStiffness = request.mesh.stiffness(normal, positions, name=name, sense=request.sense)
     error = None if request.load is None else request.load.base_force_n / curve.transverse

@@ -77,7 +77,7 @@ def figures_at(
     notes: list[str] = []
     for number, (load, askew) in enumerate(points):
         told = part_of(progress, number / len(points), (number + 1) / len(points))
-        base_force = abs(load) / request.mesh.pinion.base_radius / request.helices
+        base_force = abs(load) / request.mesh.pinion.base_radius / request.mesh.helices
         misaligned = replace(teeth, misalignment=askew)
         solved = solve_helices(request, misaligned, positions, base_force=base_force, progress=told)
         normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
@@ -204,7 +204,7 @@ def mesh_map(
         gear=request.mesh.gear.name,
         preset=teeth.fe.preset,
         body=problem.body,
-        helices=request.helices,
+        helices=request.mesh.helices,
         positions=positions,
         pinion_torque=load,
         misalignment=misalignment,

@@ -58,11 +58,6 @@ class SolvedHelices:
         """Secant stiffness (p,) in N/m."""
         return np.asarray(self.curve.values[:, 1])
 
-    @property
-    def contact_ratio(self) -> float:
-        """Mean number of tooth pairs that carry load in a helix."""
-        return float(np.mean([cycle.contact_ratio for cycle in self.cycles]))
-
 
 def solve_helices(
     request: MeshRequest,
@@ -139,14 +134,9 @@ class MeshRequest:
     load: MeshLoad | None
 
     @property
-    def helices(self) -> int:
-        """1 or 2."""
-        return self.mesh.helices
-
-    @property
     def base_force(self) -> float:
         """F_bt (N) of one helix."""
-        return self.load.base_force_n / self.helices if self.load else 0.0
+        return self.load.base_force_n / self.mesh.helices if self.load else 0.0
 
 
 def mesh_request(

@@ -140,30 +140,27 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
     """
     fe = teeth.fe
     line = line_of_action(teeth)
-    flanks = (teeth.first_flank, teeth.second_flank)
     space, uncoupled = in_space(teeth)
     module = teeth.first.normal_module
     bodies = (teeth.first_body, teeth.second_body)
+    keys = (gear_key(teeth, 0, space=space), gear_key(teeth, 1, space=space))
+    kinds = (fe.body_of(bodies[0].blank), fe.body_of(bodies[1].blank))
     compliances = []
-    scale = []
-    held_radii = []
-    for i, body in enumerate(bodies):
-        key = gear_key(teeth, i, space=space)
-        chosen = fe.body_of(body.blank)
-        name = ("pinion", "gear")[i]
+    for i, name in enumerate(("pinion", "gear")):
 
         def told(fraction: float, text: str, i: int = i, name: str = name) -> None:
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        compliance = gear_compliance(key, told, fresh=fresh)
-        if fe.excludes_torsion(chosen):  # the rotation of the teeth about the axis against the held circle is left out
-            compliance = replace(compliance, flexibility=compliance.flexibility - wind_up(key))
+        compliance = gear_compliance(keys[i], told, fresh=fresh)
+        if fe.excludes_torsion(
+            kinds[i]
+        ):  # the rotation of the teeth about the axis against the held circle is left out
+            compliance = replace(compliance, flexibility=compliance.flexibility - wind_up(keys[i]))
         compliances.append(compliance)
-        held_radii.append(module * key.held_radius)
-        # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement,
-        # lie in that section. In space the compliance of a body grows as 1 / (E m_n).
-        scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)
+    # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement, lie
+    # in that section. In space the compliance of a body grows as 1 / (E m_n).
+    unit = math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module
     size = fe.mesh_size(teeth.width / module, space=space)
     slices = _STATIONS if uncoupled else (fe.slices or 2 * size.face if space else 1)
     plane_strain = [(1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in bodies]
@@ -172,19 +169,17 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
         width=teeth.width,
         module=module,
         compliance=(compliances[0], compliances[1]),
-        scale=(scale[0], scale[1]),
+        scale=(unit / bodies[0].youngs_modulus, unit / bodies[1].youngs_modulus),
         local=np.array([2.0 * value / math.pi for value in plane_strain]),
         modulus=1.0 / sum(plane_strain),
         plane=not space,
         uncoupled=uncoupled,
         slices=slices,
         patch=fe.patch_width,
-        flanks=flanks,
+        flanks=(teeth.first_flank, teeth.second_flank),
         teeth=(teeth.first.teeth, teeth.second.teeth),
         misalignment=teeth.misalignment,
-        body=fe.body_text(
-            (fe.body_of(teeth.first_body.blank), fe.body_of(teeth.second_body.blank)), (held_radii[0], held_radii[1])
-        ),
+        body=fe.body_text(kinds, (module * keys[0].held_radius, module * keys[1].held_radius)),
         unknowns=sum(compliance.unknowns for compliance in compliances),
         warnings=_warnings(teeth, line),
     )

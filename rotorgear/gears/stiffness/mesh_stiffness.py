@@ -18,7 +18,6 @@ from typing import Literal
 
 import numpy as np
 
-from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.geometry.geometry import GearGeometry
@@ -147,11 +146,6 @@ class MeshStiffness:
         return CycleCurve(self.position, values[:, None], 1.0, self.event)
 
     @property
-    def normal(self) -> np.ndarray:
-        """Stiffness along the flank normal in N/m, shape (n,): transverse / cos^2 b_b."""
-        return np.asarray(self.transverse / math.cos(self.base_helix_angle) ** 2)
-
-    @property
     def mean(self) -> float:
         """Mean of the transverse stiffness in N/m."""
         return self.over_period(self.transverse)
@@ -183,19 +177,6 @@ class MeshStiffness:
     def peak_to_peak(self) -> float:
         """Largest less smallest transverse stiffness in N/m."""
         return float(np.ptp(self.transverse))
-
-    def harmonics(self, count: int) -> np.ndarray:
-        """Complex c_h in N/m, shape (count,): k(u) = mean + sum_h Re(c_h e^{2 pi i h u}), h = 1, 2 ...
-
-        Raises:
-            AnalysisError: more harmonics than half the positions can tell apart.
-        """
-        most = (len(self.transverse) - 1) // 2
-        if count > most:
-            raise AnalysisError(f"{len(self.transverse)} positions give {most} harmonics, not {count}: ask for fewer.")
-        if self.event is not None:
-            return np.asarray(self._curve(self.transverse).harmonics(count)[:, 0])
-        return np.asarray(2.0 * np.fft.fft(self.transverse)[1 : count + 1] / len(self.transverse))
 
     def of_both_helices(self, stagger: float = 0.0, second: MeshStiffness | None = None) -> MeshStiffness:
         """Two such helices in parallel, the second one ahead by `stagger` of a mesh period (0 or 0.5 as a rule).

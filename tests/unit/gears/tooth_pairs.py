@@ -11,7 +11,7 @@ import numpy as np
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import pair_geometry
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, loaded_cycle
-from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe
 
@@ -63,3 +63,8 @@ def swapped(teeth: ToothPair) -> ToothPair:
         first_flank=teeth.second_flank,
         second_flank=teeth.first_flank,
     )
+
+
+def harmonics(curve: MeshStiffness, count: int) -> np.ndarray:
+    """Complex c_h (count,) in N/m of a curve at even positions: k(u) = mean + sum_h Re(c_h e^{2 pi i h u}), h = 1, 2 ..."""
+    return np.asarray(2.0 * np.fft.fft(curve.transverse)[1 : count + 1] / len(curve.transverse))
