@@ -130,24 +130,13 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
         ends = np.cumsum([shaft.start, *[section.length for section in shaft.sections]])
         found[name] = [(float(ends[0]), "start")]
         found[name] += [(float(z), f"end of section {number}") for number, z in enumerate(ends[1:])]
-    for table in (
-        "gears",
-        "disks",
-        "point_masses",
-        "bearings",
-        "supports",
-        "couplings",
-        "nonlinear_elements",
-        "loads",
-        "unbalances",
-        "points",
-    ):
-        for name, part in getattr(model, table).items():
-            # Torques without a place stand at an end of their shaft, a point on a part where that part has its node.
-            if table in ("loads", "points") and (part.shaft is None or part.at is None):
-                continue
-            for place in layout.places(f"{table}.{name}"):
-                found[place.shaft].append((place.z, f"{table}.{name}"))
+    standing = ("gears", "disks", "point_masses", "bearings", "supports", "couplings", "nonlinear_elements")
+    for address, part in model.parts_of(*standing, "loads", "unbalances", "points"):
+        # Torques without a place stand at an end of their shaft, a point on a part where that part has its node.
+        if address.startswith(("loads.", "points.")) and (part.shaft is None or part.at is None):
+            continue
+        for place in layout.places(address):
+            found[place.shaft].append((place.z, address))
     # Teeth that are cut on a shaft tilt with it between the ends of their face.
     for mesh in layout.meshes:
         for gear in mesh.gears if mesh.part.tilt else ():

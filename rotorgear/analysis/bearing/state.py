@@ -16,7 +16,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Bearing
-from rotorgear.quantity import nearest
+from rotorgear.quantity import did_you_mean
 from rotorgear.solvers.sparse.newton import ROUNDING
 from rotorgear.system.system import flow_system
 
@@ -46,8 +46,7 @@ def address_of(model: Model, name: str | None) -> str:
         raise AnalysisError(
             f"bearings.{name}: a stiffness given by hand has no sheet; give {', '.join(kinds)} or {last}"
         )
-    guess = nearest(name or "", [address.partition(".")[2] for address in laws])
-    hint = f"did you mean '{guess}'?" if guess else f"those with a law are: {known}"
+    hint = did_you_mean(name or "", [address.partition(".")[2] for address in laws], f"those with a law are: {known}")
     got = f"the model has no bearing '{name}' with a law" if name else "name one of several bearings"
     raise AnalysisError(f"bearing: {got}; {hint}")
 

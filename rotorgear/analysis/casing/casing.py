@@ -17,7 +17,7 @@ from rotorgear.memory import largest_memory
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 from rotorgear.results.casing import CasingRow, CasingSeat, CasingSurvey
 
 _MOST_MODES = 200
@@ -78,8 +78,7 @@ def casing_names(model: Model, name: str | None) -> list[str]:
     """
     names = [name] if name is not None else [one for one, part in model.casings.items() if part.mesh]
     if not model.casings or (name is not None and name not in model.casings):
-        guess = nearest(name or "", list(model.casings))
-        hint = f"did you mean '{guess}'?" if guess else "the model has: " + (", ".join(model.casings) or "none")
+        hint = did_you_mean(name or "", model.casings, "the model has: " + (", ".join(model.casings) or "none"))
         raise AnalysisError(f"casing: the model has no casing{f' {name!r}' if name else ''}; {hint}")
     if not names or not model.casings[names[0]].mesh:
         raise AnalysisError("casing: this casing has no mesh; its matrices come from elsewhere")

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from rotorgear.errors import AnalysisError, ModelError, Problem
-from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 from rotorgear.results.comparison import RigLine
 
 
@@ -175,9 +175,8 @@ def _columns(header: list[str], where: str, file: Path) -> list[tuple[str, str] 
         else:
             columns.append(None)
             if text:
-                close = nearest(text, [*_UNITS, *_FIELDS])
                 expected = "one of the columns frequency, label, uncertainty, damping"
-                problems.append(Problem(f"{where}:{text}", "", expected, f"did you mean '{close}'?" if close else ""))
+                problems.append(Problem(f"{where}:{text}", "", expected, did_you_mean(text, [*_UNITS, *_FIELDS])))
     names = [column[0] for column in columns if column]
     counts = {name: names.count(name) for name in _UNITS}
     problems += [Problem(where, f"{count} columns for {name}", "one") for name, count in counts.items() if count > 1]

@@ -27,15 +27,14 @@ def history_of(result: TransientResult, name: str) -> tuple[np.ndarray, str]:
     Raises:
         AnalysisError: no such history; the text lists the nearest names.
     """
-    from rotorgear.quantity import nearest
+    from rotorgear.quantity import did_you_mean
 
     units = {f"{what} {c}": "m" for c in result.contact for what in ("force", "transmission_error", "approach")}
     units |= {name: "N" for name in units if name.startswith("force")}
     units = dict(zip(result.channel, result.unit, strict=True)) | units
     if name not in units and name.removeprefix("deflection ") not in result.contact:
-        close = nearest(name, list(units))
-        hint = f"; did you mean '{close}'?" if close else "; known: " + ", ".join(list(units)[:6]) + " ..."
-        raise AnalysisError(f"there is no history '{name}'{hint}")
+        hint = did_you_mean(name, units, f"known: {', '.join(list(units)[:6])} ...")
+        raise AnalysisError(f"there is no history '{name}'; {hint}")
     return result.history(name), units.get(name, "m")
 
 
