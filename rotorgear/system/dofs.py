@@ -174,7 +174,7 @@ def _with_feet(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:
         foot = gear.wheel.foot(
             angle=contact.psi if pinion else contact.psi + np.pi,
             radius=gear.base_radius / np.cos(contact.pressure_angle),
-            z=contact.contact_z - (contact.pinion_z if pinion else contact.gear_z),
+            z=contact.contact_z - (contact.pinion_place if pinion else contact.gear_place).z,
         )
         node = 6 * nodes.at(*layout.place(f"gears.{name}")) + np.arange(6)
         rows = 6 * len(nodes) + first + np.arange(6)

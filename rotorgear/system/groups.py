@@ -293,8 +293,8 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
         torque_sense=force.torque_sense,
         pinion_base_radius=c.pinion_base_radius,
         gear_base_radius=c.gear_base_radius,
-        pinion_offset=c.contact_z - c.pinion_z,
-        gear_offset=c.contact_z - c.gear_z,
+        pinion_offset=c.contact_z - c.pinion_place.z,
+        gear_offset=c.contact_z - c.gear_place.z,
         contact_position=past_pitch_point,
     )
 
@@ -315,8 +315,8 @@ def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
     """Numbers (1, d) of the dofs of one contact: of the teeth of both gears, and of the ends of faces cut on their shaft."""
     c = force.contact
     dofs = [
-        nodes.of_teeth((c.mesh, c.helix), c.pinion, c.pinion_shaft, c.pinion_z),
-        nodes.of_teeth((c.mesh, c.helix), c.gear, c.gear_shaft, c.gear_z),
+        nodes.of_teeth((c.mesh, c.helix), c.pinion, *c.pinion_place),
+        nodes.of_teeth((c.mesh, c.helix), c.gear, *c.gear_place),
     ]
     mesh = layout.mesh(c.mesh)
     ends = mesh.face(c.helix)

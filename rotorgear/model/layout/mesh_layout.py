@@ -28,6 +28,7 @@ from rotorgear.gears.geometry.pair import (
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import millimetres
 
 if TYPE_CHECKING:
@@ -50,8 +51,7 @@ class Contact:
     Attributes:
         mesh: name of the mesh.
         helix: 0 for the only one or that at the smaller z, 1 for the other of a herringbone.
-        pinion, gear: names of the gears; pinion_shaft, gear_shaft: of their shafts.
-        pinion_z, gear_z: z of the two gear nodes.
+        pinion, gear: names of the gears; pinion_place, gear_place: of the two gear nodes.
         contact_z: z of the middle of the common face.
         hand: +1 right, -1 left hand of the pinion's helix, 0 for a spur gear.
         psi: direction from pinion to gear from +x.
@@ -63,10 +63,8 @@ class Contact:
     helix: int
     pinion: str
     gear: str
-    pinion_shaft: str
-    gear_shaft: str
-    pinion_z: float
-    gear_z: float
+    pinion_place: Place
+    gear_place: Place
     contact_z: float
     hand: int
     psi: float
@@ -196,18 +194,14 @@ class MeshLayout:
         return tuple(self._contact(helix) for helix in range(self.helices))
 
     def _contact(self, helix: int) -> Contact:
-        pinion = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
-        gear = self.gear.places[helix if len(self.gear.places) == 2 else 0]
         low, high = self.face(helix) or (self.pinion.planes[helix], self.gear.planes[helix])
         return Contact(
             mesh=self.name,
             helix=helix,
             pinion=self.pinion.name,
             gear=self.gear.name,
-            pinion_shaft=pinion.shaft,
-            gear_shaft=gear.shaft,
-            pinion_z=pinion.z,
-            gear_z=gear.z,
+            pinion_place=self.pinion.places[helix if len(self.pinion.places) == 2 else 0],
+            gear_place=self.gear.places[helix if len(self.gear.places) == 2 else 0],
             contact_z=0.5 * (low + high),
             hand=self.pinion.hand if helix == 0 else -self.pinion.hand,
             psi=self.psi,

@@ -79,10 +79,10 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
     largest = max((abs(force) for force in squeeze), default=0.0)
     states = []
     for contact, force in zip(lines, squeeze, strict=True):
-        pinion_sense = train.sense(contact.pinion_shaft)
+        pinion_sense = train.sense(contact.pinion_place.shaft)
         unloaded = abs(force) <= UNLOADED * largest
         if unloaded:  # the shaft nearer to the input is taken to drive, in its own sense
-            drives = train.depth[contact.pinion_shaft] <= train.depth[contact.gear_shaft]
+            drives = train.depth[contact.pinion_place.shaft] <= train.depth[contact.gear_place.shaft]
             sense = direction * (pinion_sense if drives else -pinion_sense)
         else:
             sense = 1 if force > 0 else -1
@@ -241,8 +241,7 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
     """
     import numpy as np
 
-    ends = [(Place(line.pinion_shaft, line.pinion_z), Place(line.gear_shaft, line.gear_z)) for line in lines]
-    places = [place for pair in ends for place in pair]
+    places = [place for line in lines for place in (line.pinion_place, line.gear_place)]
     places += [place for first, second, _ in layout.turning_couplings for place in (first, second)]
     places += [Place(item.shaft, item.z) for item in applied]
     node, springs, count = _network(layout.model, places)
@@ -254,9 +253,9 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
 
     # Each contact is squeezed along its flank normal by r_b cos(beta_b) times the twist of its two nodes: delta = S q.
     squeeze = np.zeros((len(lines), count))
-    for row, line, (first, second) in zip(squeeze, lines, ends, strict=True):
-        pinion = elastic.get((line.pinion, first), node[first])
-        gear = elastic.get((line.gear, second), node[second])
+    for row, line in zip(squeeze, lines, strict=True):
+        pinion = elastic.get((line.pinion, line.pinion_place), node[line.pinion_place])
+        gear = elastic.get((line.gear, line.gear_place), node[line.gear_place])
         row[pinion] += line.pinion_base_radius * np.cos(line.base_helix_angle)
         row[gear] += line.gear_base_radius * np.cos(line.base_helix_angle)
     stiffness = np.array([line.stiffness for line in lines])
