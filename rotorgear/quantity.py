@@ -72,18 +72,8 @@ _TURN = 2.0 * math.pi
 _SPELLING = str.maketrans({"*": " ", "^": "", "\u00b5": "u", "\u03bc": "u"})
 # Factors to SI where a frequency and a rotational speed would be mixed up by dimensional analysis alone.
 _RPM = _TURN / 60
-_SPEED_UNITS = {
-    "rpm": _RPM,
-    "1/min": _RPM,
-    "rev/min": _RPM,
-    "rev/s": _TURN,
-    "rad/s": 1.0,
-    "deg/s": _TURN / 360,
-    "krpm": 1000 * _RPM,
-    "RPM": _RPM,
-    "min^-1": _RPM,
-    "r/min": _RPM,
-}
+_SPEED_UNITS = {"rpm": _RPM, "1/min": _RPM, "rev/min": _RPM, "rev/s": _TURN, "rad/s": 1.0, "deg/s": _TURN / 360}
+_SPEED_UNITS |= {"krpm": 1000 * _RPM, "RPM": _RPM, "min^-1": _RPM, "r/min": _RPM}
 _FREQUENCY_UNITS = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6, "mHz": 1e-3, "cpm": 1 / 60, "rpm": 1 / 60, "rad/s": 1 / _TURN}
 # Temperatures have a zero of their own: factor to K, and K at 0 of the unit.
 _TEMPERATURE_UNITS = {"K": (1.0, 0.0), "degF": (5.0 / 9.0, 459.67 * 5.0 / 9.0)}
