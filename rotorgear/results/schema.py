@@ -178,7 +178,7 @@ def _arranged(record: Record, values: Any, own: tuple[str, ...], along: tuple[st
         helices: dict[str, list[Any]] = {}
         for name, one in zip(names, slices, strict=True):
             helices.setdefault(name, []).append(_arranged(record, one, rest, along[2:]))
-        return helices
+        return {name: np.array(entries) for name, entries in helices.items()}
     # Of the six components of a motion, x, y and z are written.
     return {name: _arranged(record, one, rest, along[1:]) for name, one in zip(names, slices, strict=False)}
 
