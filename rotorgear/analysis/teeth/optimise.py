@@ -94,8 +94,7 @@ class _Search:
 
     def values(self, shares: np.ndarray) -> np.ndarray:
         """Variables (v,) in m."""
-        low = np.array([variable.low for variable in self.variables])
-        high = np.array([variable.high for variable in self.variables])
+        low, high = np.array([(variable.low, variable.high) for variable in self.variables]).T
         return np.asarray(low + (high - low) * shares)
 
     def run(self) -> str:
@@ -429,10 +428,8 @@ def _bounds(teeth: ToothPair, field: str, text: str, given: Mapping[str, Sequenc
         return _ENDS[0] * teeth.width, _ENDS[1] * teeth.width
     if field in LENGTHS:
         double = min(max(teeth.pair.transverse_contact_ratio - 1.0, 0.1), 1.0) * teeth.base_pitch
-        shortest = min(
-            outline.tip_roll_length - outline.form_roll_length
-            for outline in (tooth_outline(teeth.first), tooth_outline(teeth.second))
-        )
+        outlines = (tooth_outline(teeth.first), tooth_outline(teeth.second))
+        shortest = min(outline.tip_roll_length - outline.form_roll_length for outline in outlines)
         return _LENGTHS[0] * double, min(_LENGTHS[1] * double, 0.9 * shortest)
     return (-_SHAPE * module if field in _SIGNED else 0.0), _SHAPE * module
 

@@ -36,9 +36,9 @@ class FlankGrid:
         i, row_share = _between(np.array(self.roll), roll)
         j, column_share = _between(np.array(self.z), z)
         d = np.array(self.depth)
-        below = (1.0 - column_share) * d[i, j] + column_share * d[i, np.minimum(j + 1, d.shape[1] - 1)]
-        next_row = np.minimum(i + 1, d.shape[0] - 1)
-        above = (1.0 - column_share) * d[next_row, j] + column_share * d[next_row, np.minimum(j + 1, d.shape[1] - 1)]
+        next_column = np.minimum(j + 1, d.shape[1] - 1)
+        rows = (i, np.minimum(i + 1, d.shape[0] - 1))
+        below, above = ((1.0 - column_share) * d[k, j] + column_share * d[k, next_column] for k in rows)
         return np.asarray((1.0 - row_share) * below + row_share * above)
 
     def mirrored(self) -> FlankGrid:

@@ -265,7 +265,6 @@ def tooth_fe_stiffness(teeth: ToothPair, load: float, positions: int) -> MeshSti
         position=found.cycle.position,
         transverse=found.cycle.secant,
         definition="secant",
-        helices=1,
         load=load,
         body=found.problem.body,
         base_helix_angle=found.problem.line.base_helix_angle,

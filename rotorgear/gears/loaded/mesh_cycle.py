@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.gears.loaded.contact_points import MOST_BEYOND, OF_SLICES, Slices, contact_slices
-from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents, tangent_compliance
+from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents
 from rotorgear.gears.loaded.settled_contacts import PASSES, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -101,14 +101,6 @@ class MeshCycle:
     def secant(self) -> np.ndarray:
         """k(u) in N/m, (p,)."""
         return np.asarray(self.load / (self.deflection - self.no_load))
-
-    @property
-    def least_eigenvalue(self) -> float:
-        """Smallest eigenvalue of all tangent compliances (m/N): positive where the energy of the contact is convex."""
-        return min(
-            float(np.linalg.eigvalsh(tangent_compliance(contact, self.force[self.slices.at(i)]))[0])
-            for i, contact in enumerate(self.contacts)
-        )
 
     def share_by_pair(self) -> dict[int, np.ndarray]:
         """Share (p,) of each tooth pair in the load."""

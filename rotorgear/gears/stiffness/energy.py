@@ -175,7 +175,6 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
         position=start,
         transverse=total,
         definition="secant",
-        helices=1,
         load=load,
         body="; ".join(held),
         base_helix_angle=teeth.pair.base_helix_angle,

@@ -125,7 +125,6 @@ def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshS
         position=np.arange(positions) / positions,
         transverse=k,
         definition="secant",
-        helices=1,
         load=load,
         body=body,
         base_helix_angle=teeth.pair.base_helix_angle,

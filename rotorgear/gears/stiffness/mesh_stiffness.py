@@ -116,10 +116,10 @@ class MeshStiffness:
     position: np.ndarray
     transverse: np.ndarray
     definition: Definition
-    helices: int
     load: float | None
     body: str
     base_helix_angle: float
+    helices: int = 1
     warnings: tuple[str, ...] = ()
     tangent: np.ndarray | None = None
     event: np.ndarray | None = None

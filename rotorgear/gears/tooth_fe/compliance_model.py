@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -191,8 +191,9 @@ def compliance_key(
     wheel: BlankShape | None = None
     if body == "wheel":
         shape = blank or solid_blank(bore_radius)
-        in_modules = {size.name: _rounded(getattr(shape, size.name) / m) for size in fields(BlankShape)}
-        wheel = BlankShape(**in_modules).with_core(root)  # a core that is held where shaft and gear are one
+        wheel = BlankShape(*(_rounded(size / m) for size in astuple(shape))).with_core(
+            root
+        )  # a core that is held where shaft and gear are one
         inner = _seat_radius(wheel, root)
     elif body == "ring":
         inner = bore_radius / m if bore_radius > 0.0 else _LEAST_BORE * root

@@ -8,7 +8,7 @@ wheel, and any other one a rim.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Literal
 
 from rotorgear.errors import AnalysisError
@@ -147,11 +147,7 @@ _COARSER: dict[Preset, tuple[MeshSize, tuple[MeshSize, float]]] = {
 def coarser_size(fe: ToothFe, width: float, *, space: bool) -> MeshSize:
     """A coarser mesh of the same kind, for a face of `width` normal modules."""
     if fe.size is not None:
-        given = fe.size
-        involute, fillet, tooth, land, rim = (
-            max(2, round(0.7 * n)) for n in (given.involute, given.fillet, given.tooth, given.land, given.rim)
-        )
-        return MeshSize(involute, fillet, tooth, land, rim, max(2, round(0.7 * given.face)) if given.face else 0)
+        return MeshSize(*(max(2, round(0.7 * n)) if n else 0 for n in astuple(fe.size)))
     coarser = sized(fe, _COARSER[fe.preset][1 if space else 0], width).size
     assert coarser is not None
     return coarser

@@ -18,6 +18,7 @@ from rotorgear.gears.loaded.tooth_contact import contact_problem, line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur, swapped
+from validation.benchmarks.overload import least_eigenvalue
 
 # CalculiX, plane strain, spur 34/80 at the pitch point: approach 10 um, arc of three pitches, rim of three modules.
 PITCH_POINT = 18.708e9
@@ -59,7 +60,7 @@ def test_the_contact_conditions_hold_and_the_forces_carry_the_load(teeth: ToothP
     assert found.residual <= 1e-12  # m
     assert found.force.min() >= 0.0
     assert np.bincount(found.slices.position, found.force) == pytest.approx(np.full(16, normal), rel=1e-9)
-    assert found.least_eigenvalue > 0.0
+    assert least_eigenvalue(found) > 0.0
     assert sum(found.share_by_pair().values()) == pytest.approx(np.ones(16), rel=1e-12)
 
 
@@ -183,7 +184,7 @@ def test_light_and_heavy_loads_come_to_rest(teeth: ToothPair, factor: float) -> 
     found = cycle(teeth, factor * LOAD, 8)
     assert np.all(np.isfinite(found.secant))
     assert found.residual <= 1e-9 * float(np.abs(found.deflection).max()) + 1e-18
-    assert found.least_eigenvalue > 0.0
+    assert least_eigenvalue(found) > 0.0
 
 
 def test_a_load_that_makes_no_line_contact_is_refused() -> None:

@@ -18,7 +18,7 @@ TANGENT = 5e8 * (1.0 + 0.2 * np.cos(2 * np.pi * U))
 
 
 def curve(tangent: np.ndarray | None = None) -> MeshStiffness:
-    return MeshStiffness("tooth_fe", U, SECANT, "secant", 1, 1e4, "", 0.3, (), tangent)
+    return MeshStiffness("tooth_fe", U, SECANT, "secant", 1e4, "", 0.3, tangent=tangent)
 
 
 def test_under_a_constant_load_the_static_stiffness_gives_the_mean_of_the_deflections() -> None:
