@@ -37,7 +37,7 @@ def gear_contour(teeth: ToothPair, gear: int) -> np.ndarray:
 def contact_points(teeth: ToothPair) -> np.ndarray:
     """Where tooth pairs touch in the middle of the face while one touches at the pitch point, shape (k, 2) in m."""
     pair = teeth.pair
-    step = teeth.base_pitch
+    step = teeth.first.transverse_base_pitch
     first = math.ceil(pair.start_of_contact / step - 1e-12)
     last = math.floor(pair.end_of_contact / step + 1e-12)
     return np.array([on_line_of_action(teeth, k * step) for k in range(first, last + 1)])

@@ -24,7 +24,7 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import sweep
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
-from rotorgear.gears.maps.map_positions import even_positions
+from rotorgear.gears.maps.map_positions import MapPositions
 from rotorgear.gears.maps.solved_map import solved_map
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.progress import silent
@@ -134,7 +134,7 @@ def dense(mesh: MeshLayout, helix: int, force: float, sense: int = 1, near: bool
     groups = [
         tuple(float(f) for f in LOADS if low < f <= high) for low, high in zip((0.0, *bounds), bounds, strict=False)
     ]
-    return solved_map(problem, force, even_positions(POSITIONS), tuple(groups), silent)
+    return solved_map(problem, force, MapPositions(np.arange(POSITIONS) / POSITIONS), tuple(groups), silent)
 
 
 def refined(model: rg.Model) -> Branches:

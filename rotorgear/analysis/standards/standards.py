@@ -23,7 +23,6 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.standards import rules
-from rotorgear.analysis.standards.rules import trial_unbalance
 from rotorgear.analysis.static.lowest_speed import needs_rotation
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system
@@ -431,7 +430,7 @@ class UnbalanceResponse:
         places = np.array([system.nodes.z[node] for node in self.nodes])
         nearest = np.argmin(np.abs(places[:, None] - self.z), axis=1) if kept.size else np.zeros(0, int)
         mass = [weights[6 * self.nodes[nearest == k]].sum() for k in range(len(kept))]
-        self.unbalance = np.array([trial_unbalance(one, rpm) for one in mass])
+        self.unbalance = np.array([rules.trial_unbalance(one, rpm) for one in mass])
         sense = direction * system.train.sense(shaft)
         load = np.zeros(system.dofs.transform.shape[0], complex)
         load[6 * at[kept]] = self.unbalance * side[kept]

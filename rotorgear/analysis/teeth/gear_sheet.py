@@ -193,9 +193,8 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         force = sum(force.normal_force for force in forces) / len(forces)
         sense = forces[0].torque_sense
     given = mesh.part.stiffness
-    curve = None
-    if force or given not in NEEDS_LOAD:
-        curve = mesh.stiffness(force or None, sense=sense).about_load
+    known = bool(force) or given not in NEEDS_LOAD
+    curve = mesh.stiffness(force or None, sense=sense).about_load if known else None
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, mesh.name, force * base or None)
     factor = dynamic if isinstance(dynamic, DynamicFactor) else None
@@ -225,7 +224,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         overlap_ratio=pair.overlap_ratio,
         total_contact_ratio=pair.total_contact_ratio,
         involute_contact_ratio=line.contact_ratio,
-        base_pitch_m=teeth.base_pitch,
+        base_pitch_m=teeth.first.transverse_base_pitch,
         approach_length_m=-pair.start_of_contact,
         recess_length_m=pair.end_of_contact,
         # d_w = d_b / cos a_wt

@@ -205,9 +205,7 @@ def _result(
     loads: tuple[LoadPoint, ...],
     clock: Clock,
 ) -> MeshResult:
-    notes = [*found.problem.warnings]
-    for cycle in found.cycles:
-        notes += cycle.warnings
+    notes = [*found.problem.warnings, *(note for cycle in found.cycles for note in cycle.warnings)]
     if found.problem.uncoupled:
         notes.append(
             "preview: slices along the face do not feel each other, which is tens of percent off in the ripple of a helical pair"

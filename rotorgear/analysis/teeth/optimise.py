@@ -427,7 +427,7 @@ def _bounds(teeth: ToothPair, field: str, text: str, given: Mapping[str, Sequenc
     if field == "end_relief_length":
         return _ENDS[0] * teeth.width, _ENDS[1] * teeth.width
     if field in LENGTHS:
-        double = min(max(teeth.pair.transverse_contact_ratio - 1.0, 0.1), 1.0) * teeth.base_pitch
+        double = min(max(teeth.pair.transverse_contact_ratio - 1.0, 0.1), 1.0) * teeth.first.transverse_base_pitch
         outlines = (tooth_outline(teeth.first), tooth_outline(teeth.second))
         shortest = min(outline.tip_roll_length - outline.form_roll_length for outline in outlines)
         return _LENGTHS[0] * double, min(_LENGTHS[1] * double, 0.9 * shortest)

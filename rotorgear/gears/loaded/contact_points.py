@@ -74,8 +74,7 @@ class Slices:
 
     def take(self, here: np.ndarray | slice) -> Slices:
         """Some of the slices."""
-        arrays = {name: getattr(self, name)[here] for name in OF_SLICES}
-        return replace(self, roll=self.roll[:, here], **arrays)
+        return replace(self, roll=self.roll[:, here], **{name: getattr(self, name)[here] for name in OF_SLICES})
 
 
 # Arrays with an entry for each slice in their first axis.

@@ -203,13 +203,12 @@ class HelixCycles:
 
     def sample(self, positions: int, *, judged: bool = False) -> SampledCurves:
         """Choose and solve so many positions in a mesh period; `judged`: and some more, which judge those that are kept."""
-        halves = 2 if self.twice else 1
         known = np.empty(0)
         first = self.helices[0]
         if not first.first.helix_angle:
             known = np.concatenate([known_events(first, shift) for shift in self.shift])
             known = (known + np.arange(self.periods)[:, None]).ravel()
-        count = positions * self.periods // halves
+        count = positions * self.periods // (2 if self.twice else 1)
         return sampled(self.add, self.events, count, self.repeats, known, _SIDES, judged=judged)
 
 

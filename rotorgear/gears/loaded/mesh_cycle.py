@@ -182,17 +182,15 @@ def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
     def both(one: Any, other: Any, name: str, chosen: np.ndarray, axis: int = 0) -> Any:
         return np.take(np.concatenate([getattr(one, name), getattr(other, name)], axis=axis), chosen, axis=axis)
 
-    a = first.slices
-    b = second.slices
     arrays = {name: both(first, second, name, order) for name in _BY_POSITION}
     arrays |= {name: both(first, second, name, here) for name in _BY_SLICE}
-    slices = {name: both(a, b, name, here) for name in OF_SLICES} | {"position": number[here]}
+    slices = {name: both(first.slices, second.slices, name, here) for name in OF_SLICES} | {"position": number[here]}
     contacts = first.contacts + second.contacts
     states = first.states + second.states
     return replace(
         first,
         **arrays,
-        slices=replace(a, **slices, roll=both(a, b, "roll", here, axis=1)),
+        slices=replace(first.slices, **slices, roll=both(first.slices, second.slices, "roll", here, axis=1)),
         residual=max(first.residual, second.residual),
         contacts=tuple(contacts[i] for i in order),
         states=tuple(states[i] for i in order),

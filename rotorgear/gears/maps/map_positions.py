@@ -124,8 +124,7 @@ def errors_by_period(problem: ContactProblem) -> list[tuple[float, ...]]:
     told = [depth]
     for flank, z in zip(problem.flanks, problem.teeth, strict=True):
         depth += flank.pitch_depth(tooth, z)
-        own = [number % z for number, _ in flank.tooth_topography]
-        told.append(np.where(np.isin(tooth % z, own), tooth % z, -1))
+        told.append(np.where(np.isin(tooth % z, [number % z for number, _ in flank.tooth_topography]), tooth % z, -1))
     found = [tuple(row.tolist()) for row in np.concatenate(told, axis=1)]
     differing = len(set(found))
     if differing > _MOST_DIFFERING:
@@ -186,11 +185,6 @@ class MapPositions:
         rise = np.column_stack([np.zeros(len(even)), rise])
         softness = np.maximum(smooth(compliance), 0.5 * straight(compliance))
         return even, smooth(one) + rise - rise[:, [working]], softness, smooth(moment)
-
-
-def even_positions(count: int) -> MapPositions:
-    """So many even positions of a base pitch, which the map keeps."""
-    return MapPositions(np.arange(count) / count)
 
 
 def map_positions(teeth: ToothPair, load: float, count: int) -> MapPositions:

@@ -33,14 +33,7 @@ from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_rea
 from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.maps.contact_map import ContactMap
-from rotorgear.gears.maps.map_positions import (
-    MapPositions,
-    errors_by_period,
-    even_positions,
-    families,
-    load_groups,
-    map_positions,
-)
+from rotorgear.gears.maps.map_positions import MapPositions, errors_by_period, families, load_groups, map_positions
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, listener, part_of
 
@@ -252,7 +245,8 @@ def _kept(teeth: ToothPair, load: float, positions: int | None, near: bool) -> C
         progress = listener()
         problem = contact_problem(teeth, part_of(progress, 0.0, 0.5))
         if positions or problem.one_slice:
-            chosen = even_positions(positions or POSITIONS)
+            count = positions or POSITIONS
+            chosen = MapPositions(np.arange(count) / count)
         else:
             count = _IN_SPACE_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
             if any(flank.single_teeth for flank in problem.flanks):

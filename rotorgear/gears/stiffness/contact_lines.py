@@ -48,9 +48,9 @@ def contact_lines(teeth: ToothPair, positions: np.ndarray) -> tuple[np.ndarray, 
     slope = math.tan(pair.base_helix_angle)
     reach = half * slope
     # All pairs that touch somewhere on the face at some position 0 <= u < 1, and one more at either end.
-    first = math.floor((pair.start_of_contact - reach) / teeth.base_pitch) - 1
-    last = math.ceil((pair.end_of_contact + reach) / teeth.base_pitch) + 1
-    xi = (np.asarray(positions, float)[:, None] + np.arange(first, last + 1)) * teeth.base_pitch
+    first = math.floor((pair.start_of_contact - reach) / teeth.first.transverse_base_pitch) - 1
+    last = math.ceil((pair.end_of_contact + reach) / teeth.first.transverse_base_pitch) + 1
+    xi = (np.asarray(positions, float)[:, None] + np.arange(first, last + 1)) * teeth.first.transverse_base_pitch
     # Lines of spur teeth touch over the whole face or not at all: xi / slope has no value.
     if slope == 0.0:
         inside = (xi >= pair.start_of_contact) & (xi <= pair.end_of_contact)

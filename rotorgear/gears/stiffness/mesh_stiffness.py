@@ -84,11 +84,6 @@ class ToothPair:
     tilts: bool = False
 
     @property
-    def base_pitch(self) -> float:
-        """p_bt (m)."""
-        return self.first.transverse_base_pitch
-
-    @property
     def on_wheel(self) -> bool:
         """Whether a gear of the pair stands on a blank of rim, web and hub."""
         return any(self.fe.body_of(body.blank) == "wheel" for body in (self.first_body, self.second_body))
@@ -162,11 +157,6 @@ class MeshStiffness:
             return self.mean_normal
         # At a constant load the deflections F / k are averaged, not the stiffnesses.
         return 1.0 / (self.over_period(1.0 / self.transverse) * math.cos(self.base_helix_angle) ** 2)
-
-    @property
-    def dynamic_normal(self) -> float:
-        """Mean stiffness along the flank normal in N/m against small motions about the mean load."""
-        return self.about_load.mean_normal
 
     @property
     def about_load(self) -> MeshStiffness:

@@ -20,15 +20,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import splu
 
 from rotorgear.gears.geometry.blank import BlankShape
-from rotorgear.gears.tooth_fe.elasticity import (
-    assembled,
-    component_dofs,
-    condensed,
-    lame,
-    node_dofs,
-    quadratic,
-    with_middles,
-)
+from rotorgear.gears.tooth_fe import elasticity
 
 # Largest side of an element over the thickness of its part, and in normal modules along the radius and along the axis. Along the
 # axis it is no coarser than the layers of the teeth above: what they do between two nodes of the blank would meet no resistance.
@@ -105,7 +97,9 @@ class BlankSection:
 
     def stiffness(self, harmonic: int) -> np.ndarray:
         """K (3 k, 3 k) of the amplitudes of the nodes on the circle: the bore held, all others condensed."""
-        return condensed(self.free_stiffness(harmonic), node_dofs(self._inside, 3), node_dofs(self._circle, 3))
+        return elasticity.condensed(
+            self.free_stiffness(harmonic), elasticity.node_dofs(self._inside, 3), elasticity.node_dofs(self._circle, 3)
+        )
 
     def stiffnesses(self, harmonics: int) -> Callable[[int], np.ndarray]:
         """K (3 k, 3 k) by harmonic, 0 to `harmonics`; those beyond the twelfth by a spline through some of them."""
@@ -187,7 +181,7 @@ def _section_mesh(parts: Sequence[Rectangle], axial_side: float, coarseness: flo
     step = np.array([[i, j] for i in range(3) for j in range(3)])
     lattice = 2 * first[:, None, :] + step
     used, cells = np.unique(lattice.reshape(-1, 2), axis=0, return_inverse=True)
-    points = np.stack([with_middles(r)[used[:, 0]], with_middles(z)[used[:, 1]]], -1)
+    points = np.stack([elasticity.with_middles(r)[used[:, 0]], elasticity.with_middles(z)[used[:, 1]]], -1)
     return points, cells.reshape(-1, 9).T
 
 
@@ -215,13 +209,13 @@ def _matrices(
     points: np.ndarray, cells: np.ndarray, poisson_ratio: float
 ) -> tuple[tuple[sp.csc_array, sp.csc_array, sp.csc_array], sp.csc_array]:
     """K_0, K_1, K_2 over one radian, the three amplitudes of a node after each other, and the matrix of r^2 over a radian."""
-    lam, mu = lame(poisson_ratio)
+    lam, mu = elasticity.lame(poisson_ratio)
     D = np.diag([2.0 * mu] * 3 + [mu] * 3)
     D[:3, :3] += lam
 
     # Quadratic shape functions in r and z and their products at 4 x 4 Gauss points: 1/r is no polynomial.
     t, weight = np.polynomial.legendre.leggauss(4)
-    line = quadratic(t).T
+    line = elasticity.quadratic(t).T
     slope = np.stack([t - 0.5, -2.0 * t, t + 0.5])
     N = np.einsum("ap,bq->abpq", line, line).reshape(9, -1)
     by_r = np.einsum("ap,bq->abpq", slope, line).reshape(9, -1)
@@ -251,9 +245,11 @@ def _matrices(
         (np.einsum("ij,eqjac->eqiac", D, B) * area[:, :, None, None, None]).reshape(e, 6 * q, 27) for B in (B_0, B_1)
     )
     strain_0, strain_1 = (B.reshape(e, 6 * q, 27).transpose(0, 2, 1) for B in (B_0, B_1))
-    dofs = component_dofs(cells, 3)
+    dofs = elasticity.component_dofs(cells, 3)
     mixed = strain_0 @ stress_1
     blocks = (strain_0 @ stress_0, mixed + mixed.transpose(0, 2, 1), strain_1 @ stress_1)
-    K_0, K_1, K_2 = (assembled(block, dofs, 3 * len(points)) for block in blocks)
-    inertia = assembled(np.einsum("aq,bq,eq->eab", N, N, area * r**2), component_dofs(cells, 1), len(points))
+    K_0, K_1, K_2 = (elasticity.assembled(block, dofs, 3 * len(points)) for block in blocks)
+    inertia = elasticity.assembled(
+        np.einsum("aq,bq,eq->eab", N, N, area * r**2), elasticity.component_dofs(cells, 1), len(points)
+    )
     return (K_0, K_1, K_2), inertia

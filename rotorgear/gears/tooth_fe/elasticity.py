@@ -1,4 +1,4 @@
-"""Element matrices of isotropic linear elasticity from the gradients of scikit-fem's quadratic shape functions.
+"""Element matrices of isotropic linear elasticity, their assembly and condensation, and quadratic shape functions on a line.
 
 With H_ab^ij = integral of (d_i N_a) (d_j N_b):  K_(ai)(bj) = lambda H_ab^ij + mu H_ab^ji + mu delta_ij sum_k H_ab^kk.
 Young's modulus is 1; two dimensions mean plane strain of unit thickness. Reference: any text on finite elements.

@@ -16,16 +16,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.tooth_fe import elasticity
 from rotorgear.gears.tooth_fe.blank_section import BlankSection
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, pitch_of, sector_of
-from rotorgear.gears.tooth_fe.elasticity import (
-    assembled,
-    component_dofs,
-    element_matrices,
-    factorised,
-    lame,
-    node_dofs,
-)
 from rotorgear.gears.tooth_fe.gear_compliance import cut_motions
 from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
 from rotorgear.gears.tooth_fe.sector import clockwise, layer_mesh
@@ -85,7 +78,7 @@ class Pitch:
 
     def stress(self, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Equivalent stress (von Mises) and largest principal one (n,), means of the elements that meet at a node."""
-        lam, mu = lame(self.poisson_ratio)
+        lam, mu = elasticity.lame(self.poisson_ratio)
         d = self.dimension
         n = len(self.points)
         gradients = np.stack([np.asarray(shape[0].grad) for shape in self.basis.basis])  # (k, d, e, q)
@@ -141,11 +134,11 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
 
     # Every layer has the element matrices of the first one, turned: K = R K_1 R^T node by node.
     e, k = first.shape
-    blocks = element_matrices(basis, poisson_ratio).reshape(e, k, d, k, d)
+    blocks = elasticity.element_matrices(basis, poisson_ratio).reshape(e, k, d, k, d)
     K = sp.csc_array((d * len(points), d * len(points)))
     for of_layer, R in zip(cells, layer_turn, strict=True):
         turned = np.einsum("ij,eajbl,ml->eaibm", R, blocks, R, optimize=True).reshape(e, d * k, d * k)
-        K = K + assembled(turned, component_dofs(of_layer.T, d), d * len(points))
+        K = K + elasticity.assembled(turned, elasticity.component_dofs(of_layer.T, d), d * len(points))
 
     def planes(nodes: np.ndarray) -> np.ndarray:
         return np.asarray((nodes[None] + p * np.arange(len(z))[:, None]).ravel())
@@ -199,10 +192,10 @@ class ToothInside:
         # Cuts and inner circle, whose motions the chain of pitches gives, and all other degrees of freedom.
         pitch = self.pitch
         d = pitch.dimension
-        self._moved = node_dofs(np.concatenate([pitch.left, pitch.right, pitch.inner]), d)
+        self._moved = elasticity.node_dofs(np.concatenate([pitch.left, pitch.right, pitch.inner]), d)
         self._rest = np.setdiff1d(np.arange(d * len(pitch.points)), self._moved)
         rows = pitch.stiffness[self._rest]
-        self._factor = factorised(rows[:, self._rest])
+        self._factor = elasticity.factorised(rows[:, self._rest])
         self._couple = rows[:, self._moved]
         progress(1.0, "inside of the teeth")
 
@@ -233,7 +226,7 @@ class ToothInside:
             told(i / len(teeth), f"tooth {number}")
             force = np.zeros(d * n)
             if number in loads:
-                force[node_dofs(pitch.flank, d)] = (loads[number][:, None] * pitch.normal).ravel()
+                force[elasticity.node_dofs(pitch.flank, d)] = (loads[number][:, None] * pitch.normal).ravel()
             displacement[i, self._moved] = at_ends[i]
             displacement[i, self._rest] = self._factor.solve(force[self._rest] - self._couple @ at_ends[i])
         return teeth, displacement.reshape(len(teeth), n, d)

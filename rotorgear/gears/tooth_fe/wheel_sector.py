@@ -20,15 +20,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.polynomial import legendre
 
-from rotorgear.gears.tooth_fe.elasticity import (
-    assembled,
-    component_dofs,
-    condensed,
-    element_matrices,
-    lame,
-    node_dofs,
-    quadratic,
-)
+from rotorgear.gears.tooth_fe import elasticity
 from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
 from rotorgear.gears.tooth_fe.sector import Frame, Sector, layered_sector, node_frames
 from rotorgear.progress import Progress, silent
@@ -62,7 +54,7 @@ def _row_of_elements(place: np.ndarray, elements: int) -> np.ndarray:
     element = np.clip(place.astype(int), 0, elements - 1)
     values = np.zeros((len(place), 2 * elements + 1))
     nodes = 2 * element[:, None] + np.arange(3)
-    np.put_along_axis(values, nodes, quadratic(2.0 * (place - element) - 1.0), axis=1)
+    np.put_along_axis(values, nodes, elasticity.quadratic(2.0 * (place - element) - 1.0), axis=1)
     return values
 
 
@@ -98,10 +90,10 @@ def _frame(mesh: PitchMesh, normal: np.ndarray) -> Frame:
                 matrix[d * node : d * node + d, d * seat : d * seat + d] = value * frame
 
     ends = (np.concatenate([nodes[:1], mesh.left]), np.concatenate([nodes[-1:], mesh.right]))
-    cut = np.stack([node_dofs(end, d) for end in ends])
-    middle = node_dofs(nodes[1:-1], d)
+    cut = np.stack([elasticity.node_dofs(end, d) for end in ends])
+    middle = elasticity.node_dofs(nodes[1:-1], d)
     flank = d * mesh.flank if len(normal) else np.empty(0, int)
-    kept = np.concatenate([cut.ravel(), middle, flank, node_dofs(mesh.inner, d)])
+    kept = np.concatenate([cut.ravel(), middle, flank, elasticity.node_dofs(mesh.inner, d)])
     return Frame(sp.csc_array(matrix), np.setdiff1d(np.arange(d * len(mesh.points)), kept), cut, middle, flank)
 
 
@@ -162,10 +154,8 @@ def even_wheel(mesh: PitchMesh, poisson_ratio: float, width: float, order: int, 
     def seats(node: int, size: tuple[int, int]) -> np.ndarray:
         """Where a node of the seat stands in its group, by polynomial and component."""
         found = np.full((order + 1, 3), -1)
-        for k, power in enumerate(in_plane):
-            found[power, :2] = size[0] * k + 2 * node + np.arange(2)
-        for k, power in enumerate(axial):
-            found[power, 2] = size[0] * len(in_plane) + size[1] * k + node
+        found[in_plane, :2] = size[0] * np.arange(len(in_plane))[:, None] + 2 * node + np.arange(2)
+        found[axial, 2] = size[0] * len(in_plane) + size[1] * np.arange(len(axial)) + node
         return found
 
     end = seats(0, (len(u.cut[0]), len(w.cut[0])))
@@ -175,7 +165,7 @@ def even_wheel(mesh: PitchMesh, poisson_ratio: float, width: float, order: int, 
         return np.asarray(legendre.legvander(np.clip(2.0 * z / width, -1.0, 1.0), order))
 
     return WheelSector(
-        stiffness=condensed(K, inside, keep),
+        stiffness=elasticity.condensed(K, inside, keep),
         cut=len(cuts[0]),
         middle=len(middle),
         flank=len(flank),
@@ -201,18 +191,23 @@ def _polynomial_stiffness(
     w w: T (lam + 2 mu) Q + M mu tr H.
     """
     skfem = scikit_fem()
-    lam, mu = lame(poisson_ratio)
+    lam, mu = elasticity.lame(poisson_ratio)
     in_plane, axial = powers
     u_frame, w_frame = frames
     basis = skfem.Basis(mesh.mesh, skfem.ElementQuad2(), intorder=4)
     p = len(mesh.points)
-    nodes = component_dofs(mesh.cells, 1)
+    nodes = elasticity.component_dofs(mesh.cells, 1)
     N = np.stack([np.broadcast_to(np.asarray(shape[0].value), basis.dx.shape) for shape in basis.basis])
     dN = np.stack([np.asarray(shape[0].grad) for shape in basis.basis])
-    Q = assembled(np.einsum("aeq,beq,eq->eab", N, N, basis.dx, optimize=True), nodes, p)
-    tr_H = assembled(np.einsum("aieq,bieq,eq->eab", dN, dN, basis.dx, optimize=True), nodes, p)
-    plane = assembled(element_matrices(basis, poisson_ratio), component_dofs(mesh.cells, 2), 2 * p)
-    C = [assembled(np.einsum("aeq,beq,eq->eab", dN[:, i], N, basis.dx, optimize=True), nodes, p) for i in range(2)]
+    Q = elasticity.assembled(np.einsum("aeq,beq,eq->eab", N, N, basis.dx, optimize=True), nodes, p)
+    tr_H = elasticity.assembled(np.einsum("aieq,bieq,eq->eab", dN, dN, basis.dx, optimize=True), nodes, p)
+    plane = elasticity.assembled(
+        elasticity.element_matrices(basis, poisson_ratio), elasticity.component_dofs(mesh.cells, 2), 2 * p
+    )
+    C = [
+        elasticity.assembled(np.einsum("aeq,beq,eq->eab", dN[:, i], N, basis.dx, optimize=True), nodes, p)
+        for i in range(2)
+    ]
     # Both components of a node follow each other.
     place = [sp.csc_array((np.ones(p), (2 * np.arange(p) + i, np.arange(p))), (2 * p, p)) for i in range(2)]
     lam_C = lam * (place[0] @ C[0] + place[1] @ C[1])

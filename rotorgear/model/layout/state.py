@@ -231,7 +231,7 @@ class State:
             return self.cycle[contact.mesh][contact.helix]
         if contact.mesh in self.curves:
             curve = self.curves[contact.mesh][contact.helix]
-            normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
+            normal = curve.about_load.mean_normal if kind == "dynamic" else curve.static_normal
             force = replace(force, contact=replace(contact, stiffness=normal))
         mesh = self.layout.mesh(contact.mesh)
         if contact.mesh in self.faces:

@@ -143,7 +143,7 @@ def test_of_an_undercut_pair_the_contact_ratio_of_the_involute_that_is_left_stan
     form = tooth_outline(teeth.first).form_radius
     start = np.sqrt(form**2 - teeth.first.base_radius**2)
     end = np.sqrt((0.5 * teeth.first.effective_tip_diameter) ** 2 - teeth.first.base_radius**2)
-    assert row.involute_contact_ratio == pytest.approx((end - start) / teeth.base_pitch, rel=1e-12)
+    assert row.involute_contact_ratio == pytest.approx((end - start) / teeth.first.transverse_base_pitch, rel=1e-12)
     assert row.involute_contact_ratio < row.transverse_contact_ratio - 0.1
     assert "of the involute left" in rg.gear(rg.Model(**data)).text()
     assert "of the involute left" not in rg.gear(rg.load(PAIR)).text()

@@ -26,7 +26,7 @@ def test_under_a_constant_load_the_static_stiffness_gives_the_mean_of_the_deflec
     deflection = load * np.cos(0.3) / SECANT * np.cos(0.3)
     found = curve(TANGENT)
     assert load / found.static_normal == pytest.approx(deflection.mean(), rel=1e-12, abs=0.0)
-    assert found.dynamic_normal == pytest.approx(TANGENT.mean() / np.cos(0.3) ** 2, rel=1e-12)
+    assert found.about_load.mean_normal == pytest.approx(TANGENT.mean() / np.cos(0.3) ** 2, rel=1e-12)
     assert abs(found.static_normal / found.mean_normal - 1.0) > 0.01
 
 

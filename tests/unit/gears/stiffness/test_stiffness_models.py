@@ -57,7 +57,7 @@ def test_contact_lines_have_their_mean_and_harmonics(teeth: ToothPair) -> None:
     length = contact_line_length(teeth, u)
     assert length.mean() == pytest.approx(mean_contact_line_length(teeth), rel=1e-4)
     # The length is the convolution of two boxes, eps_alpha and eps_beta wide, about the middle of the path of contact.
-    middle = 0.5 * (teeth.pair.start_of_contact + teeth.pair.end_of_contact) / teeth.base_pitch
+    middle = 0.5 * (teeth.pair.start_of_contact + teeth.pair.end_of_contact) / teeth.first.transverse_base_pitch
     for n in range(1, 5):
         boxes = 2.0 * np.sinc(n * teeth.pair.transverse_contact_ratio) * np.sinc(n * teeth.pair.overlap_ratio)
         got = 2 * np.mean(length * np.exp(-2j * np.pi * n * u)) / length.mean()
