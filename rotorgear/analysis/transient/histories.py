@@ -12,20 +12,33 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.errors import ConvergenceError
+from rotorgear.model.model import model_hash
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.progress import Progress, silent
+from rotorgear.progress import Progress
 from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.arguments import Gathered
-from rotorgear.solvers.time.local_system import Fields, Integrator, LocalSystem, Observed, Records, State, local_values
+from rotorgear.solvers.time.local_system import (
+    Fields,
+    Integrator,
+    LocalSystem,
+    Observed,
+    Records,
+    State,
+    local_values,
+    state_at_rest,
+)
 from rotorgear.solvers.time.run import Schedule, run
 from rotorgear.system.local import LocalModel
+
+if TYPE_CHECKING:
+    from rotorgear.analysis.transient.request import Grid, Task
 
 _AXES = ("x", "y", "z")
 
@@ -227,40 +240,43 @@ class Histories:
         return np.concatenate([part[name] for part in self.parts])
 
 
-def integrate(
-    local: LocalSystem,
+def run_task(
+    task: Task,
     integrator: Integrator,
-    schedule: Schedule,
-    start: State,
-    wanted: Channels,
-    settled: int,
+    grid: Grid,
+    progress: Progress,
     *,
     stream: Stream | None = None,
-    settings: dict[str, str] | None = None,
+    text: str = "",
+    key: str = "",
     frames: int = 0,
-    progress: Progress = silent,
 ) -> Histories:
-    """Integrate from the start state; a run that stops early keeps what it has and says why in `status`.
+    """Integrate from rest over a grid; a run that stops early keeps what it has and says why in `status`.
 
     Args:
+        task: the model made ready. integrator: the method. progress: is told fraction and step.
+        grid: steps and records; contact events and statistics are counted anew from the first record that counts.
+        stream: keeps chunks while the run goes on. key: settings of the method, which tell another run from this one.
+        text: names a run that only serves another one, which does not go on after an interruption.
         frames: number of records at the end that keep all displacements.
-        settled: records before the statistics count; contact events and statistics are counted anew from there.
     """
-    state = start.copy()
-    found = Histories(state, schedule.h)
-    book = LedgerBook(local, schedule.h, start, integrator.damping_rows(local, float(local.rotation.speeds[0])))
-    for chunk in stream.begin(settings or {}) if stream else []:
-        found.parts.append({name: chunk[name] for name in _TABLES})
-        if chunk["ledger"].size:
-            book.table.append(chunk["ledger"])
-        book.sums = tuple(chunk["spent"].tolist())
-        state.step = int(chunk["state step"])
-        for name in _STATE:
-            setattr(state, name, chunk[f"state {name}"].copy())
-        state.gathered = Gathered(*(chunk[f"gathered {name}"].copy() for name in Gathered._fields))
-        state.inner = {name.removeprefix("inner "): x.copy() for name, x in chunk.items() if name.startswith("inner ")}
-    boundary = settled * schedule.every
+    local = task.local.local
+    h = grid.spacing / grid.every
+    steps = grid.records * grid.every
+    boundary = grid.settled * grid.every
+    state = state_at_rest(local, h, task.rest.q)
+    found = Histories(state, h)
+    book = LedgerBook(local, h, state.copy(), integrator.damping_rows(local, float(local.rotation.speeds[0])))
+    if stream is not None:
+        sizes = f"{h!r} {grid.records} {grid.every} {grid.settled} {local.n} {local.watched_vectors.shape[1]}"
+        rotation = f"{local.rotation.times.tolist()} {local.rotation.speeds.tolist()}"
+        settings = {"model": model_hash(task.local.system.model), "run": f"{sizes} {integrator.name} {key} {rotation}"}
+        for chunk in stream.begin(settings):
+            _take_over(chunk, found, book)
     watched = np.ascontiguousarray(local.watched_vectors.T)
+
+    def told(fraction: float, step: str) -> None:
+        progress(fraction, f"{text}: {step}" if text else step)
 
     def receive(records: Records, state: State) -> None:
         part = {
@@ -268,9 +284,9 @@ def integrate(
             "d": records.d,
             "watched": records.fields.rows("q", watched),
             "F": records.F,
-            "values": wanted.values(records.fields, records.F),
+            "values": task.channels.values(records.fields, records.F),
         }
-        last = records.t > (schedule.steps - frames * schedule.every + 0.5) * schedule.h
+        last = records.t > (steps - frames * grid.every + 0.5) * h
         if frames and last.any():
             found.motion.append((records.t[last], records.fields.chosen(last).rows("q", np.eye(local.n))))
         before = len(book.table)
@@ -284,17 +300,18 @@ def integrate(
             stream.write({**part, "ledger": rows, "spent": sums, **state_arrays(state)})
 
     # The run stops at the end of settling too, so that events are counted from there.
-    for goal in sorted({boundary, schedule.steps}):
-        if not 0 < goal <= schedule.steps or state.step >= goal:
+    for goal in sorted({boundary, steps}):
+        if not 0 < goal <= steps or state.step >= goal:
             continue
         try:
-            plan = Schedule(schedule.h, goal, schedule.every)
-            run(local, integrator, plan, state, receive, progress=progress)
+            run(local, integrator, Schedule(h, goal, grid.every), state, receive, progress=told)
         except ConvergenceError as error:
             found.status = str(error)
             break
         except KeyboardInterrupt:
-            found.status = f"interrupted after {state.step} of {schedule.steps} steps"
+            if text:
+                raise
+            found.status = f"interrupted after {state.step} of {steps} steps"
             break
     if state.step < boundary:
         # Nothing counts yet: what was gathered while settling is no statistic.
@@ -303,6 +320,20 @@ def integrate(
         raise ConvergenceError(found.status)
     found.ledger = book.close()
     return found
+
+
+def _take_over(chunk: dict[str, np.ndarray], found: Histories, book: LedgerBook) -> None:
+    """Go on from a chunk that an interrupted run has left."""
+    state = found.state
+    found.parts.append({name: chunk[name] for name in _TABLES})
+    if chunk["ledger"].size:
+        book.table.append(chunk["ledger"])
+    book.sums = tuple(chunk["spent"].tolist())
+    state.step = int(chunk["state step"])
+    for name in _STATE:
+        setattr(state, name, chunk[f"state {name}"].copy())
+    state.gathered = Gathered(*(chunk[f"gathered {name}"].copy() for name in Gathered._fields))
+    state.inner = {name.removeprefix("inner "): x.copy() for name, x in chunk.items() if name.startswith("inner ")}
 
 
 def state_arrays(state: State) -> dict[str, np.ndarray]:

@@ -19,15 +19,13 @@ from rotorgear.analysis.common.request import (
 )
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
-from rotorgear.analysis.transient.histories import Channels, Histories, Stream, channels, integrate
+from rotorgear.analysis.transient.histories import Channels, channels
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.model import Model, model_hash
-from rotorgear.progress import Progress
+from rotorgear.model.model import Model
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, forces_at_rest
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates, state_at_rest
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
-from rotorgear.solvers.time.run import Schedule
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System, flow_system
 
@@ -262,47 +260,6 @@ def damped(model: Model | System, modal_damping: float | None) -> Model | System
     damping = given.damping.model_copy(update={"modal_ratio": modal_damping})
     changed = given.model_copy(update={"damping": damping})
     return flow_system(changed, model.plan).with_state(model.state) if isinstance(model, System) else changed
-
-
-def run_task(
-    task: Task,
-    integrator: Integrator,
-    grid: Grid,
-    progress: Progress,
-    *,
-    stream: Stream | None = None,
-    text: str = "",
-    key: str = "",
-    frames: int = 0,
-) -> Histories:
-    """Integrate over a grid; `text` names a run that only serves another one, which does not go on after an interruption."""
-    h = grid.spacing / grid.every
-    system = task.local.local
-    sizes = f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {system.watched_vectors.shape[1]}"
-    rotation = f"{system.rotation.times.tolist()} {system.rotation.speeds.tolist()}"
-    settings = {
-        "model": model_hash(task.local.system.model),
-        "run": f"{sizes} {integrator.name} {key} {rotation}",
-    }
-
-    def told(fraction: float, step: str) -> None:
-        progress(fraction, f"{text}: {step}" if text else step)
-
-    found = integrate(
-        system,
-        integrator,
-        Schedule(h, grid.records * grid.every, grid.every),
-        state_at_rest(system, h, task.rest.q),
-        task.channels,
-        grid.settled,
-        stream=stream,
-        settings=settings,
-        frames=frames,
-        progress=told,
-    )
-    if text and found.status.startswith("interrupted"):
-        raise KeyboardInterrupt
-    return found
 
 
 def coarser(grid: Grid) -> tuple[Grid, float]:

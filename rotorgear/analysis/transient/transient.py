@@ -23,7 +23,7 @@ import scipy.sparse as sp
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
-from rotorgear.analysis.transient.histories import Histories, Stream
+from rotorgear.analysis.transient.histories import Histories, Stream, run_task
 from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, transient_warnings
 from rotorgear.analysis.transient.request import (
     Grid,
@@ -33,7 +33,6 @@ from rotorgear.analysis.transient.request import (
     grid_of,
     integrator_of,
     prepare,
-    run_task,
     run_up,
 )
 from rotorgear.analysis.transient.statistics import Quantities, of_channels, of_meshes, quantities_of
