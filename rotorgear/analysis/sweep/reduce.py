@@ -25,14 +25,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction
 from rotorgear.solvers.batch.columns import PRESCRIBED
 from rotorgear.solvers.batch.small_system import Shapes
-from rotorgear.solvers.frequency.contact_basis import (
-    Probes,
-    Scale,
-    candidates,
-    choose,
-    full_receptances,
-    reduced,
-)
+from rotorgear.solvers.frequency.contact_basis import Probes, Scale, candidates, choose, full_receptances, reduced
 from rotorgear.solvers.time.local_forces import LocalLaw
 from rotorgear.solvers.time.local_system import LocalSystem
 

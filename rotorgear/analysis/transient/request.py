@@ -11,12 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.common.request import (
-    check_modal_damping,
-    check_whole,
-    needed_speed,
-    quantity,
-)
+from rotorgear.analysis.common.request import check_modal_damping, check_whole, needed_speed, quantity
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.analysis.transient.histories import Channels, channels

@@ -9,13 +9,7 @@ import numpy as np
 from rotorgear.analysis.transient.histories import Histories
 from rotorgear.analysis.transient.request import Task
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.time.statistics import (
-    STATISTICS,
-    MotionStatistics,
-    Statistics,
-    compared,
-    largest_relative,
-)
+from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, Statistics, compared, largest_relative
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
