@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool, in_order
-from rotorgear.analysis.sweep.certify import Judge, bounded, judged, motion_statistics, sizes_of, to_certify
+from rotorgear.analysis.sweep.certify import bounded, judged, motion_statistics, sizes_of, to_certify
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
+from rotorgear.analysis.sweep.request import Request
 from rotorgear.solvers.batch.run_block import Orbit, Plan, Start, run_block
 from rotorgear.solvers.batch.small_system import steps_stable
 from rotorgear.solvers.time.statistics import compared, gain
@@ -22,6 +23,8 @@ from rotorgear.solvers.time.statistics import compared, gain
 _MOST_TABLE = 30_000_000
 # What a stream keeps of an orbit beside its end.
 _OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier", "repeats", "error")
+# Rounds of settling that a run gets at most.
+_ROUNDS = 4
 # Least steps of the run that tells the error of exponents by half as many.
 _LEAST_HALF = 60
 # No statistic is said to be better than this share of what others are: extremes at steps may happen to be the same.
@@ -80,7 +83,7 @@ def run_jobs(
     points: Sequence[Point],
     starts: Sequence[Start],
     plan: Plan,
-    judge: Judge,
+    request: Request,
     go_on: Callable[[], bool] | None = None,
 ) -> list[Orbit]:
     """Run the jobs of one block; those whose response type is not settled run on, in rounds of twice the length each.
@@ -90,11 +93,13 @@ def run_jobs(
     orbits = _run(points, starts, plan, go_on)
     if plan.tangents:
         chosen = list(range(len(orbits)))
-        onward = _certify(points, orbits, chosen, plan, judge, go_on)
+        onward = _certify(points, orbits, chosen, plan, request, go_on)
         asked = tuple(orbits)
         settled = plan.settle
-        for number in range(judge.rounds):
-            chosen = [i for i in chosen if bounded(orbits[i], points[i]) and not judged(orbits[i], points[i], judge)[1]]
+        for number in range(_ROUNDS):
+            chosen = [
+                i for i in chosen if bounded(orbits[i], points[i]) and not judged(orbits[i], points[i], request)[1]
+            ]
             if not chosen:
                 break
             longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
@@ -103,7 +108,7 @@ def run_jobs(
             for i, orbit in zip(chosen, again, strict=True):
                 orbits[i] = replace(orbit, settled=settled) if bounded(orbit, points[i]) else asked[i]
             chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
-            onward = _certify(points, orbits, chosen, plan, judge, go_on)
+            onward = _certify(points, orbits, chosen, plan, request, go_on)
     # Errors of statistics by the same periods in other steps. Runge and Kutta's fourth order is not that of statistics: impacts
     # begin between steps, and extremes are those of steps. One step more: of steps at the same instants, extremes are often the
     # same.
@@ -143,7 +148,7 @@ def _certify(
     orbits: list[Orbit],
     chosen: Sequence[int],
     plan: Plan,
-    judge: Judge,
+    request: Request,
     go_on: Callable[[], bool] | None,
 ) -> dict[int, Start]:
     """Give the chosen orbits their step errors and multipliers; return the state from which each runs on.
@@ -161,7 +166,7 @@ def _certify(
         orbits[i] = replace(orbits[i], doubt=change)
     onward = {i: orbits[i].end for i in chosen}
     for i in chosen:
-        periods = to_certify(orbits[i], points[i], judge)
+        periods = to_certify(orbits[i], points[i], request)
         if not periods:
             continue
 
@@ -172,7 +177,7 @@ def _certify(
 
         system = points[i].system
         sizes = sizes_of(orbits[i], system.columns.counted)
-        found = certificate(system, orbits[i].end, sizes, periods, advance, judge.tolerance)
+        found = certificate(system, orbits[i].end, sizes, periods, advance, request.tolerance)
         if found is not None:
             growth, repeats, onward[i] = found
             orbits[i] = replace(orbits[i], multiplier=growth, repeats=repeats)
@@ -190,7 +195,7 @@ def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Ca
 
 
 def run_blocks(
-    tasks: Sequence[tuple[list[Point], list[Start], Plan, Judge]],
+    tasks: Sequence[tuple[list[Point], list[Start], Plan, Request]],
     workers: int | None,
     executor: Pool | None,
     heard: Callable[[float], None] = lambda share: None,

@@ -18,13 +18,12 @@ Indicators of the contacts over the periods that a run of a sweep counts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, classify, exponents, period_in, period_of
 from rotorgear.analysis.sweep.multipliers import SURE
 from rotorgear.analysis.sweep.point import Point
+from rotorgear.analysis.sweep.request import Request
 from rotorgear.solvers.batch.run_block import Orbit
 from rotorgear.solvers.time.statistics import MotionStatistics, Statistics
 
@@ -41,27 +40,18 @@ _FAR = 1e4
 _SMALLEST = 1e-6  # m
 
 
-@dataclass(frozen=True)
-class Judge:
-    """How responses are told apart (see classify.py), and how many rounds of settling a run gets at most."""
-
-    tolerance: float
-    chaos: float
-    rounds: int = 4
-
-
-def judged(orbit: Orbit, point: Point, judge: Judge) -> tuple[str, bool]:
+def judged(orbit: Orbit, point: Point, request: Request) -> tuple[str, bool]:
     """The response type of a run, and whether it is settled."""
     counted = point.system.columns.counted
     x = orbit.section[:, counted, 0]
     extent = sizes_of(orbit, counted)
     if not orbit.growth.shape[1]:
-        return classify(x, extent, None, 0.0, judge.tolerance, judge.chaos), True
+        return classify(x, extent, None, 0.0, request.tolerance, request.chaos), True
     means, errors = exponents(orbit.growth, float(point.system.turns))
     largest = float(means[0])
     # The statistical error vanishes on a periodic orbit; that of the steps does not.
     error = float(np.hypot(np.nan_to_num(errors[0]), orbit.doubt[0]))
-    kind = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
+    kind = classify(x, extent, largest, error, request.tolerance, request.chaos)
     period = period_in(kind)
     bound = max(2.0 * error, _ZERO)
     if period and np.isfinite(orbit.multiplier):
@@ -70,16 +60,16 @@ def judged(orbit: Orbit, point: Point, judge: Judge) -> tuple[str, bool]:
         # On an orbit that repeats, growth differs between batches only because tangents turn: that says little on its mean. What
         # repeats need not prove its sign then. But where flanks part, an unstable orbit may repeat for thousands of periods, and
         # the step hides the sign: an exponent above zero proves nothing there.
-        exact = period_of(x, extent, _REPEATS * judge.tolerance) == period
+        exact = period_of(x, extent, _REPEATS * request.tolerance) == period
         most = bound if orbit.doubt[0] <= _ZERO else 0.0
         stable = largest < -bound or (exact and largest <= most)
         return kind, stable and (period == 1 or _stays(x))
     if kind == QUASI_PERIODIC:
-        return kind, abs(largest) <= bound and abs(largest) + error <= judge.chaos
-    return kind, kind == CHAOTIC and largest - error > judge.chaos
+        return kind, abs(largest) <= bound and abs(largest) + error <= request.chaos
+    return kind, kind == CHAOTIC and largest - error > request.chaos
 
 
-def to_certify(orbit: Orbit, point: Point, judge: Judge) -> int:
+def to_certify(orbit: Orbit, point: Point, request: Request) -> int:
     """Common periods after which a run repeats, where multipliers are to tell whether it is stable, else 0.
 
     What comes back fast needs none: growth that an exponent does not see in that many periods is slower than the bound of chaos.
@@ -88,9 +78,9 @@ def to_certify(orbit: Orbit, point: Point, judge: Judge) -> int:
     system = point.system
     if not orbit.growth.shape[1] or system.n > _MOST or point.rolling:
         return 0
-    period = period_in(judged(orbit, point, judge)[0])
+    period = period_in(judged(orbit, point, request)[0])
     means, _ = exponents(orbit.growth, float(system.turns))
-    return period if period <= _LONGEST and -judge.chaos < means[0] <= judge.chaos else 0
+    return period if period <= _LONGEST and -request.chaos < means[0] <= request.chaos else 0
 
 
 def _stays(x: np.ndarray) -> bool:

@@ -90,7 +90,7 @@ def gathered(
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
-        kind, settled = judged(orbit, point, request.judge)
+        kind, settled = judged(orbit, point, request)
         motion[i * r + run] = kind if settled else NOT_SETTLED
     none = np.full((2, c), np.nan)
     both = [np.stack([q.static_force, q.stiffness]) if q and q.contact == contact else none for q in points]

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.sweep.certify import Judge
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES
 from rotorgear.errors import AnalysisError
@@ -61,11 +60,6 @@ class Request:
         for name in ("tolerance", "chaos", "reduction_error"):
             if not 0.0 < getattr(self, name) < 1.0:
                 raise AnalysisError(f"{name}: got {getattr(self, name):g}, expected a number between 0 and 1")
-
-    @property
-    def judge(self) -> Judge:
-        """How responses are told apart."""
-        return Judge(self.tolerance, self.chaos)
 
     @property
     def directions(self) -> tuple[str, ...]:

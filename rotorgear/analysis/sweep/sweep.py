@@ -226,7 +226,7 @@ def _run(
             # A system has no more exponents than states beside its rigid-body motions.
             most = 2 * (own[0].system.n - len(own[0].system.rigid))
             plan = Plan(int(steps[block[0].point]), request.discard, request.sample, min(request.exponents, most))
-            tasks.append(([p.bare for p in own], states, plan, request.judge))
+            tasks.append(([p.bare for p in own], states, plan, request))
         begun = done
         runs = sum(map(len, rest))
 

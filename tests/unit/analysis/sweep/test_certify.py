@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.certify import Judge, judged
+from rotorgear.analysis.sweep.certify import judged
 from rotorgear.solvers.batch.run_block import Orbit
 
-JUDGE = Judge(tolerance=0.02, chaos=0.02)
+REQUEST: Any = SimpleNamespace(tolerance=0.02, chaos=0.02)
 POINT: Any = SimpleNamespace(system=SimpleNamespace(turns=1, columns=SimpleNamespace(counted=np.array([True]))))
 
 
@@ -24,7 +24,7 @@ def run(x: np.ndarray, exponent: float, doubt: float = 0.0, scatter: float = 1e-
     sums = np.zeros((1, 14))
     sums[0, 7] = sums[0, 5] = 10e-6
     orbit = Orbit(section, growth, sums, np.zeros((2, 2)), None, True, np.array([doubt]), 300, **known)  # type: ignore[arg-type]
-    kind, stands = judged(orbit, POINT, JUDGE)
+    kind, stands = judged(orbit, POINT, REQUEST)
     return kind, stands
 
 
