@@ -260,16 +260,22 @@ class _Modes:
     def likeness(self, shapes: NDArray[np.complex128]) -> NDArray[np.float64]:
         """MAC of shapes (n, s) and modes, (n, m); of close modes the share of the shape in their plane."""
         found = mac(shapes, self.at_points)
-        known = np.isfinite(shapes)
-        size = np.nansum(np.abs(shapes) ** 2, axis=1)
-        for group in filter(lambda group: len(group) > 1, dict.fromkeys(self.group)):
+        whole = bool(np.isfinite(shapes).all())
+        for group in dict.fromkeys(self.group):
+            if len(group) < 2:
+                continue
             plane = self.at_points[list(group)]
-            share = np.full(len(shapes), np.nan)
-            # Shapes that are known at the same points have one plane.
-            for points in np.unique(known[size > 0.0], axis=0):
-                rows = (known == points).all(axis=1) & (size > 0.0)
-                inside = np.sum(np.abs(shapes[np.ix_(rows, points)] @ _basis(plane[:, points]).conj()) ** 2, axis=1)
-                share[rows] = inside / size[rows]
+            if whole:
+                inside = np.sum(np.abs(shapes @ _basis(plane).conj()) ** 2, axis=1)
+                share = inside / np.maximum(np.sum(np.abs(shapes) ** 2, axis=1), 1e-300)
+            else:
+                share = np.full(len(shapes), np.nan)
+                for k, shape in enumerate(shapes):
+                    known = np.isfinite(shape)
+                    size = float(np.sum(np.abs(shape[known]) ** 2))
+                    if size > 0.0:
+                        Q = _basis(plane[:, known])
+                        share[k] = np.sum(np.abs(Q.conj().T @ shape[known]) ** 2) / size
             found[:, list(group)] = share[:, None]
         return found
 
