@@ -4,133 +4,24 @@ Energy ledger of a transient: what comes in, what is stored, what is dissipated,
 
 Sums over contacts are taken at every step, those over linear dampers at the records (trapezoidal rule), stored
 energies at some of them.
-
-What a transient records beside its contacts: bearing forces, motions of points, bearings and gears, as rows on q, v and a.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.common.points import point_rows
+from rotorgear.analysis.transient.request import Grid, Task
 from rotorgear.errors import ConvergenceError
 from rotorgear.model.model import model_hash
-from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.progress import Progress
 from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.arguments import Gathered
-from rotorgear.solvers.time.local_system import (
-    Fields,
-    Integrator,
-    LocalSystem,
-    Observed,
-    Records,
-    State,
-    local_values,
-    state_at_rest,
-)
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, local_values, state_at_rest
 from rotorgear.solvers.time.run import Schedule, run
-from rotorgear.system.local import LocalModel
-
-if TYPE_CHECKING:
-    from rotorgear.analysis.transient.request import Grid, Task
-
-_AXES = ("x", "y", "z")
-
-
-@dataclass(frozen=True)
-class Channels:
-    """p channels: value = Y_q q + Y_v v + Y_a a + Y_F F, with rows (p, n) and (p, m) by kind for those that have any."""
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    rows: dict[str, tuple[np.ndarray, np.ndarray]]
-
-    def values(self, fields: Fields, F: np.ndarray) -> np.ndarray:
-        """Values (r, p) at the recorded steps with the local forces F (r, m)."""
-        values = np.zeros((len(F), len(self.names)))
-        for kind, (which, Y) in self.rows.items():
-            values[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
-        return values
-
-    def observed(self, n: int, m: int) -> Observed:
-        """The channels as rows that integrators gather statistics of at every step, for n dofs and m local forces."""
-        rows = {kind: np.zeros((len(self.names), m if kind == "F" else n)) for kind in "qvaF"}
-        for kind, (which, Y) in self.rows.items():
-            rows[kind][which] = Y
-        return Observed(**rows)
-
-
-def channels(local: LocalModel) -> Channels:
-    """Forces of bearings, motions of points, orbits of the shafts in their bearings, and fluctuations of the gears' speeds."""
-    system = local.system
-    every = list(_bearing_forces(local))
-    for name, point in system.model.points.items():
-        dof = DOF_NAMES.index(point.direction)
-        row = point_rows(system, (name,)).toarray()[0]
-        unit = "m" if dof < 3 else "rad"
-        for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
-            every.append((f"points.{name} {what}", unit + per, {kind: row}))
-
-    motions = [
-        (f"bearings.{name} displacement {axis}", "m", "q", 6 * system.nodes.at(*place) + k)
-        for name, place in ((name, system.layout.place(f"bearings.{name}")) for name in system.model.bearings)
-        for k, axis in enumerate("xy")
-    ]
-    for name in system.model.gears:
-        # Of a gear whose teeth turn against its shaft, those of the teeth.
-        dofs = system.nodes.of_gear(name, *system.layout.place(f"gears.{name}"))
-        motions.append((f"gears.{name} speed fluctuation", "rad/s", "v", int(dofs[5])))
-    for label, unit, kind, dof in motions:
-        row = np.asarray(system.dofs.transform[[dof], :].toarray()[0])
-        if row.any():  # the dof is free
-            every.append((label, unit, {kind: row}))
-    rows = {}
-    for kind in "qvaF":
-        which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)
-        if which.size:
-            rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
-    return Channels(tuple(item[0] for item in every), tuple(item[1] for item in every), rows)
-
-
-def _bearing_forces(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray]]]:
-    """Force of the shaft on each element and bearing, by its law or by its springs and dampers."""
-    T = local.system.dofs.transform
-    beta = local.system.model.damping.rayleigh_beta
-    # Rows that pick the local forces of each law.
-    picks = np.split(np.eye(local.local.m), local.local.forces.first[1:-1])
-    of_bearing = {part.part: rows for part, rows in zip(local.parts, picks, strict=False)}
-    for part, rows in zip(local.parts, picks, strict=False):
-        if part.part.startswith("nonlinear_elements."):
-            directions = local.system.model.nonlinear_elements[part.label].directions
-            for direction, row in zip(directions, rows, strict=True):
-                yield f"{part.part} force {direction}", "N" if direction in _AXES else "N m", {"F": row}
-    for group in local.groups:
-        if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
-            continue
-        motions = T[group.dofs[0], :].toarray()
-        matrices = group.matrices
-        none = np.zeros((motions.shape[0],) * 2)
-        stiffness = sum((A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), none)
-        damping = none if matrices.damping is None else matrices.damping[0]
-        # C = beta K damps in every part that has a stiffness, so a bearing has its share; alpha M is of the masses.
-        if beta and matrices.stiffness is not None:
-            damping = damping + beta * matrices.stiffness[0]
-        law = of_bearing.get(group.part)
-        for k, axis in enumerate(_AXES):
-            by_kind = {} if law is not None else {"q": stiffness[-6 + k] @ motions}
-            if law is not None and k < len(law):
-                by_kind["F"] = law[k]
-            if damping.any():
-                by_kind["v"] = damping[-6 + k] @ motions
-            if any(row.any() for row in by_kind.values()):
-                yield f"{group.part} force {axis}", "N", by_kind
-
 
 # Records of a chunk at which stored energies are evaluated.
 _SAMPLES = 4

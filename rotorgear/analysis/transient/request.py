@@ -14,7 +14,7 @@ from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.request import check_modal_damping, check_whole, needed_speed, quantity
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
-from rotorgear.analysis.transient.histories import Channels, channels
+from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, forces_at_rest
