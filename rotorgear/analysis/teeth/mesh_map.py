@@ -75,10 +75,10 @@ def figures_at(
     points = list(product(torque.tolist(), misalignment.tolist()))
     rows = []
     notes: list[str] = []
-    for number, (load, askew) in enumerate(points):
+    for number, (load, f) in enumerate(points):
         told = part_of(progress, number / len(points), (number + 1) / len(points))
         base_force = abs(load) / request.mesh.pinion.base_radius / request.mesh.helices
-        misaligned = replace(teeth, misalignment=askew)
+        misaligned = replace(teeth, misalignment=f)
         solved = solve_helices(request, misaligned, positions, base_force=base_force, progress=told)
         normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
         places = min(_PLACES, solved.problem.slices)

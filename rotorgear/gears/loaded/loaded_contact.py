@@ -260,13 +260,13 @@ def solve_many(contact: PositionContact, total: np.ndarray) -> tuple[np.ndarray,
         target = delta[:, None] * solved[..., 0] - solved[..., 1]
         opening = np.einsum("bij,bj->bi", here.compliance, target) + here.gap - delta[:, None]
         wanted = np.where(touches, target > 0.0, opening < 0.0)
-        settled = (wanted == touches).all(axis=1)
-        settled &= np.abs(target - force).max(axis=1) <= _FORCE_TOLERANCE * total[running]
+        converged = (wanted == touches).all(axis=1)
+        converged &= np.abs(target - force).max(axis=1) <= _FORCE_TOLERANCE * total[running]
         approach[running] = delta
         tangent[running] = stiffness
         F[running] = np.maximum(target, 0.0)
         active[running] = np.where(wanted.any(axis=1)[:, None], wanted, touches)
-        running = running[~settled]
+        running = running[~converged]
         if not len(running):
             break
     for i in running:

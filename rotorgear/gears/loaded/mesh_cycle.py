@@ -14,7 +14,7 @@ import numpy as np
 
 from rotorgear.gears.loaded.contact_points import MOST_BEYOND, OF_SLICES, Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents
-from rotorgear.gears.loaded.settled_contacts import PASSES, settled
+from rotorgear.gears.loaded.patched_contacts import PASSES, patched_contacts
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, part_of, silent
@@ -245,7 +245,7 @@ def _swept(
     """One sweep over all positions; passes: for the widths of patches at most; least: of oblique lines, in normal modules."""
     cosine = problem.cosine
     slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
-    found = settled(problem, slices, problem.gap(slices), load / cosine, progress, passes=passes, least=least)
+    found = patched_contacts(problem, slices, problem.gap(slices), load / cosine, progress, passes=passes, least=least)
     states = found.states
     force = np.concatenate([state.force for state in states])
     strip = np.concatenate([state.strip for state in states])

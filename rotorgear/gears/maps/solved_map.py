@@ -30,7 +30,7 @@ from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
-from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches, settled
+from rotorgear.gears.loaded.patched_contacts import PatchedContacts, WideContactError, patched_contacts, same_patches
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.maps.map_positions import MapPositions, errors_by_period, families, load_groups, map_positions
@@ -48,17 +48,17 @@ _FARTHER = 1.05
 
 # Groups of loads as multiples of the working one, and groups with the contacts under their largest load.
 Groups = tuple[tuple[float, ...], ...]
-_Solved = list[tuple[tuple[float, ...], Settled]]
+_Solved = list[tuple[tuple[float, ...], PatchedContacts]]
 
 
 def up_to(problem: ContactProblem, cycle: MeshCycle, load: float, family: Groups) -> _Solved:
     """Groups of rising multiples of a force (N), the last of which is that of the cycle, and contacts on its slices."""
-    last = Settled(cycle.contacts, cycle.states, cycle.patch)
+    last = PatchedContacts(cycle.contacts, cycle.states, cycle.patch)
     gap = problem.gap(cycle.slices)
     below = last
     found = []
     for group in family[:-1]:
-        below = settled(problem, cycle.slices, gap, load * group[-1], known=below, narrowest=below is last)
+        below = patched_contacts(problem, cycle.slices, gap, load * group[-1], known=below, narrowest=below is last)
         found.append((group, below))
     return [*found, (family[-1], last)]
 
@@ -84,11 +84,11 @@ def above(
     while True:
         slices = contact_slices(problem.line, place, problem.width, problem.slices, reach, stations=problem.uncoupled)
         gap = problem.gap(slices)
-        settle = partial(settled, problem, slices, gap, progress=progress)
+        solve = partial(patched_contacts, problem, slices, gap, progress=progress)
         found: _Solved = []
         for group in family:
             try:
-                found += _contacts(problem, settle, load, group, found[-1][1] if found else None)
+                found += _contacts(problem, solve, load, group, found[-1][1] if found else None)
             except WideContactError:
                 if not found or group[-1] < 1.0 + 1e-9:
                     raise
@@ -103,23 +103,23 @@ def above(
 
 def _contacts(
     problem: ContactProblem,
-    settle: Callable[..., Settled],
+    solve: Callable[..., PatchedContacts],
     load: float,
     group: tuple[float, ...],
-    below: Settled | None,
+    below: PatchedContacts | None,
 ) -> _Solved:
     """A group and its contacts, which grow from those `below` it.
 
     Where patches of oblique lines change within it, each load by itself on those that it asks for.
     """
     if problem.oblique and below is None:
-        below = settle(load * group[0])
-    last = settle(load * group[-1], known=below)
+        below = solve(load * group[0])
+    last = solve(load * group[-1], known=below)
     if not problem.oblique or below is None or np.array_equal(last.patch, below.patch):
         return [(group, last)]
     found = []
     for factor in group[:-1]:
-        below = settle(load * factor, known=below)
+        below = solve(load * factor, known=below)
         found.append(((factor,), below))
     return [*found, (group[-1:], last)]
 
@@ -129,12 +129,12 @@ def _contacts(
 _TOLERANCE = 1e-6
 
 
-def map_columns(slices: Slices, found: Settled, loads: list[float], *, few: bool) -> np.ndarray:
+def map_columns(slices: Slices, found: PatchedContacts, loads: list[float], *, few: bool) -> np.ndarray:
     """Approach (m), its slope d delta / dF (m/N) and moment (N m) at rising normal forces (N): (3, l, p).
 
     Args:
         slices: of all positions.
-        found: the contacts, settled under the last of the forces.
+        found: the contacts under the last of the forces.
         loads: normal forces.
         few: whether a tooth pair has one slice: then all positions and loads are solved at once.
     """
@@ -297,7 +297,7 @@ def solved_map(
     place = common + positions.position
     odd_teeth = any(flank.single_teeth for flank in problem.flanks)
     solved: list[list[np.ndarray]] = [[] for _ in kinds]
-    below: dict[int, Settled] = {}
+    below: dict[int, PatchedContacts] = {}
     touch: list[np.ndarray] = []
     notes: list[str] = []
     factors: list[float] = []
@@ -325,7 +325,7 @@ def solved_map(
                 found = commonest
                 if odd_teeth:
                     gap = problem.gap(slices, of_period.index(errors) - common)
-                    found = settled(problem, slices, gap, load * group[-1], known=commonest)
+                    found = patched_contacts(problem, slices, gap, load * group[-1], known=commonest)
                 # Where patches are those of the group below, its last load needs no second solution; a single load fades nothing.
                 new = bool(factors) and len(group) > 1 and not same_patches(found, below[kind])
                 bound = factors[-1:] if new else []

@@ -1,4 +1,4 @@
-"""How a helix carries along its face: force F and moment M about the middle of the face, for flanks that stand askew.
+"""How a helix carries along its face: force F and moment M about the middle of the face, for misaligned flanks.
 
 The gears approach by delta in the middle of the face, and the flanks stand apart by f z/b at a place z of the face of width b,
 f being the misalignment. With the forces F_i at the places z_i,

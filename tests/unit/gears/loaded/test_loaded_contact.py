@@ -13,7 +13,7 @@ from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.loaded.contact_points import contact_slices
 from rotorgear.gears.loaded.loaded_contact import PositionContact, hertz_half_width, solve_contact
 from rotorgear.gears.loaded.mesh_cycle import corner_reach, loaded_cycle, mesh_cycle
-from rotorgear.gears.loaded.settled_contacts import settled
+from rotorgear.gears.loaded.patched_contacts import patched_contacts
 from rotorgear.gears.loaded.tooth_contact import contact_problem, line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
@@ -100,7 +100,7 @@ def test_how_far_corners_of_oblique_lines_are_followed_changes_nothing() -> None
     for factor in (1.0, 1.5):
         beyond = (factor * reach[0], factor * reach[1])
         slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond)
-        found = settled(problem, slices, problem.gap(slices), LOAD)
+        found = patched_contacts(problem, slices, problem.gap(slices), LOAD)
         force = np.concatenate([state.force for state in found.states])
         assert np.any(force[slices.corner] > 0.0)
         approach.append([state.approach for state in found.states])

@@ -50,7 +50,7 @@ class WideContactError(AnalysisError):
 
 
 @dataclass(frozen=True)
-class Settled:
+class PatchedContacts:
     """Contacts under a load, their patches wider than the strips under them.
 
     Attributes:
@@ -64,18 +64,18 @@ class Settled:
     patch: np.ndarray
 
 
-def settled(
+def patched_contacts(
     problem: ContactProblem,
     slices: Slices,
     gap: np.ndarray,
     total: float,
     progress: Progress = silent,
-    known: Settled | None = None,
+    known: PatchedContacts | None = None,
     passes: int = PASSES,
     least: float = 0.0,
     *,
     narrowest: bool = False,
-) -> Settled:
+) -> PatchedContacts:
     """Contacts and states at all positions, with patches wider than the strips under them.
 
     Args:
@@ -100,9 +100,9 @@ def settled(
         contacts = _with_patches(problem, slices, gap, range(count), patch, contacts)
     states: dict[int, ContactState] = {}
     margin = 1.0 if problem.oblique else _STRIP_MARGIN
-    unsettled = list(range(count))
+    to_solve = list(range(count))
     for number in range(passes):
-        for i in unsettled:
+        for i in to_solve:
             states[i] = solve_contact(contacts[i], total, start.get(i))
             start[i] = states[i].force
             strip = float(states[i].strip.max()) / problem.module
@@ -115,24 +115,24 @@ def settled(
         if problem.plane:
             break
         # The patches' half-widths lie in the transverse section; cos b_b brings them across the line.
-        wanted = {i: margin * states[i].strip / problem.cosine / problem.module for i in unsettled}
-        unsettled = [i for i in unsettled if np.any(wanted[i] > patch[numbers[i]])]
-        if not unsettled or number + 1 == passes:
+        wanted = {i: margin * states[i].strip / problem.cosine / problem.module for i in to_solve}
+        to_solve = [i for i in to_solve if np.any(wanted[i] > patch[numbers[i]])]
+        if not to_solve or number + 1 == passes:
             break
         if problem.oblique:
             # One after the other: strips on too narrow patches are wider than on those that they ask for.
             patch *= _NEXT_OBLIQUE_PATCH
-            unsettled = list(range(count))
+            to_solve = list(range(count))
             contacts = {}  # all rows are new
         else:
-            for i in unsettled:
+            for i in to_solve:
                 short = wanted[i] > patch[numbers[i]]
                 patch[numbers[i][short]] = _WIDENING * wanted[i][short]
-        contacts |= _with_patches(problem, slices, gap, unsettled, patch, contacts)
-    return Settled(tuple(contacts[i] for i in range(count)), tuple(states[i] for i in range(count)), patch)
+        contacts |= _with_patches(problem, slices, gap, to_solve, patch, contacts)
+    return PatchedContacts(tuple(contacts[i] for i in range(count)), tuple(states[i] for i in range(count)), patch)
 
 
-def same_patches(first: Settled, second: Settled) -> bool:
+def same_patches(first: PatchedContacts, second: PatchedContacts) -> bool:
     """Whether both have the same compliances, the second having grown from the first or the other way round."""
     return all(one.compliance is other.compliance for one, other in zip(first.contacts, second.contacts, strict=True))
 
