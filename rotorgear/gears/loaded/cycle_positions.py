@@ -25,7 +25,7 @@ from rotorgear.gears.stiffness.cycle_curve import NEAR, CycleCurve
 _FIRST = (8, 24)
 # Rounds of chords that look for one event.
 _CHORDS = 6
-# Positions that judge the others: this share of theirs, and until so many are solved in a period.
+# Positions that judge the others: this share of theirs, and until this number is solved in a period.
 _JUDGES = 0.25
 _LEAST_SOLVED = 48
 # They halve intervals down to this, in base pitches, first. The largest pressure of helical teeth stands where a corner

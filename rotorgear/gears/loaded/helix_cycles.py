@@ -202,7 +202,7 @@ class HelixCycles:
         return guesses, nearest
 
     def sample(self, positions: int, *, judged: bool = False) -> SampledCurves:
-        """Choose and solve so many positions in a mesh period; `judged`: and some more, which judge those that are kept."""
+        """Choose and solve positions of each mesh period; `judged`: and some more, which judge those that are kept."""
         known = np.empty(0)
         first = self.helices[0]
         if not first.first.helix_angle:
@@ -242,7 +242,7 @@ class HelixCycle:
 
 @lru_cache(maxsize=4)  # stiffness and map of a mesh ask for the same one
 def helix_cycle(teeth: ToothPair, load: float, positions: int) -> HelixCycle:
-    """Loaded contact of one helix for F_bt = load (N), at so many positions of a base pitch.
+    """Loaded contact of one helix for F_bt = load (N), at a number of positions of a base pitch.
 
     Those of a spur pair are the ones that `rotorgear mesh` chooses, where pairs come and go and the curves need them. Curves of
     helical teeth are smooth, and the mean of even positions then converges faster than any power of their number.

@@ -37,7 +37,7 @@ def loaded_cycle(
 _MORE_BEYOND = 1.05
 # Passes for the reach of corners.
 _PASSES = 12
-# The reach of corners is found at every so many positions first.
+# The reach of corners is found at each eighth position first.
 _STRIDE = 8
 # Above such a pressure (Pa) no gear steel stays elastic.
 _MOST_PRESSURE = 4e9

@@ -85,7 +85,7 @@ class ContactProblem:
         return sum(flank.largest for flank in self.flanks) + abs(self.misalignment)
 
     def gap(self, slices: Slices, period: int = 0) -> np.ndarray:
-        """Mean gap (n,) of each slice along the flank normal before loading (m), so many base pitches after position 0."""
+        """Mean gap (n,) of each slice along the flank normal before loading (m), `period` base pitches after position 0."""
         return np.asarray(np.sum(self.gap_along(slices, period) * slices.weight, axis=1))
 
     def gap_along(self, slices: Slices, period: int = 0) -> np.ndarray:

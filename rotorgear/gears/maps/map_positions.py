@@ -59,8 +59,8 @@ _NEAR_IN_SPACE = (*_UP_TO_WORKING, (1.12, 1.25, 1.4), (1.6, 1.8, 2.0))
 # herringbone pairs and loops are as small as 0.02 um. In two parts each step missed 3.8 % of such a one, in three 0.15 %.
 _FINER = (0.2, 2.3)
 _PARTS = 3
-# Slices of a spur pair reach as far beyond the line of action as corners touch: groups up to the working load, up to so many
-# times it and above have slices of their own.
+# Slices of a spur pair reach as far beyond the line of action as corners touch: groups up to the working load, up to this
+# multiple of it, and above have slices of their own.
 _MODERATE = 2.5
 
 

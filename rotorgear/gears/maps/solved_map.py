@@ -223,7 +223,7 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
     Args:
         teeth: one helix.
         load: working force (N) along the flank normal.
-        positions: so many even ones in a base pitch, and the map keeps these; default 512 even ones in the plane, and in space
+        positions: number of even ones in a base pitch, which the map keeps; default 512 even ones in the plane, and in space
             128 of a spur pair where the curves need them, and 96 of a helical one, or 128 where single teeth differ.
         near: for linear analyses: of spur pairs in space fewer loads, up to about twice the working one. Helical pairs have one
             map for all analyses: theirs have most of their loads there, and a transient asks for both.

@@ -100,7 +100,7 @@ def _joints(inside: int, kept: int, layers: int) -> list[int]:
 
 
 def _eliminated(size: int, inside: int) -> float:
-    """Operations that eliminate so many unknowns of a dense matrix."""
+    """Operations that eliminate the `inside` unknowns of a dense matrix."""
     rest = float(size - inside)
     return inside**3 / 3.0 + inside**2 * rest + 2.0 * inside * rest**2
 

@@ -2,7 +2,7 @@
 
 The pitches of a gear are equal superelements (`sector`), joined at their cuts:
     [S_cc S_cf; S_fc S_ff] [c; f] = [reaction; p],   f = S_ff^-1 (p - S_fc c),   (S_cc - S_cf S_ff^-1 S_fc) c = -S_cf S_ff^-1 p.
-So one factorisation of S_ff and of the chain of cuts serves all loads. Bodies: "rim", an arc of so many pitches whose two end
+So one factorisation of S_ff and of the chain of cuts serves all loads. Bodies: "rim", an arc of a few pitches whose two end
 cuts and inner circle are held; "ring", all pitches round the gear, held at the inner circle only.
 
 Numbers are for a Young's modulus and a normal module of 1: divide by E (plane strain, unit width) or by E m_n (3D).

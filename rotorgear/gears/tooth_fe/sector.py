@@ -82,7 +82,7 @@ def layered_sector(
     progress: Progress = silent,
     frame: Frame | None = None,
 ) -> Sector:
-    """Superelement of a pitch of face width `width` (normal modules) in so many layers of hexahedra; end faces free.
+    """Superelement of a pitch of face width `width` (normal modules) in layers of hexahedra; end faces free.
 
     Its inner circle is held where no other `frame` is given.
     """

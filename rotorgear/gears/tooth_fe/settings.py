@@ -133,7 +133,7 @@ _SPACE = {
 }
 # Highest polynomial along the face for a mesh size that gives none: (most rows on the involute, polynomial).
 _ORDERS = ((4, 4), (6, 6), (10, 8), (10_000, 10))
-# A narrow face has so many layers at least.
+# Least number of layers of a narrow face.
 _LEAST_LAYERS = 4
 
 # The mesh that the error of a preset is estimated by, in its plane and in space.

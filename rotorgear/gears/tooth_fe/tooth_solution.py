@@ -100,7 +100,7 @@ class Pitch:
 
 
 def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int) -> Pitch:
-    """A pitch of face `width` in so many layers; 0 layers: plane strain, unit width."""
+    """A pitch of face `width` in a number of layers; 0 layers: plane strain, unit width."""
     skfem = scikit_fem()
     p = len(mesh.points)
     d = 3 if layers else 2

@@ -25,8 +25,8 @@ from rotorgear.progress import Progress, silent
 _ALIASES = 2
 # Gauss points of each seat element for its Fourier coefficients: exact to rounding up to the harmonics above.
 _POINTS = 12
-# With seats at rest pitches feel each other less by a factor of 2.5 and more from one to the next: of half so many on, of a seat
-# three modules deep, 1e-12 of the compliance is left.
+# With seats at rest pitches feel each other less by a factor of 2.5 and more from one to the next: half as many further on,
+# 1e-12 of the compliance is left on a seat three modules deep.
 _ANGLES = 65
 _HARMONICS_TOGETHER = 8
 
@@ -88,7 +88,7 @@ def wheel_motions(
 
 
 def _turn_and_share(n: int, count: int) -> tuple[complex, float]:
-    """e^(i n a) of the n-th of so many harmonics, a = 2 pi / count, and its share in a load on one pitch."""
+    """e^(i n a) of the n-th harmonic round `count` pitches, a = 2 pi / count, and its share in a load on one pitch."""
     alone = n == 0 or 2 * n == count
     return complex(np.exp(2j * np.pi * n / count)), (1.0 if alone else 2.0) / count
 
