@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.elements.shaft import ShaftElements, shaft_elements
+from rotorgear.elements.shaft import shaft_elements
+from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.elements.spring import rigid_transfer
 
 STEEL = (206e9, 206e9 / 2.6, 0.3, 7850.0)

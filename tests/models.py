@@ -11,7 +11,7 @@ import scipy.linalg as la
 
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import ContactGeometry
-from rotorgear.elements.shaft import ShaftElements
+from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.system.system import System
 
 E = 210e9

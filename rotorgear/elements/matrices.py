@@ -9,10 +9,10 @@ Analyses of one model compute the same elements again and again: results of equa
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, fields
-from functools import lru_cache, wraps
-from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -45,26 +45,26 @@ class ElementMatrices:
     def stiffness(self) -> np.ndarray | None:
         """Symmetric stiffness, shape (e, d, d); None where the element has none."""
         # Rounding leaves the product slightly unsymmetric; the solvers take K as symmetric.
-        K = self._carried(self.modulus)
+        K = self.carried(self.modulus)
         return None if K is None else 0.5 * (K + np.swapaxes(K, 1, 2))
 
     @property
     def damping(self) -> np.ndarray | None:
         """Damping C, shape (e, d, d); None where the element has none."""
-        return self._carried(self.viscosity)
+        return self.carried(self.viscosity)
 
     @property
     def circulatory(self) -> np.ndarray | None:
         """Non-symmetric part of the stiffness, shape (e, d, d); None where the element has none."""
-        return self._carried(self.circulation)
+        return self.carried(self.circulation)
 
     @property
     def circulatory_per_speed(self) -> np.ndarray | None:
         """Non-symmetric stiffness for unit spin of the element's own shaft, shape (e, d, d); None where there is none."""
-        return self._carried(self.circulation_per_speed)
+        return self.carried(self.circulation_per_speed)
 
-    def _carried(self, D: np.ndarray | None) -> np.ndarray | None:
-        """B^T D B, shape (e, d, d)."""
+    def carried(self, D: np.ndarray | None) -> np.ndarray | None:
+        """B^T D B, shape (e, d, d), for D (e, s, s); None where there is no B or D."""
         if self.strain is None or D is None:
             return None
         return np.asarray(np.swapaxes(self.strain, 1, 2) @ D @ self.strain)
@@ -93,38 +93,29 @@ def kept_by_content(
     def decorated(
         compute: Callable[Concatenate[Record, Others], Result],
     ) -> Callable[Concatenate[Record, Others], Result]:
-        def computed(content: _ByContent[Record], *args: Any, **options: Any) -> Result:
-            result = compute(content.record, *args, **options)
-            for array in _arrays(result):
-                array.setflags(write=False)
-            return result
-
-        known: Callable[..., Result] = lru_cache(maxsize=results)(computed)
+        known: dict[Hashable, Result] = {}
 
         @wraps(compute)
         def kept(record: Record, *args: Others.args, **options: Others.kwargs) -> Result:
-            if max(len(array) for array in _arrays(record)) > rows:
+            arrays = _arrays(record)
+            if max(len(array) for array in arrays) > rows:
                 return compute(record, *args, **options)
-            return known(_ByContent(record), *args, **options)
+            content = tuple((array.dtype.str, array.shape, array.tobytes()) for array in arrays)
+            request = (type(record), content, args, tuple(sorted(options.items())))
+            if request in known:
+                result = known.pop(request)
+            else:
+                result = compute(record, *args, **options)
+                for array in _arrays(result):
+                    array.setflags(write=False)
+            known[request] = result  # the latest one last
+            if len(known) > results:
+                known.pop(next(iter(known)))
+            return result
 
         return kept
 
     return decorated
-
-
-class _ByContent(Generic[Record]):
-    """A record of arrays that equals every other of its class with the same arrays."""
-
-    def __init__(self, record: Record) -> None:
-        self.record = record
-        self._content = (type(record), *((array.dtype.str, array.shape, array.tobytes()) for array in _arrays(record)))
-        self._hash = hash(self._content)
-
-    def __hash__(self) -> int:
-        return self._hash
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _ByContent) and self._content == other._content
 
 
 def _arrays(record: Any) -> list[np.ndarray]:

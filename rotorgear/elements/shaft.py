@@ -18,25 +18,7 @@ import numpy as np
 
 from rotorgear.elements.matrices import ElementMatrices, kept_by_content
 from rotorgear.elements.shaft_bubbles import bubble_motions, shaft_bubbles
-from rotorgear.elements.shaft_section import (
-    ShaftElements,
-    cowper,
-    gauss,
-    is_uniform,
-    point_count,
-    section,
-    torsional_flexibility,
-)
-
-__all__ = [
-    "ShaftElements",
-    "cowper",
-    "inner_fields",
-    "quarter_turn",
-    "shaft_elements",
-    "strain_motions",
-    "torsional_flexibility",
-]
+from rotorgear.elements.shaft_section import ShaftElements, gauss, is_uniform, point_count, section
 
 _NODAL_STRAINS = ("axial", "torsion", "bending", "bending", "bending", "bending")
 
@@ -67,7 +49,7 @@ def distinct_elements(
     points = point_count(kinds, order)
     strain, modulus, fields, weights = _statics(kinds, points)
 
-    # `quarter_turn` R in terms of strains, B R = P B: the strains of the two planes of bending change places.
+    # A quarter turn R about z in terms of strains, B R = P B: the strains of the two planes of bending change places.
     turn = np.zeros((6, 6))
     turn[2:4, 4:6] = -np.eye(2)
     turn[4:6, 2:4] = np.eye(2)
@@ -118,15 +100,6 @@ def _block(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return whole
 
 
-def quarter_turn() -> np.ndarray:
-    """Turn lateral displacements and tilts of two nodes by +90 degrees about z; axial and torsion map to 0. Shape (12, 12)."""
-    R = np.zeros((12, 12))
-    for k in (0, 3, 6, 9):
-        R[k, k + 1] = -1.0
-        R[k + 1, k] = 1.0
-    return R
-
-
 def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """What follows from statics of e elements at g Gauss points.
 
@@ -136,8 +109,7 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     points, weights, cumulative = gauss(count)
     L = data.length[:, None]
     area, inertia, ratio = section(data.stiffness_diameters, points)
-    given = data.shear_coefficient[:, None]
-    kappa = np.where(np.isnan(given), cowper(data.poisson_ratio[:, None], ratio), given)
+    kappa = data.kappa(ratio)
     E = data.youngs_modulus[:, None]
     G = data.shear_modulus[:, None]
 
@@ -156,8 +128,7 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     a2 = np.sum(W * (bend * arm**2 + shear), 1)
     if is_uniform(data):
         a1 = np.zeros_like(a1)  # odd integrand: rounding must not couple moment and shear
-    determinant = a0 * a2 - a1**2
-    plane = np.stack([np.stack([a2, -a1], -1), np.stack([-a1, a0], -1)], -2) / determinant[:, None, None]
+    plane = np.stack([np.stack([a2, -a1], -1), np.stack([-a1, a0], -1)], -2) / (a0 * a2 - a1**2)[:, None, None]
     D[:, 2:4, 2:4] = D[:, 4:6, 4:6] = plane
 
     # Strains: stretch, twist, then change of slope and mean shear in the plane xz, where w = x and slope = theta_y, and in the

@@ -11,14 +11,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import legendre
 
-from rotorgear.elements.shaft_section import ShaftElements, cowper, gauss, section
+from rotorgear.elements.shaft_section import ShaftElements, gauss, section
 
 
 def bubble_motions(order: int, shear: bool) -> tuple[str, ...]:
     """Motion of each bubble of an element of an order, in their order: two planes of bending, axial, torsion."""
-    plane = max(2 * order - 1, 0) if shear else max(order - 1, 0)
-    plane = 0 if order < 2 else plane
-    return ("bending",) * (2 * plane) + ("axial",) * (order - 1) + ("torsion",) * (order - 1)
+    slopes = order - 1
+    plane = 0 if order < 2 else slopes + order if shear else slopes
+    return ("bending",) * (2 * plane) + ("axial",) * slopes + ("torsion",) * slopes
 
 
 def bubble_places(order: int, richer: int, shear: bool) -> np.ndarray:
@@ -27,13 +27,10 @@ def bubble_places(order: int, richer: int, shear: bool) -> np.ndarray:
     def names(p: int) -> list[tuple[str, int]]:
         if p < 2:
             return []
-        plane = (
-            [("w", k) for k in range(2, p + 2)] + [("t", k) for k in range(2, p + 1)]
-            if shear
-            else [("w", k) for k in range(2, p + 1)]
-        )
-        both = [(axis + kind, k) for axis in "xy" for kind, k in plane]
-        return both + [("z", k) for k in range(2, p + 1)] + [("r", k) for k in range(2, p + 1)]
+        # With shear deformation the deflection has one polynomial more, and the slope its own.
+        last = {"w": p + 1, "t": p} if shear else {"w": p}
+        fields = [(axis + kind, end) for axis in "xy" for kind, end in last.items()] + [("z", p), ("r", p)]
+        return [(field, k) for field, end in fields for k in range(2, end + 1)]
 
     rich = {name: place for place, name in enumerate(names(richer))}
     return np.array([rich[name] for name in names(order)], dtype=int)
@@ -56,21 +53,15 @@ def shaft_bubbles(data: ShaftElements, order: int, points: int) -> tuple[np.ndar
     W = L * weights
 
     # phi_k and d phi_k / dz for k = 2 ... p+1: (g, k) and (e, g, k).
-    x = 2.0 * at - 1.0
-    P = legendre.legvander(x, order + 1)
+    P = legendre.legvander(2.0 * at - 1.0, order + 1)
     k = np.arange(2, order + 2)
     value = (P[:, k] - P[:, k - 2]) / np.sqrt(2.0 * (2 * k - 1))
     slope = np.sqrt((2 * k - 1) / 2.0) * P[:, k - 1]
     derivative = (2.0 / data.length)[:, None, None] * slope
     deflection, tilt, bent, sheared = _plane(data, order, at, value, derivative, shear)
-    kappa = np.where(
-        np.isnan(data.shear_coefficient)[:, None],
-        cowper(data.poisson_ratio[:, None], ratio),
-        data.shear_coefficient[:, None],
-    )
     rows = [np.sqrt(W * E * inertia)[:, :, None] * bent]
     if shear:
-        rows.append(np.sqrt(W * kappa * G * area)[:, :, None] * sheared)
+        rows.append(np.sqrt(W * data.kappa(ratio) * G * area)[:, :, None] * sheared)
     plane_root = _triangle(np.concatenate(rows, axis=1))
     along = value[:, : order - 1]
     spin = derivative[:, :, : order - 1]

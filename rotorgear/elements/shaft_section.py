@@ -33,6 +33,11 @@ class ShaftElements:
     density: np.ndarray
     shear_coefficient: np.ndarray
 
+    def kappa(self, ratio: np.ndarray) -> np.ndarray:
+        """Shear coefficients (e, g) at points with the diameter ratios d_i/d_o (e, g)."""
+        given = self.shear_coefficient[:, None]
+        return np.where(np.isnan(given), cowper(self.poisson_ratio[:, None], ratio), given)
+
     def unique(self) -> tuple[ShaftElements, np.ndarray]:
         """Return the different elements, and for each element its place among them."""
         columns = [np.reshape(getattr(self, name), (len(self.length), -1)) for name in self.__dataclass_fields__]
@@ -71,8 +76,7 @@ def gauss(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     # Integrate the interpolating Legendre series: columns are unit values at one point each.
     coefficients = np.linalg.inv(np.polynomial.legendre.legvander(nodes, count - 1))
     integral = np.polynomial.legendre.legint(coefficients, lbnd=-1, axis=0)
-    cumulative = 0.5 * np.polynomial.legendre.legval(nodes, integral).T
-    return points, 0.5 * weights, cumulative
+    return points, 0.5 * weights, 0.5 * np.polynomial.legendre.legval(nodes, integral).T
 
 
 def profile(diameters: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

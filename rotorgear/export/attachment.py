@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from rotorgear.elements.shaft import cowper
+from rotorgear.elements.shaft_section import cowper
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable, body_name
 

@@ -18,31 +18,35 @@ from rotorgear.system.dofs import INDEX, DofMap
 from rotorgear.system.groups import ElementGroup
 
 Term = Callable[[ElementGroup], np.ndarray | None]
+# Values, rows and columns of a sparse matrix, (k,) each; those of one place are summed.
+Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def _entries(parts: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray | None]]) -> Entries:
+    """Values, rows and columns of small matrices (e, r, c), or (1, r, c) for all e, at rows (e, r) and columns (e, c)."""
+    values = [np.zeros(0)]
+    rows = [np.zeros(0, INDEX)]
+    cols = [np.zeros(0, INDEX)]
+    for row, col, part in parts:
+        if part is None:
+            continue
+        shape = (len(row), row.shape[1], col.shape[1])
+        values.append(np.broadcast_to(part, shape).ravel())
+        rows.append(np.broadcast_to(row.astype(INDEX)[:, :, None], shape).ravel())
+        cols.append(np.broadcast_to(col.astype(INDEX)[:, None, :], shape).ravel())
+    return np.concatenate(values), np.concatenate(rows), np.concatenate(cols)
+
+
+def _nonzero(entries: Entries) -> Entries:
+    """Those entries whose value is not zero."""
+    value, row, col = entries
+    kept = value != 0.0
+    return value[kept], row[kept], col[kept]
 
 
 def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc_array:
     """Return the sum over all elements of `term(group)`, each (e, d, d) or None, as a sparse (n, n)."""
-    rows = []
-    cols = []
-    values = []
-    for group in groups:
-        block = term(group)
-        if block is None:
-            continue
-        numbers = group.dofs.astype(INDEX)
-        d = numbers.shape[1]
-        rows.append(np.repeat(numbers, d, axis=1).ravel())
-        cols.append(np.tile(numbers, (1, d)).ravel())
-        values.append(block.ravel())
-    if not rows:
-        return sp.csc_array((dofs.n, dofs.n))
-    row = np.concatenate(rows)
-    col = np.concatenate(cols)
-    value = np.concatenate(values)
-    nonzero = value != 0.0
-    row = row[nonzero]
-    col = col[nonzero]
-    value = value[nonzero]
+    value, row, col = _nonzero(_entries((group.dofs, group.dofs, term(group)) for group in groups))
     if dofs.selects:
         row = dofs.column[row]
         col = dofs.column[col]
@@ -53,35 +57,33 @@ def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc
     return sp.csc_array(dofs.transform.T @ full @ dofs.transform)
 
 
+def _strain_rows(groups: Iterable[ElementGroup]) -> tuple[list[np.ndarray], int]:
+    """Numbers (e, s) of the strains of each group among those of all, and how many these are."""
+    rows = []
+    count = 0
+    for group in groups:
+        assert group.matrices.strain is not None
+        e, s, _ = group.matrices.strain.shape
+        rows.append(count + np.arange(e * s).reshape(e, s))
+        count += e * s
+    return rows, count
+
+
 def strain_factor(groups: Iterable[ElementGroup], dofs: DofMap) -> sp.csr_array | None:
     """Return S, sparse (s, n), with K = S^T S, row by row from element strains; None where a modulus is not positive.
 
     S q has the strains of each element, so |S q|^2 is free of the cancellation in q^T K q.
     """
-    rows = []
-    cols = []
-    values = []
-    first = 0
-    for group in groups:
-        strain = group.matrices.strain
-        modulus = group.matrices.modulus
-        if strain is None or modulus is None:
-            continue
-        root = _root(modulus)
+    stiff = [g for g in groups if g.matrices.strain is not None and g.matrices.modulus is not None]
+    rows, count = _strain_rows(stiff)
+    parts = []
+    for group, row in zip(stiff, rows, strict=True):
+        root = _root(group.matrices.modulus)
         if root is None:
             return None
-        factor = root @ strain
-        e, s, d = factor.shape
-        number = np.arange(first, first + e * s, dtype=INDEX).reshape(e, s, 1)
-        rows.append(np.broadcast_to(number, (e, s, d)).ravel())
-        cols.append(np.broadcast_to(group.dofs.astype(INDEX)[:, None, :], (e, s, d)).ravel())
-        values.append(factor.ravel())
-        first += e * s
-    size = dofs.transform.shape[0]
-    if not rows:
-        return sp.csr_array((0, dofs.n))
-    triple = (np.concatenate(values), (np.concatenate(rows), np.concatenate(cols)))
-    full = sp.csr_array(sp.coo_array(triple, shape=(first, size)))
+        parts.append((row, group.dofs, root @ group.matrices.strain))
+    value, row, col = _entries(parts)
+    full = sp.csr_array(sp.coo_array((value, (row, col)), shape=(count, dofs.transform.shape[0])))
     return sp.csr_array(full @ dofs.transform)
 
 
@@ -115,9 +117,6 @@ def _root(modulus: np.ndarray) -> np.ndarray | None:
     if np.any(values < -1e-12):
         return None
     return np.sqrt(np.clip(values, 0.0, None))[:, :, None] * np.swapaxes(vectors, 1, 2) * scale[:, None, :]
-
-
-Local = Callable[[ElementGroup], np.ndarray | None]
 
 
 @dataclass(frozen=True)
@@ -157,38 +156,15 @@ def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, ray
             return Z
         return group.spin * speed * per_speed if Z is None else Z + group.spin * speed * per_speed
 
-    first = 0
-    rows = []
-    for group in strained:
-        assert group.matrices.strain is not None
-        e, s, _ = group.matrices.strain.shape
-        rows.append(first + np.arange(e * s).reshape(e, s))
-        first += e * s
-    B = _scattered(
-        [(r, group.dofs, group.matrices.strain) for r, group in zip(rows, strained, strict=True)],
-        (first, dofs.transform.shape[0]),
-    )
+    rows, count = _strain_rows(strained)
 
-    def block(term: Local) -> sp.csr_array:
-        return _scattered([(r, r, term(group)) for r, group in zip(rows, strained, strict=True)], (first, first))
+    def block(term: Term) -> sp.csr_array:
+        return scattered([(row, row, term(group)) for row, group in zip(rows, strained, strict=True)], count)
 
-    return StrainForms(
-        sp.csr_array(B @ dofs.transform), block(lambda g: g.matrices.modulus), block(viscosity), block(circulation)
-    )
+    def scattered(parts: list[tuple[np.ndarray, np.ndarray, np.ndarray | None]], width: int) -> sp.csr_array:
+        value, row, col = _nonzero(_entries(parts))
+        return sp.csr_array(sp.coo_array((value, (row, col)), shape=(count, width)))
 
-
-def _scattered(parts: list[tuple[np.ndarray, np.ndarray, np.ndarray | None]], shape: tuple[int, int]) -> sp.csr_array:
-    """Sparse matrix of the sum of small ones (e, r, c) at rows (e, r) and columns (e, c)."""
-    rows = [np.zeros(0, int)]
-    cols = [np.zeros(0, int)]
-    values = [np.zeros(0)]
-    for row, col, part in parts:
-        if part is None:
-            continue
-        full = np.broadcast_to(part, (len(row), *part.shape[1:]))
-        e, r, c = np.nonzero(full)
-        rows.append(row[e, r])
-        cols.append(col[e, c])
-        values.append(full[e, r, c])
-    triple = (np.concatenate(values), (np.concatenate(rows), np.concatenate(cols)))
-    return sp.csr_array(sp.coo_array(triple, shape=shape))
+    of_dofs = [(row, group.dofs, group.matrices.strain) for row, group in zip(rows, strained, strict=True)]
+    B = scattered(of_dofs, dofs.transform.shape[0]) @ dofs.transform
+    return StrainForms(sp.csr_array(B), block(lambda g: g.matrices.modulus), block(viscosity), block(circulation))

@@ -31,12 +31,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.matrices import kept_by_content
-from rotorgear.elements.shaft import ShaftElements, distinct_elements
+from rotorgear.elements.shaft import distinct_elements
 from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
+from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import symmetric_pair
 from rotorgear.solvers.sparse.factor import factor_general
-from rotorgear.system.groups import alike, element_data, shaft_dofs
+from rotorgear.system.groups import alike, element_data
 from rotorgear.system.nodes import Element
 from rotorgear.system.plan import PieceKey
 from rotorgear.system.system import System
@@ -49,7 +50,10 @@ _RESOLVED = 2.0
 
 @dataclass(frozen=True)
 class Bubbles:
-    """Bubble modes of the k different elements of a group: w^2 (k, b), and what they take from an element's dofs, (k, b, d)."""
+    """Bubble modes of e elements of one order: w^2 (e, b), and what they take from an element's dofs, (e, b, d).
+
+    `lumping` is what consistent mass adds to a lumped one, (e, 12, 12).
+    """
 
     squared: np.ndarray
     mass: np.ndarray
@@ -58,29 +62,18 @@ class Bubbles:
     lumping: np.ndarray | None
 
 
-@dataclass(frozen=True)
-class BubbleGroup:
-    """Elements of a shaft of one order: the kind of each (e,), the dofs of each (e, d), and the bubbles of the kinds."""
-
-    shaft: str
-    elements: list[Element]
-    which: np.ndarray
-    dofs: np.ndarray
-    bubbles: Bubbles
-
-
-def bubble_groups(system: System) -> Iterator[BubbleGroup]:
-    """Yield the elastic shaft elements of a system with the bubbles that they lack."""
+def bubble_groups(system: System) -> Iterator[tuple[str, list[Element], np.ndarray, Bubbles]]:
+    """Yield the elastic shaft elements of one order of a system: their shaft, themselves, their dofs (e, d) and their bubbles."""
     model = system.model
-    for shaft in model.shafts:
-        shear = model.shafts[shaft].shear_deformation
-        lumped = model.shafts[shaft].mass_matrix == "lumped"
-        for rigid, order, elements in alike(model, system.nodes, shaft):
+    for name, shaft in model.shafts.items():
+        lumped = shaft.mass_matrix == "lumped"
+        for rigid, order, elements, dofs in alike(model, system.nodes, name):
             if rigid:
                 continue
-            kinds, which = element_data(model, shaft, elements).unique()
-            bubbles = _bubble_modes(kinds, order, shear, lumped, model.motions)
-            yield BubbleGroup(shaft, elements, which, shaft_dofs(system.nodes, elements, shear), bubbles)
+            kinds, which = element_data(model, name, elements).unique()
+            b = _bubble_modes(kinds, order, shaft.shear_deformation, lumped, model.motions)
+            terms = (b.squared, b.mass, b.stiffness, b.gyroscopic, b.lumping)
+            yield name, elements, dofs, Bubbles(*(None if term is None else term[which] for term in terms))
 
 
 def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndarray) -> dict[PieceKey, np.ndarray]:
@@ -105,40 +98,33 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
     right = system.dofs.expand(x)
     left = system.dofs.expand(y)
     errors: dict[PieceKey, np.ndarray] = {}
-    for group in bubble_groups(system):
-        moved = _moved(system, speed or 0.0, group, s, right, left)  # (e, m)
-        for piece in sorted({element.piece for element in group.elements}):
-            of_piece = [k for k, element in enumerate(group.elements) if element.piece == piece]
-            change = np.abs(moved[of_piece].sum(axis=0))
+    for shaft, elements, dofs, bubbles in bubble_groups(system):
+        moved = _moved(system, speed or 0.0, shaft, bubbles, s, right[dofs], left[dofs].conj())
+        pieces = np.array([element.piece for element in elements])
+        for piece in np.unique(pieces).tolist():
+            change = np.abs(moved[np.flatnonzero(pieces == piece)].sum(axis=0))
             finite = np.where(np.isfinite(change), change, 0.0)
             # The root in the form that loses no digits where the square matters little.
             share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
-            errors[group.shaft, piece] = np.where(np.isfinite(change), share, np.inf)
+            errors[shaft, piece] = np.where(np.isfinite(change), share, np.inf)
     return errors
 
 
 def _moved(
-    system: System, speed: float, group: BubbleGroup, s: np.ndarray, right: np.ndarray, left: np.ndarray
+    system: System, speed: float, shaft: str, bubbles: Bubbles, s: np.ndarray, x: np.ndarray, y: np.ndarray
 ) -> np.ndarray:
-    """Change of the quadratic form by the bubbles of each element, (e, m)."""
-    model = system.model
-    shaft = group.shaft
-    bubbles = group.bubbles
-    which = group.which
-    dofs = group.dofs
-    # (e, d, m)
-    x = right[dofs]
-    y = left[dofs].conj()
+    """Change (e, m) of the quadratic form by the bubbles of each element of a shaft, with right and left shapes (e, d, m)."""
+    damping = system.model.damping
     spin = speed * system.train.ratio(shaft)
-    squared = s**2 + model.damping.rayleigh_alpha * s
-    internal = model.shafts[shaft].internal_damping
-    elastic = 1.0 + s * (model.damping.rayleigh_beta + internal)
-    r = squared * (bubbles.mass[which] @ x) + elastic * (bubbles.stiffness[which] @ x)
-    t = squared * (bubbles.mass[which] @ y) + elastic * (bubbles.stiffness[which] @ y)
+    squared = s**2 + damping.rayleigh_alpha * s
+    internal = system.model.shafts[shaft].internal_damping
+    elastic = 1.0 + s * (damping.rayleigh_beta + internal)
+    r = squared * (bubbles.mass @ x) + elastic * (bubbles.stiffness @ x)
+    t = squared * (bubbles.mass @ y) + elastic * (bubbles.stiffness @ y)
     if spin:
-        r = r + s * spin * (bubbles.gyroscopic[which] @ x)
-        t = t - s * spin * (bubbles.gyroscopic[which] @ y)
-    w2 = bubbles.squared[which][:, :, None]
+        r = r + s * spin * (bubbles.gyroscopic @ x)
+        t = t - s * spin * (bubbles.gyroscopic @ y)
+    w2 = bubbles.squared[:, :, None]
     coarse = np.any(w2 < _RESOLVED * np.abs(s) ** 2, axis=1)
     # Rotating damping couples the planes of a bubble: seen in the sense of each whirl, the stiffness is w^2 (1 -+ i eta W).
     held = squared + elastic * w2
@@ -146,7 +132,7 @@ def _moved(
     gap = gaps[0] if not internal * spin else np.where(np.abs(gaps[0]) < np.abs(gaps[1]), *gaps)
     moved = np.sum(t * r / np.where(gap != 0.0, gap, np.inf), axis=1)
     if bubbles.lumping is not None:
-        moved = moved - squared * np.einsum("edm,edf,efm->em", y, bubbles.lumping[which], x)
+        moved = moved - squared * np.einsum("edm,edf,efm->em", y, bubbles.lumping, x)
     # Where nothing moves, a coarse element does no harm.
     return np.where(coarse & (moved != 0.0), np.inf, moved)
 
@@ -155,30 +141,27 @@ def _moved(
 def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> Bubbles:
     """Modes of the bubbles of an element that is two orders richer, between fixed nodes, for each different element."""
     rich = distinct_elements(kinds, order=order + _RICHER)
-    assert rich.mass is not None
-    assert rich.gyroscopic is not None
     K = rich.stiffness
     assert K is not None
+    assert rich.mass is not None
+    assert rich.gyroscopic is not None
     used = 12 + np.flatnonzero([motion in motions for motion in bubble_motions(order + _RICHER, shear)])
     present = np.concatenate([np.arange(12), 12 + bubble_places(order, order + _RICHER, shear)])
     new = ~np.isin(used, present)
     squared = []
-    mass = []
-    stiffness = []
-    gyroscopic = []
+    taken: list[list[np.ndarray]] = [[], [], []]
     for k in range(len(kinds.length)):
         values, modes = symmetric_pair(K[k][np.ix_(used, used)], rich.mass[k][np.ix_(used, used)])
-        taken = modes[new].T  # the residual against bubbles that are there already is zero
         squared.append(values)
-        mass.append(taken @ rich.mass[k][np.ix_(used[new], present)])
-        stiffness.append(taken @ K[k][np.ix_(used[new], present)])
-        gyroscopic.append(taken @ rich.gyroscopic[k][np.ix_(used[new], present)])
+        # The residual against bubbles that are there already is zero.
+        for A, rows in zip((rich.mass, K, rich.gyroscopic), taken, strict=True):
+            rows.append(modes[new].T @ A[k][np.ix_(used[new], present)])
     lumping = None
     if lumped:
         plain = distinct_elements(kinds, lumped=True).mass
         assert plain is not None
         lumping = rich.mass[:, :12, :12] - plain
-    return Bubbles(np.array(squared), np.array(mass), np.array(stiffness), np.array(gyroscopic), lumping)
+    return Bubbles(np.array(squared), *(np.array(rows) for rows in taken), lumping)
 
 
 _LIGHT = 0.03  # damping ratio up to which x does for an estimate
@@ -237,19 +220,16 @@ class ForcedChanges:
         squared = [np.zeros(0)]
         beta = [np.zeros(0)]
         lumping = None
-        for group in bubble_groups(system):
-            bubbles = group.bubbles
-            own = bubbles.squared[group.which].ravel()
-            squared.append(own)
-            beta.append(np.full(len(own), model.damping.rayleigh_beta + model.shafts[group.shaft].internal_damping))
-            turning = system.train.ratio(group.shaft) * bubbles.gyroscopic
-            for name, kinds in (("mass", bubbles.mass), ("stiffness", bubbles.stiffness), ("gyroscopic", turning)):
-                terms[name].append(_on_free_dofs(kinds[group.which], group.dofs, T))
+        for shaft, _, dofs, bubbles in bubble_groups(system):
+            squared.append(bubbles.squared.ravel())
+            own_beta = model.damping.rayleigh_beta + model.shafts[shaft].internal_damping
+            beta.append(np.full(bubbles.squared.size, own_beta))
+            turning = system.train.ratio(shaft) * bubbles.gyroscopic
+            for name, rows in (("mass", bubbles.mass), ("stiffness", bubbles.stiffness), ("gyroscopic", turning)):
+                terms[name].append(_on_free_dofs(rows, dofs, T))
             if bubbles.lumping is not None:
-                dofs = group.dofs
                 nodal = dofs[:, : bubbles.lumping.shape[1]]
-                rows = _on_free_dofs(bubbles.lumping[group.which], nodal, T)
-                added = T[nodal.ravel(), :].T @ rows
+                added = T[nodal.ravel(), :].T @ _on_free_dofs(bubbles.lumping, nodal, T)
                 lumping = added if lumping is None else lumping + added
         stacked = {name: sp.csr_array(sp.vstack(parts)) for name, parts in terms.items()}
         alpha = model.damping.rayleigh_alpha

@@ -57,8 +57,7 @@ def groups_with_inertia(
         if np.any(mass[group] > 0.0):
             moving.append(group)
             continue
-        stiffness = system.stiffness()[group][:, group].toarray()
-        held = np.linalg.eigvalsh(stiffness)
+        held = np.linalg.eigvalsh(system.stiffness()[group][:, group].toarray())
         if held[0] <= 1e-13 * held[-1]:
             moving.append(group)
             continue
@@ -80,5 +79,4 @@ def dof_motions(system: System) -> np.ndarray:
     dofs = system.dofs
     if dofs.selects:
         return np.asarray(words[dofs.column >= 0])
-    rows = np.asarray(abs(dofs.transform).argmax(axis=0)).ravel()
-    return np.asarray(words[rows])
+    return np.asarray(words[np.asarray(abs(dofs.transform).argmax(axis=0)).ravel()])

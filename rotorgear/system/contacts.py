@@ -19,11 +19,11 @@ class ContactLines:
     Attributes:
         states: mean state of each contact, with its geometry.
         vectors: v over the free dofs, (n, c); turned: dv/dpsi, the change when the centre line turns, (n, c).
+        tilt: v_t over the free dofs, tilt of the flanks along the face, (n, c).
+        tilted: dv_t/dpsi, (n, c).
         rotation: r_b1 tz_1 + r_b2 tz_2 over the free dofs in the sense that presses the teeth, (n, c), in m along the line
             of action of the transverse plane.
         stiffness, damping: N/m and N s/m along the flank normal, (c,); gap: m that must close before a contact carries, (c,).
-        tilt: v_t over the free dofs, tilt of the flanks along the face, (n, c).
-        tilted: dv_t/dpsi, (n, c).
         tilt_stiffness: N m, (c,), 0 where a contact does not resist the tilt.
         start: N, force of a contact whose flanks have not approached, (c,): F = start + k (v . q - gap).
         couple: N m about the contact's place without tilt, (c,): M - e F = couple + k_t (v_t . q).
@@ -32,12 +32,12 @@ class ContactLines:
     states: tuple[MeshForce, ...]
     vectors: np.ndarray
     turned: np.ndarray
+    tilt: np.ndarray
+    tilted: np.ndarray
     rotation: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
     gap: np.ndarray
-    tilt: np.ndarray
-    tilted: np.ndarray
     tilt_stiffness: np.ndarray
     start: np.ndarray
     couple: np.ndarray
@@ -60,45 +60,27 @@ def contact_lines(system: System) -> ContactLines:
     """Return the contacts of a system as vectors over its free degrees of freedom."""
     states = system.state.forces
     groups = [group for group in system.groups if group.part.startswith("meshes.")]
-    count = len(states)
-    size = system.dofs.transform.shape[0]
-    v, turned, rotation, tilt, tilted = np.zeros((5, size, count))
-    stiffness, damping, gap, tilt_stiffness, start, couple = np.zeros((6, count))
+    # Fields of `ContactLines` in their order: vectors over all dofs, and numbers of each contact.
+    vectors = np.zeros((5, system.dofs.transform.shape[0], len(states)))
+    numbers = np.zeros((6, len(states)))
     for k, (state, group) in enumerate(zip(states, groups, strict=True)):
-        strain = group.matrices.strain
-        D = group.matrices.modulus
-        V = group.matrices.viscosity
-        assert strain is not None
-        assert D is not None
-        stiffness[k] = D[0, 0, 0]
-        damping[k] = 0.0 if V is None else V[0, 0, 0]
-        dofs = group.dofs[0]
-        v[dofs, k] = strain[0, 0]
-        turned[dofs, k] = _quarter_turn(strain[0, 0])
-        rotation[dofs[:12], k] = rotation_vector(state)
-        gap[k] = state.gap(system.layout.mesh(state.contact.mesh).part)
+        m = group.matrices
+        assert m.strain is not None
+        assert m.modulus is not None
+        v = m.strain[0, 0]
         v_t = face_strains(contact_geometry(state), face_of(system.layout, state))[1]
-        tilt[dofs, k] = v_t
-        tilted[dofs, k] = _quarter_turn(v_t)
-        start[k] = state.start or 0.0
-        if state.face is not None:
-            tilt_stiffness[k] = state.face.tilt_stiffness
-            couple[k] = state.face.couple
-    T = system.dofs.transform.T
-    return ContactLines(
-        states=states,
-        vectors=T @ v,
-        turned=T @ turned,
-        rotation=T @ rotation,
-        stiffness=stiffness,
-        damping=damping,
-        gap=gap,
-        tilt=T @ tilt,
-        tilted=T @ tilted,
-        tilt_stiffness=tilt_stiffness,
-        start=start,
-        couple=couple,
-    )
+        dofs = group.dofs[0]
+        vectors[:4, dofs, k] = (v, _quarter_turn(v), v_t, _quarter_turn(v_t))
+        vectors[4, dofs[:12], k] = rotation_vector(state)
+        numbers[:, k] = (
+            m.modulus[0, 0, 0],
+            0.0 if m.viscosity is None else m.viscosity[0, 0, 0],
+            state.gap(system.layout.mesh(state.contact.mesh).part),
+            state.face.tilt_stiffness if state.face else 0.0,
+            state.start or 0.0,
+            state.face.couple if state.face else 0.0,
+        )
+    return ContactLines(states, *(system.dofs.transform.T @ v for v in vectors), *numbers)
 
 
 def rotation_vector(state: MeshForce) -> np.ndarray:
@@ -111,8 +93,7 @@ def rotation_vector(state: MeshForce) -> np.ndarray:
 
 def _quarter_turn(vector: np.ndarray) -> np.ndarray:
     """d/dpsi of a contact vector: displacements and rotations in the plane turn with the centre line."""
-    out = np.zeros_like(vector)
-    for first in range(0, len(vector), 3):
-        out[first] = -vector[first + 1]
-        out[first + 1] = vector[first]
-    return out
+    turned = np.zeros_like(vector)
+    turned[0::3] = -vector[1::3]
+    turned[1::3] = vector[0::3]
+    return turned

@@ -62,11 +62,11 @@ class DofMap:
             for (gear, _), own in nodes.teeth.items():
                 if own == number:
                     return f"rotation of the teeth of gear '{gear}' against its shaft"
-            for name, (first, count) in nodes.casings.items():
-                if first <= number < first + count:
+            for name, (first, end) in nodes.casings.items():
+                if first <= number < end:
                     return f"dof {number - first + 1} of casing '{name}'"
-            for name, (first, count) in nodes.bodies.items():
-                if first <= number < first + count:
+            for name, (first, end) in nodes.bodies.items():
+                if first <= number < end:
                     return f"elastic dof {number - first + 1} of gear '{name}'"
             return f"an internal {nodes.internal[number]} dof of a shaft element"
         node, k = divmod(row, 6)
@@ -88,9 +88,8 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
             held[node, _FIXED[direction]] = True
     for name, bearing in model.bearings.items():
         if bearing.pedestal is not None:
-            rows = bearing.pedestal.stiffness.as_rows()
-            soft = [k for k in range(3) if any(rows[k]) or any(row[k] for row in rows)]
-            held[nodes.of_pedestal(name), [k for k in range(6) if k not in soft]] = True
+            K = np.array(bearing.pedestal.stiffness.as_rows(), dtype=bool)
+            held[nodes.of_pedestal(name), ~((K.any(axis=0) | K.any(axis=1)) & (np.arange(6) < 3))] = True
     by_support = int(held.sum()) - by_motion
     follows = np.array([motion == FOLLOWS for motion in nodes.internal], dtype=bool)
     inside = np.array([motion not in (*model.motions, CASING, GEAR_BODY) for motion in nodes.internal], dtype=bool)
@@ -112,9 +111,8 @@ def rigid_groups(model: Tables, nodes: Nodes) -> list[list[int]]:
     """List the runs of neighbouring nodes joined by rigid sections."""
     groups: list[list[int]] = []
     for name, elements in nodes.elements.items():
-        for element in elements:
-            if not model.shafts[name].sections[element.section].rigid:
-                continue
+        sections = model.shafts[name].sections
+        for element in (element for element in elements if sections[element.section].rigid):
             if groups and groups[-1][-1] == element.left:
                 groups[-1].append(element.right)
             else:

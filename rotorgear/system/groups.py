@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import groupby
 from operator import attrgetter
 
@@ -19,8 +19,9 @@ from rotorgear.elements.gear_mesh import (
     gear_mesh,
 )
 from rotorgear.elements.matrices import ElementMatrices
-from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motions
+from rotorgear.elements.shaft import shaft_elements, strain_motions
 from rotorgear.elements.shaft_bubbles import bubble_motions
+from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.elements.spring import between, rigid_transfer, spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
@@ -34,16 +35,10 @@ _NODE_MOTIONS = ("bending", "bending", "axial", "bending", "bending", "torsion")
 
 
 @lru_cache(maxsize=64)  # most groups of a model have the dofs of two nodes
-def _numbers_by_motion(motions: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Which of the dofs with these motions move in each of them."""
-    return {motion: np.flatnonzero([own == motion for own in motions]) for motion in dict.fromkeys(motions)}
-
-
-@lru_cache(maxsize=64)
-def _same_motion(motions: tuple[str, ...]) -> np.ndarray:
-    """Which of the dofs with these motions move in the same one, (d, d)."""
+def by_motion(motions: tuple[str, ...]) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Which of the d dofs with these motions move in each of them, and which two of them in the same one, (d, d)."""
     names = np.array(motions)
-    return np.asarray(names[:, None] == names)
+    return {motion: np.flatnonzero(names == motion) for motion in dict.fromkeys(motions)}, names[:, None] == names
 
 
 @dataclass(frozen=True)
@@ -78,9 +73,8 @@ class ElementGroup:
     @property
     def stiffness_per_square(self) -> np.ndarray | None:
         """What the stiffness (e, d, d) grows by with the square of the reference speed; None where it does not."""
-        B = self.matrices.strain
-        S = self.matrices.modulus_per_square
-        return None if B is None or S is None else np.asarray(self.spin**2 * (np.swapaxes(B, 1, 2) @ S @ B))
+        K = self.matrices.carried(self.matrices.modulus_per_square)
+        return None if K is None else self.spin**2 * K
 
     def circulatory_at(self, speed: float) -> np.ndarray | None:
         """Non-symmetric stiffness (e, d, d) at a reference speed in rad/s; None where there is none."""
@@ -89,16 +83,6 @@ class ElementGroup:
         if turning is None or not self.spin * speed:
             return plain
         return self.spin * speed * turning if plain is None else plain + self.spin * speed * turning
-
-    @cached_property
-    def dofs_of_motions(self) -> dict[str, np.ndarray]:
-        """Which of the d dofs move in each motion."""
-        return _numbers_by_motion(self.dof_motions)
-
-    @property
-    def same_motion(self) -> np.ndarray:
-        """Which of the d dofs move in the same motion, (d, d)."""
-        return _same_motion(self.dof_motions)
 
     @property
     def dof_motions(self) -> tuple[str, ...]:
@@ -220,9 +204,9 @@ def _shaft(layout: Layout, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
     model = layout.model
     shaft = model.shafts[name]
     ratio = layout.train.ratio(name)
-    for rigid, order, chosen in alike(model, nodes, name):
+    for rigid, order, elements, dofs in alike(model, nodes, name):
         matrices = shaft_elements(
-            element_data(model, name, chosen),
+            element_data(model, name, elements),
             order=order,
             lumped=shaft.mass_matrix == "lumped",
             internal_damping=0.0 if rigid else shaft.internal_damping,
@@ -230,28 +214,23 @@ def _shaft(layout: Layout, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
         if rigid:  # it has mass, but nothing in it can strain
             matrices = ElementMatrices(mass=matrices.mass, gyroscopic=matrices.gyroscopic)
         motions = () if rigid else strain_motions(order, shaft.shear_deformation)
-        dofs = shaft_dofs(nodes, chosen, shaft.shear_deformation)
         yield ElementGroup(f"shafts.{name}", name, matrices, dofs, ratio, motions)
 
 
-def alike(model: Tables, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, list[Element]]]:
-    """Yield (rigid, order, elements) for the elements of a shaft that share both."""
-    sections = model.shafts[shaft].sections
+def alike(model: Tables, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, list[Element], np.ndarray]]:
+    """Yield (rigid, order, elements, dofs) for the elements of a shaft that share the first two.
+
+    The dofs (e, d) are those of the left node, of the right node, and internal ones.
+    """
+    part = model.shafts[shaft]
     found: dict[tuple[bool, int], list[Element]] = {}
     for (section, order), run in groupby(nodes.elements[shaft], key=attrgetter("section", "order")):
-        found.setdefault((sections[section].rigid, order), []).extend(run)
-    for (rigid, order), chosen in found.items():
-        yield rigid, order, chosen
-
-
-def shaft_dofs(nodes: Nodes, elements: list[Element], shear: bool) -> np.ndarray:
-    """Numbers of the dofs of shaft elements of one order, shape (e, d): left node, right node, internal ones."""
-    left = np.array([e.left for e in elements])
-    right = np.array([e.right for e in elements])
-    first = 6 * len(nodes) + np.array([e.internal for e in elements])
-    k = np.arange(6)
-    inside = np.arange(len(bubble_motions(elements[0].order, shear)))
-    return np.hstack([6 * left[:, None] + k, 6 * right[:, None] + k, first[:, None] + inside])
+        found.setdefault((part.sections[section].rigid, order), []).extend(run)
+    for (rigid, order), elements in found.items():
+        left, right, internal = np.array([(e.left, e.right, e.internal) for e in elements]).T[:, :, None]
+        k = np.arange(6)
+        inside = np.arange(len(bubble_motions(order, part.shear_deformation)))
+        yield rigid, order, elements, np.hstack([6 * left + k, 6 * right + k, 6 * len(nodes) + internal + inside])
 
 
 def element_data(model: Tables, name: str, elements: list[Element]) -> ShaftElements:
@@ -265,16 +244,13 @@ def element_data(model: Tables, name: str, elements: list[Element]) -> ShaftElem
         table.append([material.youngs_modulus, material.g, material.nu, material.density, kappa])
     number = np.array([e.section for e in elements])
     E, G, nu, rho, kappas = np.array(table)[number].T
-    start = np.array([e.start for e in elements])[:, None]
-    stop = np.array([e.stop for e in elements])[:, None]
+    length, start, stop = np.array([(e.length, e.start, e.stop) for e in elements]).T
 
     def ends(diameters: list[tuple[float, float, float, float]]) -> np.ndarray:
         whole = np.array(diameters)[number]
         left = whole[:, :2]
-        right = whole[:, 2:]
-        return np.hstack([left + (right - left) * start, left + (right - left) * stop])
+        return np.hstack([left + (whole[:, 2:] - left) * at[:, None] for at in (start, stop)])
 
-    length = np.array([e.length for e in elements])
     stiffness = ends([s.stiffness_diameters() for s in shaft.sections])
     mass = ends([s.mass_diameters() for s in shaft.sections])
     return ShaftElements(length, stiffness, mass, E, G, nu, rho, kappas)
@@ -301,14 +277,15 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
 
 def face_of(layout: Layout, force: MeshForce) -> Face:
     """How one contact carries along its face; one without a face of its own in the middle of it and without tilt stiffness."""
-    c = force.contact
-    mesh = layout.mesh(c.mesh)
-    ends = mesh.face(c.helix)
-    place = force.face.place if force.face else 0.0
-    tilt_stiffness = force.face.tilt_stiffness if force.face else 0.0
-    if force.face is None or ends is None:
-        return Face(place, tilt_stiffness)
-    return Face(place, tilt_stiffness, ends[1] - ends[0], (mesh.pinion.part.integral, mesh.gear.part.integral))
+    mesh = layout.mesh(force.contact.mesh)
+    ends = mesh.face(force.contact.helix)
+    face = force.face
+    if face is None:
+        return Face(0.0, 0.0)
+    if ends is None:
+        return Face(face.place, face.tilt_stiffness)
+    integral = (mesh.pinion.part.integral, mesh.gear.part.integral)
+    return Face(face.place, face.tilt_stiffness, ends[1] - ends[0], integral)
 
 
 def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
@@ -333,18 +310,14 @@ def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) ->
         return mesh.damping / both.helices
     if mesh.damping_ratio == 0.0:
         return 0.0
-    diagonals = []
-    for gear in both.gears:
-        bodies = [body for _, _, body in gear.node_bodies]
-        mass, polar, tilt = (
-            sum(getattr(b, key) for b in bodies) / both.helices
-            for key in ("mass", "polar_inertia", "diametral_inertia")
-        )
-        diagonals.append(np.array([mass, mass, mass, tilt, tilt, polar]))
+    inertia = ("mass", "mass", "mass", "diametral_inertia", "diametral_inertia", "polar_inertia")
+    first, second = (
+        np.array([sum(getattr(body, name) for _, _, body in gear.node_bodies) / both.helices for name in inertia])
+        for gear in both.gears
+    )
     if mesh.equivalent_mass == "general":
-        equivalent = equivalent_mass_general(geometry, *diagonals)
+        equivalent = equivalent_mass_general(geometry, first, second)
     else:
-        equivalent = equivalent_mass_torsion(
-            diagonals[0][5], diagonals[1][5], geometry.pinion_base_radius, geometry.gear_base_radius
-        )
+        radii = (geometry.pinion_base_radius, geometry.gear_base_radius)
+        equivalent = equivalent_mass_torsion(first[5], second[5], *radii)
     return 2.0 * mesh.damping_ratio * float(np.sqrt(force.contact.stiffness * equivalent))

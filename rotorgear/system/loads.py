@@ -16,16 +16,24 @@ def varying_load(system: System, name: str) -> Load | None:
     return load if load is not None and load.varies else None
 
 
-def torque_loads(system: System, *, steady: bool = False) -> np.ndarray:
-    """Applied torques at their places, (a,); where `steady`, those alone that never change."""
+def outer_loads(system: System, *, steady: bool = False) -> np.ndarray:
+    """Applied torques, forces and moments from outside, and weight over all dofs, (a,).
+
+    `steady` leaves out torques that change and loads over time or angle, which act as laws with their whole value. Moments that
+    the balance of torques has already are not counted twice.
+    """
     f = np.zeros(system.dofs.transform.shape[0])
-    # A history acts as a law with its whole value, the moment about z in the balance of torques included.
+    outside = np.zeros_like(f)
     histories = {load.address for load in system.layout.external_loads if load.history}
     for item in system.state.applied:
-        if steady and (item.name in histories or varying_load(system, item.name) is not None):
-            continue
-        f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
-    return f
+        if not (steady and (item.name in histories or varying_load(system, item.name) is not None)):
+            f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
+    for load in system.layout.external_loads:
+        if not steady or load.history is None:
+            outside += wrench_load(system, load, load.constant_on_structure)
+    f = f + outside
+    operation = system.model.operation
+    return f + weight_loads(system, operation.gravity) if operation and operation.gravity else f
 
 
 def wrench_load(system: System, load: ExternalLoad, wrench: np.ndarray) -> np.ndarray:
@@ -34,20 +42,6 @@ def wrench_load(system: System, load: ExternalLoad, wrench: np.ndarray) -> np.nd
     for place in load.places:
         node = system.nodes.at(*place)
         f[6 * node : 6 * node + 6] += wrench / len(load.places)
-    return f
-
-
-def external_load(system: System, *, histories: bool = True) -> np.ndarray:
-    """Constant parts of forces and moments from outside, (a,), without moments that the balance of torques has already.
-
-    Args:
-        system: nodes and dofs.
-        histories: whether those of loads over time or angle are among them.
-    """
-    f = np.zeros(system.dofs.transform.shape[0])
-    for load in system.layout.external_loads:
-        if histories or load.history is None:
-            f += wrench_load(system, load, load.constant_on_structure)
     return f
 
 

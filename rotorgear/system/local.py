@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
 from rotorgear.system.groups import ElementGroup, contact_geometry, face_of, mesh_damping, mesh_dofs
-from rotorgear.system.loads import external_load, torque_loads, weight_loads
+from rotorgear.system.loads import outer_loads
 from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
@@ -88,11 +89,9 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     from rotorgear.solvers.time.local_forces import gather
 
     laws = {f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law}
-    mapped: dict[int, FaceMap] = {}
-    if along_faces:
-        state = system.state.about_nominal_flanks
-        maps = [state.face_map(force) for force in state.forces]
-        mapped = {k: teeth for k, teeth in enumerate(maps) if teeth is not None}
+    state = system.state.about_nominal_flanks
+    maps = [state.face_map(force) if along_faces else None for force in state.forces]
+    mapped = {k: teeth for k, teeth in enumerate(maps) if teeth is not None}
     groups = [
         replace(group, matrices=replace(group.matrices, modulus=None, circulation=None))
         if group.part in laws
@@ -125,32 +124,27 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         *external_parts(system),
     )
     T = system.dofs.transform
-    columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
-    operation = system.model.operation
-    steady = torque_loads(system, steady=True) + external_load(system, histories=False)
-    if operation and operation.gravity:
-        steady = steady + weight_loads(system, operation.gravity)
+    nothing = np.zeros((T.shape[0], 0))
     lines = contact_lines(system)
     couple = np.where(np.isin(np.arange(len(lines.states)), list(mapped)), 0.0, lines.couple)
-    load = T.T @ steady - lines.tilt @ couple
+    load = T.T @ outer_loads(system, steady=True) - lines.tilt @ couple
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
     about = forces.reference_stiffness.copy()
-    for part, first, last in zip(parts, forces.first[:-1], forces.first[1:], strict=True):
+    size = max(float(np.abs(load).max(initial=0.0)), 1.0)
+    for part, (first, last) in zip(parts, pairwise(forces.first), strict=True):
         if part.part in alone:
-            size = max(float(np.abs(load).max(initial=0.0)), 1.0)
             about[first:last, first:last] = expansion_stiffness(part.law, size, speed)
     local = LocalSystem(
         M=system.mass,
         D=C,
         K=sp.csc_array(K + assemble(groups, system.dofs, lambda g: g.circulatory_at(speed))),
-        B=sp.csc_array(T.T @ columns),
+        B=sp.csc_array(T.T @ np.hstack([nothing, *(part.columns for part in parts)])),
         forces=replace(forces, reference_stiffness=about),
         load=load,
         rotation=rotation,
         G=system.gyroscopic if system.gyroscopic.nnz else None,
-        watched=T.T
-        @ np.column_stack([np.zeros((T.shape[0], 0)), *(p.rotation for p in parts if p.rotation is not None)]),
+        watched=T.T @ np.column_stack([nothing, *(part.rotation for part in parts if part.rotation is not None)]),
     )
     return LocalModel(system, local, parts, tuple(groups))
 
@@ -161,8 +155,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart
     for number, force in enumerate(state.forces):
         contact = force.contact
         address = f"meshes.{contact.mesh}"
-        helices = len(state.of_mesh(contact.mesh))
-        label = contact.mesh if helices == 1 else f"{contact.mesh} helix {contact.helix + 1}"
+        label = contact.mesh if len(state.of_mesh(contact.mesh)) == 1 else f"{contact.mesh} helix {contact.helix + 1}"
         geometry = contact_geometry(force)
         spring = _mesh_law(system, force, geometry, state.phase(contact) or 0.0)
         along = faces.get(number)
@@ -208,22 +201,17 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart
 
 def _loaded_teeth(spring: MeshContact, teeth: ContactMap | FaceMap, force: MeshForce, phase: float) -> LoadedTeeth:
     """The map of loaded teeth in place of a spring, with the damping and the errors of that."""
+    shared = ("damping", "contact_damping", "order", "phase", "error_cos", "error_sin", "expanded")
     return teeth_law(
         teeth,
         force.contact.stiffness,
         spring.error_mean,
         face=force.face,
-        damping=spring.damping,
-        contact_damping=spring.contact_damping,
         reference=spring.ramp,
-        order=spring.order,
-        phase=spring.phase,
         path_phase=phase,
         # Positions count along the path from approach to recess of the pinion: where the gear drives, time runs the other way.
         forward=1 if force.pinion_drives else -1,
-        error_cos=spring.error_cos,
-        error_sin=spring.error_sin,
-        expanded=spring.expanded,
+        **{name: getattr(spring, name) for name in shared},
     )
 
 
@@ -236,36 +224,31 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     pinion = system.layout.gear(contact.pinion)
     teeth = pinion.part.teeth or 0
     order = teeth * abs(system.train.ratio(pinion.shaft)) * system.direction
-    stiffness_cos, stiffness_sin = _series(mesh.stiffness_variation)
-    error_cos, error_sin = _series(mesh.transmission_error)
+
     # Damping grows over a small share of the mean deflection; penetration damping refers to that deflection itself.
     deflection = (force.normal_force / contact.stiffness) or _UNLOADED
-    ramp = mesh.regularisation_depth
-    if ramp is None:
-        ramp = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
+    usual = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
     error = force.gap(mesh)
     if force.start is not None:  # a tangent about a mean state carries nothing elsewhere than the contact does
         error -= force.start / contact.stiffness
     impact = mesh.corner_impact
-    blow: dict[str, Any] = {}
-    if impact is not None:
-        blow = {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at}
+    blow: dict[str, Any] = (
+        {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at} if impact else {}
+    )
     return MeshContact(
         stiffness=contact.stiffness,
         damping=damping,
         backlash=mesh.backlash or 0.0,
         gap=gap,
         contact_damping=mesh.contact_damping,
-        ramp=ramp,
+        ramp=usual if mesh.regularisation_depth is None else mesh.regularisation_depth,
         order=order,
         phase=phase,
-        stiffness_cos=stiffness_cos,
-        stiffness_sin=stiffness_sin,
+        **_series("stiffness", mesh.stiffness_variation),
         error_mean=error,
-        error_cos=error_cos,
-        error_sin=error_sin,
+        **_series("error", mesh.transmission_error),
         pieces=cycle_pieces(system, force),
         **blow,
     )
@@ -297,15 +280,15 @@ def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, 
     return tuple((i / share.size, float(a), float(b)) for i, (a, b) in enumerate(zip(share, ends, strict=True)))
 
 
-def _series(harmonics: tuple[ErrorHarmonic | StiffnessHarmonic, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Cosine and sine parts by harmonic from amplitudes and phases."""
+def _series(what: str, harmonics: tuple[ErrorHarmonic | StiffnessHarmonic, ...]) -> dict[str, Any]:
+    """Cosine and sine parts by harmonic from amplitudes and phases, as fields of a law that begin with a word."""
     count = max((item.harmonic for item in harmonics), default=0)
     cosines = np.zeros(count)
     sines = np.zeros(count)
     for item in harmonics:
         cosines[item.harmonic - 1] += item.amplitude * np.cos(item.phase)
         sines[item.harmonic - 1] -= item.amplitude * np.sin(item.phase)
-    return tuple(cosines), tuple(sines)
+    return {f"{what}_cos": tuple(cosines), f"{what}_sin": tuple(sines)}
 
 
 # Loads of a law to each step of load of its maps.

@@ -64,6 +64,11 @@ def columns_at(system: System, dofs: np.ndarray, rows: np.ndarray) -> np.ndarray
     return found
 
 
+def columns_of_node(system: System, shaft: str, z: float, components: list[int]) -> np.ndarray:
+    """Columns (a, k) among all dofs of some of the six displacements of a shaft at z."""
+    return columns_at(system, node_dofs(system.nodes.at(shaft, z))[0], np.eye(6)[components])
+
+
 def _joined(system: System, address: str, law: ForceLaw, components: list[int]) -> LocalPart:
     """A law between a shaft and what its part stands on, along some of the six relative displacements."""
     film = system.state.films.get(address)
@@ -158,11 +163,10 @@ def friction_part(
     sense = 1.0 if force.pinion_drives else -1.0
     ends = sorted((sense * pair.start_of_contact, sense * pair.end_of_contact))
     pinion, gear = (float(system.train.ratio(g.shaft)) for g in both.gears)
-    base_pitch = 2.0 * np.pi * teeth.base_radius / teeth.teeth
     rolling = 2.0 * teeth.base_radius * np.tan(geometry.pressure_angle) * abs(pinion)
     law = MeshFriction(
         contact=contact,
-        base_pitch=base_pitch,
+        base_pitch=2.0 * np.pi * teeth.base_radius / teeth.teeth,
         start=ends[0],
         end=ends[1],
         closing=sense * (pinion - gear),
@@ -184,7 +188,7 @@ def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
 
     times, accelerations = rotation.accelerations
     for name, item in system.model.unbalances.items():
-        node = system.nodes.at(*system.layout.place(f"unbalances.{name}"))
+        place = system.layout.place(f"unbalances.{name}")
         law = RotatingForce(
             item.magnitude,
             float(system.train.ratio(item.shaft)),
@@ -194,7 +198,7 @@ def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
             times=times,
             accelerations=accelerations,
         )
-        yield LocalPart(f"unbalances.{name}", name, law, columns_at(system, node_dofs(node)[0], np.eye(6)[:2]))
+        yield LocalPart(f"unbalances.{name}", name, law, columns_of_node(system, *place, [0, 1]))
 
 
 def load_parts(system: System) -> Iterator[LocalPart]:
@@ -218,12 +222,7 @@ def load_parts(system: System) -> Iterator[LocalPart]:
             step_time=load.step_at,
             step_rise=load.step_duration,
         )
-        yield LocalPart(
-            item.name,
-            item.name,
-            law,
-            columns_at(system, node_dofs(system.nodes.at(item.shaft, item.z))[0], np.eye(6)[5:]),
-        )
+        yield LocalPart(item.name, item.name, law, columns_of_node(system, item.shaft, item.z, [5]))
 
 
 def external_parts(system: System) -> Iterator[LocalPart]:
@@ -244,9 +243,7 @@ def external_parts(system: System) -> Iterator[LocalPart]:
             continue
         for component, values in zip(load.history.components, load.history.values, strict=True):
             k = COMPONENTS.index(component)
-            table = TabulatedForce(
-                load.history.places, values, load.history.over == "angle", load.ratio, float(load.constant[k])
-            )
-            yield LocalPart(
-                load.address, f"{name} {component}", table, wrench_load(system, load, np.eye(6)[k])[:, None]
-            )
+            over_angle = load.history.over == "angle"
+            table = TabulatedForce(load.history.places, values, over_angle, load.ratio, float(load.constant[k]))
+            column = wrench_load(system, load, np.eye(6)[k])[:, None]
+            yield LocalPart(load.address, f"{name} {component}", table, column)

@@ -60,8 +60,8 @@ class Nodes:
         internal: the motion of each internal dof: those of the elements in their order, then those of elastic gears, then
             those of casings, whose motion is "casing", then those of gear bodies and of the teeth on them.
         teeth: gear and z of its node -> number of its internal dof, the rotation of teeth that turn against their shaft.
-        casings: casing -> number of the first of its internal dofs, and how many they are.
-        bodies: gear with an elastic body -> number of the first of its internal dofs, and how many they are.
+        casings: casing -> number of the first of its internal dofs, and of the first behind them.
+        bodies: gear with an elastic body -> the same.
         feet: (mesh, helix) and gear with an elastic body -> number of the first of the six motions of its teeth there.
         merged: sentences about places that became one node.
     """
@@ -105,13 +105,11 @@ class Nodes:
 
     def of_body(self, gear: str) -> np.ndarray:
         """Numbers (k,) of the elastic dofs of a gear body."""
-        first, count = self.bodies[gear]
-        return 6 * len(self) + first + np.arange(count)
+        return 6 * len(self) + np.arange(*self.bodies[gear])
 
     def of_casing(self, casing: str) -> np.ndarray:
         """Numbers (n,) of the dofs of a casing: six a seat, then its other ones."""
-        first, count = self.casings[casing]
-        return 6 * len(self) + first + np.arange(count)
+        return 6 * len(self) + np.arange(*self.casings[casing])
 
     def of_seat(self, casing: str, seat: int) -> np.ndarray:
         """Numbers (6,) of the dofs of a seat, counted from 0."""
@@ -153,9 +151,8 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
     """
     model = layout.model
     nodes = Nodes()
-    wanted = places(layout)
-    for name in model.shafts:
-        _add_shaft(nodes, model, name, wanted[name], plan)
+    for name, wanted in places(layout).items():
+        _add_shaft(nodes, model, name, wanted, plan)
     for name, bearing in model.bearings.items():
         if bearing.pedestal is not None:
             place = layout.place(f"bearings.{name}")
@@ -167,11 +164,11 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
             nodes.teeth[name, place.z] = len(nodes.internal)
             nodes.internal.append("torsion")
     for name in model.casings:
-        size = layout.casing(name).size
-        nodes.casings[name] = (len(nodes.internal), size)
-        nodes.internal += [CASING] * size
+        first = len(nodes.internal)
+        nodes.internal += [CASING] * layout.casing(name).size
+        nodes.casings[name] = (first, len(nodes.internal))
     for name, wheel in layout.elastic_bodies.items():
-        nodes.bodies[name] = (len(nodes.internal), wheel.size)
+        nodes.bodies[name] = (len(nodes.internal), len(nodes.internal) + wheel.size)
         # Coordinates of a gear body go by the motion of shafts that they take part in.
         twists = np.abs(wheel.rim_motion[5]) * wheel.rim_radius > np.abs(wheel.rim_motion[2])
         for diameters, twist in zip(wheel.diameters, twists, strict=True):

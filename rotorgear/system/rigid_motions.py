@@ -8,7 +8,6 @@ decades the stiffnesses span. Parts that nothing joins are solved apart: a thous
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
@@ -16,6 +15,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.elements.spring import rigid_transfer
+from rotorgear.solvers.sparse.nullspace import by_label
 from rotorgear.system.groups import ElementGroup
 from rotorgear.system.system import System
 
@@ -23,13 +23,8 @@ from rotorgear.system.system import System
 _ZERO = 1e-9
 
 
-@dataclass(frozen=True)
-class _Strained:
-    """Elements that can strain: B (e, s, d), which of the strains meet a stiffness (e, s), and their dofs (e, d)."""
-
-    strain: np.ndarray
-    used: np.ndarray
-    dofs: np.ndarray
+# Elements that can strain: B (e, s, d), which of the strains meet a stiffness (e, s), and their dofs (e, d).
+Strained = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
@@ -37,7 +32,7 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     P = _candidates(system)
     T = sp.csc_array(system.dofs.transform)
     # The elements of which some strain meets a stiffness.
-    strained = []
+    strained: list[Strained] = []
     for group in groups:
         B = group.matrices.strain
         D = group.matrices.modulus
@@ -49,15 +44,15 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         used = np.broadcast_to(used, (e, used.shape[1]))
         some = used.any(axis=1)
         if some.any():
-            strained.append(_Strained(np.broadcast_to(B, (e, *B.shape[1:]))[some], used[some], group.dofs[some]))
+            strained.append((np.broadcast_to(B, (e, *B.shape[1:]))[some], used[some], group.dofs[some]))
 
     # A number for each of all dofs (a,), the same for those that a candidate, a free dof or an element joins.
     dofs = [P.indices, T.indices]
     count = P.shape[1] + T.shape[1]
     joint = [np.repeat(np.arange(count), np.concatenate([np.diff(P.indptr), np.diff(T.indptr)]))]
-    for part in strained:
-        e, d = part.dofs.shape
-        dofs.append(part.dofs.ravel())
+    for _, _, own in strained:
+        e, d = own.shape
+        dofs.append(own.ravel())
         joint.append(count + np.repeat(np.arange(e), d))
         count += e
     ends = (np.concatenate(dofs), P.shape[0] + np.concatenate(joint))
@@ -65,43 +60,36 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     graph = sp.coo_array((np.ones(len(ends[0]), dtype=np.int8), ends), shape=(size, size))
     label = connected_components(graph, directed=False)[1][: P.shape[0]]
 
-    rows = _by_label(label)
-    columns = _by_label(label[P.indices[P.indptr[:-1]]])
-    unknowns = _by_label(label[T.indices[T.indptr[:-1]]])
-    elements: dict[int, list[_Strained]] = {}
-    for part in strained:
-        for k, chosen in _by_label(label[part.dofs[:, 0]]).items():
-            elements.setdefault(k, []).append(_Strained(part.strain[chosen], part.used[chosen], part.dofs[chosen]))
-
+    rows = by_label(label)
+    columns = by_label(label[P.indices[P.indptr[:-1]]])
+    unknowns = by_label(label[T.indices[T.indptr[:-1]]])
+    elements: dict[int, list[Strained]] = {}
     place = np.zeros(P.shape[0], dtype=int)
+    for here in rows.values():
+        place[here] = np.arange(len(here))
+    for B, used, own in strained:
+        for k, chosen in by_label(label[own[:, 0]]).items():
+            elements.setdefault(k, []).append((B[chosen], used[chosen], place[own[chosen]]))
+
     found = [np.zeros((system.n, 0))]
     for k, moving in columns.items():
         here = rows[k]
         free = unknowns.get(k, np.zeros(0, dtype=int))
-        place[here] = np.arange(len(here))
-        own = [_Strained(part.strain, part.used, place[part.dofs]) for part in elements.get(k, [])]
-        R = _free_of_strain(P[here][:, moving].toarray(), sp.csc_array(T[here][:, free]), system.dofs.selects, own)
+        here_only = sp.csc_array(T[here][:, free])
+        R = _free_of_strain(P[here][:, moving].toarray(), here_only, system.dofs.selects, elements.get(k, []))
         whole = np.zeros((system.n, R.shape[1]))
         whole[free] = R
         found.append(whole)
     return np.hstack(found)
 
 
-def _by_label(label: np.ndarray) -> dict[int, np.ndarray]:
-    """The places of each number among `label` (k,), ascending."""
-    order = np.argsort(label, kind="stable")
-    values, first = np.unique(label[order], return_index=True)
-    return dict(zip(values.tolist(), np.split(order, first[1:]), strict=False))  # no places have one empty part
-
-
-def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[_Strained]) -> np.ndarray:
+def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[Strained]) -> np.ndarray:
     """A basis (f, r) of the motions of free dofs in the span of candidates P (a, p) that strain nothing; T is (a, f)."""
 
     def followed(motions: np.ndarray) -> np.ndarray:
         """T+ motions (f, k): the motions of the free dofs that come nearest to those (a, k) of all."""
-        if (
-            selects or not motions.shape[1] or not T.shape[1]
-        ):  # LAPACK refuses a problem without unknowns or right-hand side
+        # LAPACK refuses a problem without unknowns or right-hand side.
+        if selects or not motions.shape[1] or not T.shape[1]:
             return np.asarray(T.T @ motions)
         return np.asarray(la.lstsq(T.toarray(), motions)[0])
 
@@ -110,10 +98,10 @@ def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: lis
     largest = np.abs(off_range).max(axis=1)
     held = largest > 1e-12
     rows = [off_range[held] / largest[held, None]]
-    for part in strained:
-        strains = np.einsum("esd,edp->esp", part.strain, P[part.dofs])
-        sizes = np.einsum("esd,edp->esp", np.abs(part.strain), np.abs(P[part.dofs])).max(axis=2)
-        rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[part.used])
+    for B, used, dofs in strained:
+        strains = np.einsum("esd,edp->esp", B, P[dofs])
+        sizes = np.einsum("esd,edp->esp", np.abs(B), np.abs(P[dofs])).max(axis=2)
+        rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[used])
     A = np.vstack(rows)
     # The triangle of a tall matrix has its null space, without a square of its rows.
     A = np.asarray(np.linalg.qr(A, mode="r")) if A.shape[0] > A.shape[1] else A
@@ -131,10 +119,8 @@ def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: lis
 def _candidates(system: System) -> sp.csc_array:
     """Six motions of each shaft about its middle, rotations scaled to its length, three of each pedestal, six of each casing."""
     nodes = system.nodes
-    rows: list[np.ndarray] = []
-    values: list[np.ndarray] = []
-    columns: list[np.ndarray] = []
-    count = 0
+    # Dofs (k,) that move together, and their motions (k, 6) or (k, 3).
+    moving: list[tuple[np.ndarray, np.ndarray]] = []
     carried: dict[str, list[tuple[np.ndarray, float]]] = {name: [] for name in system.model.shafts}
     turning: dict[str, list[int]] = {name: [] for name in system.model.shafts}
     for (gear, _), number in nodes.teeth.items():
@@ -149,24 +135,15 @@ def _candidates(system: System) -> sp.csc_array:
         block += [(np.array([dof]), np.eye(6)[[5]]) for dof in turning[name]]  # elastic gears turn with their shaft
         whole = np.vstack([motions for _, motions in block])
         whole[:, 3:] /= max(shaft.length, 1e-3)
-        rows.append(np.concatenate([dofs for dofs, _ in block]))
-        values.append(whole)
-        columns.append(count + np.arange(6))
-        count += 6
-    for k, bearing in enumerate(nodes.pedestal):
-        if bearing:
-            rows.append(6 * k + np.arange(3))
-            values.append(np.eye(3))
-            columns.append(count + np.arange(3))
-            count += 3
-    for name in system.model.casings:
-        rows.append(nodes.of_casing(name))
-        values.append(system.layout.casing(name).seat_motions)
-        columns.append(count + np.arange(6))
-        count += 6
-    entries = [np.broadcast_to(r[:, None], v.shape).ravel() for r, v in zip(rows, values, strict=True)]
-    places = [np.broadcast_to(c, v.shape).ravel() for c, v in zip(columns, values, strict=True)]
-    triple = (np.concatenate([v.ravel() for v in values]), (np.concatenate(entries), np.concatenate(places)))
-    P = sp.csc_array(sp.coo_array(triple, shape=(system.dofs.transform.shape[0], count)))
+        moving.append((np.concatenate([dofs for dofs, _ in block]), whole))
+    moving += [(6 * k + np.arange(3), np.eye(3)) for k, bearing in enumerate(nodes.pedestal) if bearing]
+    moving += [(nodes.of_casing(name), system.layout.casing(name).seat_motions) for name in system.model.casings]
+    first = np.cumsum([0, *(motions.shape[1] for _, motions in moving)])
+    values = np.concatenate([motions.ravel() for _, motions in moving])
+    rows = np.concatenate([np.repeat(dofs, motions.shape[1]) for dofs, motions in moving])
+    columns = np.concatenate(
+        [np.tile(np.arange(a, b), len(dofs)) for (dofs, _), a, b in zip(moving, first[:-1], first[1:], strict=True)]
+    )
+    P = sp.csc_array(sp.coo_array((values, (rows, columns)), shape=(system.dofs.transform.shape[0], first[-1])))
     P.eliminate_zeros()
     return P

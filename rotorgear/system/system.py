@@ -5,7 +5,8 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, wraps
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -33,6 +34,24 @@ class Matrices:
     gyroscopic: sp.csc_array
     stiffness: sp.csc_array
     symmetric: bool
+
+
+Made = TypeVar("Made")
+
+
+def _kept(method: Callable[[System, float], Made]) -> Callable[..., Made]:
+    """Keep what a method made at the last speed; where parts have no tables of it, what is kept serves any speed."""
+
+    @wraps(method)
+    def kept(system: System, speed: float = 0.0) -> Made:
+        at = speed if system.has_tables else 0.0
+        last = system._last.get(method.__name__)
+        if last is None or last[0] != at:
+            last = system._last[method.__name__] = (at, method(system, at))
+        made: Made = last[1]
+        return made
+
+    return kept
 
 
 class System:
@@ -67,10 +86,7 @@ class System:
         state = state or load or model.torque_flow(direction)
         # A state may have been found on a model that differs in what it does not depend on, such as modes of its casings.
         self.state = state if state.layout is model.layout else replace(state, layout=model.layout)
-        self._last: tuple[float, Matrices] | None = None
-        self._last_damping: tuple[float, sp.csc_array] | None = None
-        self._last_stiffness: tuple[float, sp.csc_array] | None = None
-        self._last_strain: tuple[float, sp.csr_array | None] | None = None
+        self._last: dict[str, tuple[float, Any]] = {}
 
     def with_plan(self, plan: Plan) -> System:
         """The same model under the same load on another mesh."""
@@ -164,12 +180,10 @@ class System:
             return None
         return self._sum(self.groups, lambda g: g.stiffness_per_square)
 
+    @_kept
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
         """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""
-        speed = self._that_counts(speed)
-        if self._last_stiffness is None or self._last_stiffness[0] != speed:
-            self._last_stiffness = (speed, self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness))
-        return self._last_stiffness[1]
+        return self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness)
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
@@ -177,30 +191,25 @@ class System:
             return sp.csc_array((self.n, self.n))
         return self._sum(self.groups_at(speed), lambda g: g.circulatory_at(speed))
 
+    @_kept
     def damping(self, speed: float = 0.0) -> sp.csc_array:
         """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
-        speed = self._that_counts(speed)
-        if self._last_damping is not None and self._last_damping[0] == speed:
-            return self._last_damping[1]
         C = self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
         given = self.model.damping
         if given.rayleigh_alpha:
             C = C + given.rayleigh_alpha * self.mass
         if given.rayleigh_beta:
             C = C + given.rayleigh_beta * self.stiffness(speed)
-        self._last_damping = (speed, sp.csc_array(C))
-        return self._last_damping[1]
+        return sp.csc_array(C)
 
     def definite_stiffness(self, speed: float = 0.0) -> sp.csc_array:
         """The stiffness at a reference speed in rad/s with no spring below zero, sparse (n, n): see `without_negative`."""
         return self._sum(self.groups_at(speed), lambda g: without_negative(g.matrices))
 
+    @_kept
     def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
         """S with K = S^T S from element strains, sparse (s, n); None where a modulus is not positive. The last is kept."""
-        speed = self._that_counts(speed)
-        if self._last_strain is None or self._last_strain[0] != speed:
-            self._last_strain = (speed, strain_factor(self.groups_at(speed), self.dofs))
-        return self._last_strain[1]
+        return strain_factor(self.groups_at(speed), self.dofs)
 
     def strain_forms(self, speed: float = 0.0) -> StrainForms:
         """Stiffness, damping and circulatory terms at a reference speed in rad/s as strains and what acts on them."""
@@ -222,15 +231,12 @@ class System:
         return D if D.nnz and np.any(D.data) else None
 
     def matrices(self, speed: float = 0.0) -> Matrices:
-        """All matrices at a reference speed in rad/s; those of the last speed are kept."""
-        if self._last is not None and self._last[0] == speed:
-            return self._last[1]
+        """All matrices at a reference speed in rad/s."""
         skew = self.circulatory(speed)
         K = self.stiffness(speed)
         if skew.nnz:
             K = sp.csc_array(K + skew)
-        self._last = (speed, Matrices(self.mass, self.damping(speed), self.gyroscopic, K, not skew.nnz))
-        return self._last[1]
+        return Matrices(self.mass, self.damping(speed), self.gyroscopic, K, not skew.nnz)
 
     def rigid_with(self, node: int) -> list[int]:
         """The nodes that rigid sections tie to a node, itself among them."""
@@ -251,10 +257,6 @@ class System:
         """W G at a speed W in rad/s, sparse (n, n)."""
         G = self.gyroscopic
         return sp.csc_array((speed * G.data, G.indices, G.indptr), shape=G.shape)
-
-    def _that_counts(self, speed: float) -> float:
-        """The speed where stiffness and damping have tables of it, else one for all: what is kept serves any speed then."""
-        return speed if self.has_tables else 0.0
 
     def _sum(self, groups: list[ElementGroup], term: Callable[[ElementGroup], np.ndarray | None]) -> sp.csc_array:
         return assemble(groups, self.dofs, term)

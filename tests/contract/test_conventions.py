@@ -14,7 +14,8 @@ import scipy.linalg as la
 import rotorgear as rg
 from rotorgear.elements.bodies import rigid_body
 from rotorgear.elements.matrices import ElementMatrices
-from rotorgear.elements.shaft import cowper, quarter_turn, shaft_elements
+from rotorgear.elements.shaft import shaft_elements
+from rotorgear.elements.shaft_section import cowper
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.quantity import RPM_PER_RAD_S, parse_quantity
 from rotorgear.system.system import System
@@ -291,8 +292,10 @@ def test_c12_internal_damping_is_eta_k_and_turns_with_the_shaft() -> None:
     assert matrices.damping is not None
     assert matrices.circulatory_per_speed is not None
     np.testing.assert_allclose(matrices.damping[0], eta * K, atol=1e-12 * eta * np.abs(K).max())
-    np.testing.assert_allclose(matrices.circulatory_per_speed[0], -eta * K @ quarter_turn(), atol=1e-9 * eta)
-    np.testing.assert_array_equal(quarter_turn()[:6, :6] @ np.eye(6)[0], np.eye(6)[1])  # x turns to y
+    # Lateral displacements and tilts turn by +90 degrees about z, x to y; axial motion and torsion drop out.
+    turn = np.kron(np.eye(4), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(matrices.circulatory_per_speed[0], -eta * K @ turn, atol=1e-9 * eta)
+    np.testing.assert_array_equal(turn[:6, :6] @ np.eye(6)[0], np.eye(6)[1])
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])

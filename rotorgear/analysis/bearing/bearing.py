@@ -28,7 +28,7 @@ from rotorgear.analysis.bearing.state import (
 from rotorgear.analysis.campbell.speeds import system_for_speeds
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
-from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.modal.modal import ModalRequest, modal
 from rotorgear.analysis.static.solve import Equilibrated, LawState
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
@@ -151,7 +151,7 @@ def bearing(
         laws = [equilibrium.laws for equilibrium in found.values()]
         # One mesh serves the modes at both ends of the range.
         ends = (min(found, key=abs), max(found, key=abs))
-        system = system_for_speeds(own, ends, modes=_MODES, fmax=None, elements=None, accuracy=None)
+        system = system_for_speeds(own, ends, ModalRequest(modes=_MODES))
         least = [_least_decrement(own, system, speed, near)[0] for speed, near in zip(found, laws, strict=True)]
         rows = [replace(row, log_decrement=one) for row, one in zip(rows, least, strict=True)]
         progress(0.85, "threshold")

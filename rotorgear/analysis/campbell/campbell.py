@@ -6,6 +6,7 @@ are damped and gyroscopic as in `modal` at a speed.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -28,6 +29,7 @@ from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
+from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
@@ -107,17 +109,8 @@ def campbell(
     about = linear_system(model, [float(speed) for speed in asked])
     model, few = (about, ()) if isinstance(model, System) else with_casing_modes(model, fmax)
     ends = [float(asked[0]), float(asked[-1])]
-    system = system_for_speeds(
-        model,
-        ends,
-        modes=modes,
-        fmax=fmax,
-        elements=elements,
-        accuracy=accuracy,
-        only=tuple(only),
-        state=about.state,
-        progress=progress,
-    )
+    request = ModalRequest(None, modes, fmax, elements, accuracy, tuple(only))
+    system = system_for_speeds(model, ends, request, about.state, progress)
     clock.lap("mesh")
     reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax)
     with single_thread(system.n):
@@ -140,15 +133,14 @@ def campbell(
         clock.lap("energies")
         progress(1.0, "done")
     worst = float(np.max(estimate, initial=0.0, where=np.isfinite(estimate)))
-    short = missed(
-        accuracy, worst, "branches that rise into the range between its ends are not refined for; ask for more modes"
-    )
+    remedy = "branches that rise into the range between its ends are not refined for; ask for more modes"
+    short = missed(accuracy, worst, remedy)
     return replace(
         result,
         model=parts,
         seconds=clock.total(),
-        left_out=(*result.left_out, *(note for note in (begun, beyond) if note)),
-        warnings=(*result.warnings, *few, *diagram.reduction_warnings(), *([short] if short else [])),
+        left_out=(*result.left_out, *filter(None, [begun, beyond])),
+        warnings=(*result.warnings, *few, *diagram.reduction_warnings(), *filter(None, [short])),
         status=short or "success",
     )
 
@@ -175,16 +167,15 @@ class _Diagram:
         """Follow the modes of each group that are asked for at any speed of the track."""
         low = float(asked.min())
         high = float(asked.max())
-        operating = found.system.model.operating_speed
-        extra = [*found.family.knots] + ([operating] if operating is not None and low < operating < high else [])
+        operating = found.system.model.operating_speed or low
+        extra = [*found.family.knots, *([operating] if low < operating < high else [])]
         new = [speed for speed in extra if np.min(np.abs(asked - speed)) > _SAME_SPEED * max(high - low, 1e-300)]
         grid = merged(sorted([*map(float, asked), *map(float, new)]), high - low)
         grid = grid if abs(asked[-1]) >= abs(asked[0]) and asked[-1] >= 0.0 else grid[::-1]
         wanted = []  # how many of the lowest modes of each group are asked for at each speed
         for number, speed in enumerate(grid, 1):
             progress(0.5 + 0.3 * (number - 1) / len(grid), f"speed {number} of {len(grid)}")
-            parts = found.at(speed)
-            frequencies = [np.abs(found.damped(part.s)) for part in parts]
+            frequencies = [np.abs(found.damped(part.s)) for part in found.at(speed)]
             together = np.sort(np.concatenate(frequencies))
             count = found.reach.inside(together)
             # Equal frequencies of two groups count in both: rounding must not decide which of them is asked for.
@@ -196,7 +187,7 @@ class _Diagram:
             watched = int(counts.max(initial=0))
             if not watched:
                 continue
-            tracks.append(track(lambda speed, group=group: found.at(speed)[group], grid, watched + 1))  # type: ignore[misc]
+            tracks.append(track(found, group, grid, watched + 1))
             places = tracks[-1].number
             kept = np.any((places >= 0) & (places < counts[:, None]) & np.isin(grid, asked)[:, None], axis=0)
             modes = [found.at(speed)[group] for speed in grid]
@@ -218,25 +209,25 @@ class _Diagram:
         """Estimated relative discretisation error of each branch (b,), the larger of both ends of the range."""
         system = self.found.system
         estimate = np.full(len(self.chains), np.nan)
-        for snapshot in self.found.snapshots[:2]:
-            k = int(np.argmin(np.abs(self.grid - snapshot.speed)))
-            parts = errors_of(system, snapshot.speed, snapshot.s, snapshot.vectors, np.zeros(len(snapshot.s), bool))
-            error = total_error(parts, len(snapshot.s)) + reduction_errors(system, snapshot.s, snapshot.vectors)
+        for end in self.found.snapshots[:2]:
+            k = int(np.argmin(np.abs(self.grid - end.speed)))
+            parts = errors_of(system, end.speed, end.s, end.vectors, np.zeros(len(end.s), bool))
+            error = total_error(parts, len(end.s)) + reduction_errors(system, end.s, end.vectors)
             for b, chain in enumerate(self.chains):
-                if np.isfinite(chain.s[k]):
-                    distance = np.abs(snapshot.s - chain.s[k])
-                    near = int(np.argmin(distance))
-                    if distance[near] <= 1e-6 * abs(chain.s[k]):
-                        estimate[b] = np.fmax(estimate[b], error[near])
+                if not np.isfinite(chain.s[k]):
+                    continue
+                near = int(np.argmin(np.abs(end.s - chain.s[k])))
+                if abs(end.s[near] - chain.s[k]) <= 1e-6 * abs(chain.s[k]):
+                    estimate[b] = np.fmax(estimate[b], error[near])
         return estimate
 
     def onsets(self) -> tuple[Onset, ...]:
         """Where branches start to grow with speed, and where a motion that doesn't oscillate does."""
         found = self.found
         grid = self.grid
-        onsets: list[Onset] = []
         if found.family.is_conservative:
             return ()
+        onsets: list[Onset] = []
         for b, chain in enumerate(self.chains):
             first = chain.s[0]
             if np.isfinite(first) and first.real > 1e-9 * abs(first):
@@ -246,18 +237,16 @@ class _Diagram:
                 k = int(np.searchsorted(np.abs(grid), abs(root.speed)))
                 if chain.s[min(k, len(grid) - 1)].real > 0.0:
                     onsets.append(Onset(b + 1, root.speed, float(root.s.imag) / (2.0 * np.pi)))
-        for speed in grid:
-            if any(np.any(part.real > 0.0) for part in found.at(speed)):
-                onsets.append(Onset(0, float(speed), 0.0))
-                break
+        grows = (speed for speed in grid if any(np.any(part.real > 0.0) for part in found.at(speed)))
+        onsets += [Onset(0, float(speed), 0.0) for speed in itertools.islice(grows, 1)]
         return tuple(sorted(onsets, key=lambda onset: abs(onset.speed)))
 
     def operating_place(self) -> int | None:
         """Number of the operating speed on the track; None where it lies outside, or there is none."""
+        grid = self.grid
         operating = self.found.system.model.operating_speed
         if operating is None:
             return None
-        grid = self.grid
         place = int(np.argmin(np.abs(grid - operating)))
         # A range that is cut evenly meets it to rounding only.
         return place if abs(grid[place] - operating) <= _SAME_SPEED * max(float(np.ptp(grid)), 1e-300) else None
@@ -276,8 +265,9 @@ class _Diagram:
         chains = self.chains
         grid = self.grid
         kept = np.flatnonzero(np.isin(grid, self.asked))
-        s = found.damped(np.array([chain.s for chain in chains]).T)
-        there = np.isfinite(np.array([chain.s[kept] for chain in chains]).T)
+        branches = np.array([chain.s for chain in chains]).T
+        s = found.damped(branches)
+        there = np.isfinite(branches[kept])
         coordinates = np.zeros((len(kept), int(shapes.offsets[-1]), len(chains)), complex)
         for b, chain in enumerate(chains):
             coordinates[:, :, b] = np.nan_to_num(shapes.coordinates(chain.group, chain.q[kept].T).T)
@@ -295,11 +285,10 @@ class _Diagram:
         margin: tuple[Margin, ...] = ()
         operating = system.model.operating_speed
         place = self.operating_place()
-        known = [] if place is None else [chain for chain in chains if np.isfinite(chain.s[place])]
-        if operating is not None and place is not None and known:
+        if operating is not None and place is not None and np.isfinite(branches[place]).any():
+            known = [chain for chain in chains if np.isfinite(chain.s[place])]
             at = np.hstack([shapes.coordinates(chain.group, chain.q[place][:, None]) for chain in known])
-            there_seen = shapes.portraits(at, np.full(len(known), operating))
-            margin = margins(lines, met, operating, s[place], there_seen)
+            margin = margins(lines, met, operating, s[place], shapes.portraits(at, np.full(len(known), operating)))
         strain = {name: v for name, v in seen.energies.strain.items() if name.startswith("meshes.")}
         # A branch is described by its mode at the first speed where it oscillates: all of them exist there, but not everywhere.
         first = [int(np.argmax(np.isfinite(chain.s))) for chain in chains]
@@ -333,20 +322,18 @@ class _Diagram:
             warnings=self.warnings(onsets),
             method=f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a "
             f"check: off by at most {bound:.0e}; {len(grid)} speeds, {halvings} steps halved to follow the modes"
-            + about_state(system.state),
+            f"{about_state(system.state)}",
         )
 
     def left_out(self) -> tuple[str, ...]:
         """What the model holds and the diagram does not."""
         found = self.found
         system = found.system
-        grid = self.grid
-        notes: list[str] = [*left_out(system, "modes", float(grid[-1]))]
+        notes: list[str] = [*left_out(system, "modes", float(self.grid[-1]))]
         rigid = found.snapshots[0].rigid.shape[1]
         if rigid:
             notes.append(f"{rigid} rigid-body mode{'s'[: rigid != 1]} at 0 Hz")
-        still = max(sum(len(part.real) for part in found.at(speed)) for speed in grid)
-        if still:
+        if any(len(part.real) for speed in self.grid for part in found.at(speed)):
             notes.append("motions that do not oscillate (overdamped): they have no frequency to draw")
         if system.model.operating_speed is None:
             notes.append("margins: the model has no operating speed")
@@ -371,8 +358,7 @@ class _Diagram:
         system = self.found.system
         if not system.model.casings:
             return ()
-        top = max(float(np.nanmax(np.abs(chain.s))) for chain in self.chains)
         first = self.found.snapshots[0]
-        low = np.abs(first.s) <= top
+        low = np.abs(first.s) <= max(float(np.nanmax(np.abs(chain.s))) for chain in self.chains)
         s = first.s[low]
         return tuple(casing_warnings(reduction_errors(system, s, first.vectors[:, low]), s))

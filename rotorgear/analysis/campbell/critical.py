@@ -27,6 +27,7 @@ from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
+from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.state_at import linear_system
@@ -106,16 +107,8 @@ def critical(
     model, few = (about, ()) if isinstance(model, System) else with_casing_modes(model, highest)
     aim = accuracy
     for _ in range(_ROUNDS):
-        system = system_for_speeds(
-            model,
-            [top],
-            modes=None,
-            fmax=highest,
-            elements=elements,
-            accuracy=aim,
-            state=about.state,
-            progress=progress,
-        )
+        asked = ModalRequest(fmax=highest, elements=elements, accuracy=aim)
+        system = system_for_speeds(model, [top], asked, about.state, progress)
         clock.lap("mesh")
         family = SpeedFamily(system, *sorted((low, top)))
         found: list[tuple[ExcitationOrder, Synchronous]] = []
@@ -123,9 +116,8 @@ def critical(
             progress(0.3 + 0.6 * k / len(lines), line.name)
             limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
             if limit > abs(low):
-                found += [
-                    (line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)
-                ]
+                roots = roots_of(system, family, line.order, np.copysign(limit, top), damped)
+                found += [(line, root) for root in roots]
         clock.lap("critical speeds")
         ranges = list(affine_pieces(system, family, top, damped))
         errors = [_speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]
@@ -141,13 +133,8 @@ def critical(
     return replace(
         result,
         model=parts,
-        left_out=(*result.left_out, *([begun] if begun else [])),
-        warnings=(
-            *result.warnings,
-            *few,
-            *(() if low else _too_slow(system, top, lines)),
-            *([short] if short else []),
-        ),
+        left_out=(*result.left_out, *filter(None, [begun])),
+        warnings=(*result.warnings, *few, *(() if low else _too_slow(system, top, lines)), *filter(None, [short])),
         status=short or "success",
     )
 
@@ -177,8 +164,7 @@ def _speed_error(system: System, ranges: Sequence[Affine], root: Synchronous, or
     K_slope = here.K1 if here.K2 is None else here.K1 + 2.0 * root.speed * here.K2
     turned = y @ (root.eigenvalue * (here.D1 @ root.vector) + K_slope @ root.vector)
     held = y @ (2.0 * root.eigenvalue * (here.M @ root.vector) + D @ root.vector)
-    slope = -float(np.imag(turned / held))
-    along = abs(1.0 - slope / order)
+    along = abs(1.0 + float(np.imag(turned / held)) / order)
     return error / along if along else np.inf
 
 
@@ -204,15 +190,13 @@ def roots_of(system: System, family: SpeedFamily, order: float, top: float, damp
 
     They lie between the lowest speed of the family and `top` in rad/s, whose sign is that of the rotation.
     """
-    groups = family.groups
     found = []
-    for whole in affine_pieces(system, family, top, damped):
-        for dofs in groups:
-            for root in synchronous_speeds(whole.cut(dofs), order):
-                vector = np.zeros(system.n, complex)
-                vector[dofs] = root.vector
-                if not _is_rounding(system, np.copysign(root.speed, top), vector):
-                    found.append(Synchronous(root.speed, root.eigenvalue, vector, root.residual))
+    for whole, dofs in itertools.product(affine_pieces(system, family, top, damped), family.groups):
+        for root in synchronous_speeds(whole.cut(dofs), order):
+            vector = np.zeros(system.n, complex)
+            vector[dofs] = root.vector
+            if not _is_rounding(system, np.copysign(root.speed, top), vector):
+                found.append(replace(root, vector=vector))
     return found
 
 
@@ -235,9 +219,9 @@ def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool)
     """The matrices between two rows of any bearing's table, as functions of the size of the speed."""
     sign = float(np.sign(top))
     end = abs(top)
-    inner = sorted(abs(float(speed)) for speed in family.knots if 0.0 < abs(speed) < end * (1.0 - 1e-12))
-    edges = [min((abs(float(w)) for w in family.knots), default=0.0), *inner, end]
-    edges = sorted(set(edges))
+    knots = np.abs(family.knots).tolist()
+    inner = [speed for speed in knots if 0.0 < speed < end * (1.0 - 1e-12)]
+    edges = sorted({min(knots, default=0.0), *inner, end})
     square = system.stiffness_per_square
 
     def matrices(speed: float) -> tuple[sp.csc_array, sp.csc_array]:
@@ -264,8 +248,7 @@ def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool)
 def _clean(A: sp.csc_array, scale: sp.csc_array) -> sp.csc_array:
     """A without entries that are rounding of the differences it was made of."""
     A = sp.csc_array(A)
-    largest = abs(scale).max() if scale.nnz else 0.0
-    A.data[np.abs(A.data) <= 1e-14 * largest] = 0.0
+    A.data[np.abs(A.data) <= 1e-14 * (abs(scale).max() if scale.nnz else 0.0)] = 0.0
     A.eliminate_zeros()
     return A
 
@@ -274,10 +257,10 @@ def looks_of(
     system: System, roots: Sequence[Synchronous], top: float
 ) -> tuple[BasisShapes, np.ndarray, np.ndarray, Portraits]:
     """Shapes, coordinates in their basis (r, c), speeds (c,) in rad/s in the sense of `top`, and portraits of critical speeds."""
-    count = len(roots)
-    X = np.column_stack([root.vector for root in roots]) if roots else np.zeros((system.n, 0), complex)
+    X = np.column_stack([np.zeros((system.n, 0), complex), *(root.vector for root in roots)])
     shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
-    coordinates = shapes.coordinates(0, np.vstack([np.eye(count), 1j * np.eye(count)]))
+    one = np.eye(len(roots))
+    coordinates = shapes.coordinates(0, np.vstack([one, 1j * one]))
     speeds = np.copysign(np.array([root.speed for root in roots]), top)
     return shapes, coordinates, speeds, shapes.portraits(coordinates, speeds, top)
 
@@ -290,6 +273,7 @@ def _result(
     damped: bool,
     clock: Clock,
 ) -> CriticalResult:
+    """The critical speeds found, each with its line and its estimated error, with the looks of their modes."""
     low, top = ends
     shapes, coordinates, speeds, seen = looks_of(system, [root for (_, root), _ in found], top)
     words = shapes.descriptions(coordinates, speeds)
@@ -314,6 +298,7 @@ def _result(
             )
         )
     clock.lap("energies")
+    solver = "damped, root of Im s = p W" if damped else "undamped, counted by pivot signs"
     return CriticalResult(
         model=system.model,
         damped=damped,
@@ -329,7 +314,5 @@ def _result(
         laws=law_rows(system.state.operating),
         left_out=left_out(system, "modes", top, undamped=not damped),
         warnings=tuple(system.nodes.merged),
-        method="eigenproblem in the speed, "
-        + ("damped, root of Im s = p W" if damped else "undamped, counted by pivot signs")
-        + about_state(system.state),
+        method=f"eigenproblem in the speed, {solver}{about_state(system.state)}",
     )

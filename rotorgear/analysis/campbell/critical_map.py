@@ -17,6 +17,7 @@ from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.modal.branch_shapes import whirl_numbers
+from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.spring import constant_spring
@@ -68,8 +69,7 @@ def critical_map(
     if not model.bearings:
         raise AnalysisError("the model has no bearings, so there is no support stiffness to vary")
     shaft = shaft or model.reference_shaft
-    lines = excitation_orders(model, (order,), ())
-    line = next((item for item in lines if shaft in item.parts), None)
+    line = next((item for item in excitation_orders(model, (order,), ()) if shaft in item.parts), None)
     if line is None:
         raise AnalysisError(f"there is no turning shaft '{shaft}'; there are {', '.join(model.shafts)}")
     top = highest_speed(model, stop)
@@ -80,29 +80,20 @@ def critical_map(
         present = present[present > 0.0]
         if not present.size:
             raise AnalysisError("no bearing has a radial stiffness, so there is none to vary")
-        low = np.log10(present.min()) - _DECADES
-        high = np.log10(present.max()) + _DECADES
-        values = np.logspace(low, high, _POINTS)
+        values = np.logspace(np.log10(present.min()) - _DECADES, np.log10(present.max()) + _DECADES, _POINTS)
     else:
         values = np.sort(np.asarray(stiffness, float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         raise AnalysisError("the support stiffness must be positive, in N/m")
     clock = Clock()
-    stiffest = system_for_speeds(
-        model,
-        [top],
-        modes=None,
-        fmax=line.frequency_hz(top),
-        elements=elements,
-        accuracy=accuracy,
-        state=with_radial_stiffness(model, about, float(values[-1]), top),
-        progress=progress,
-    )
+    asked = ModalRequest(fmax=line.frequency_hz(top), elements=elements, accuracy=accuracy)
+    stiffest = with_radial_stiffness(model, about, float(values[-1]), top)
+    mesh = system_for_speeds(model, [top], asked, stiffest, progress)
     clock.lap("mesh")
     rows: list[tuple[np.ndarray, np.ndarray]] = []
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
-        system = stiffest.with_state(with_radial_stiffness(model, about, float(value), top))
+        system = mesh.with_state(with_radial_stiffness(model, about, float(value), top))
         found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
         found.sort(key=lambda root: root.speed)
         _, _, speeds, seen = looks_of(system, found, top)
@@ -112,20 +103,16 @@ def critical_map(
     clock.lap("critical speeds")
     # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
     width = max(len(speeds) for speeds, _ in rows)
-    speeds = np.full((len(rows), width), np.nan)
-    whirl = np.zeros((len(rows), width), np.int8)
-    for k, (row, numbers) in enumerate(rows):
-        speeds[k, : len(row)] = row
-        whirl[k, : len(row)] = numbers
+    speeds = np.array([np.pad(row, (0, width - len(row)), constant_values=np.nan) for row, _ in rows])
     return CriticalMap(
         model=model,
         line=line.name,
         stiffness=values,
         critical_speeds=speeds,
-        whirl=whirl,
+        whirl=np.array([np.pad(numbers, (0, width - len(numbers))) for _, numbers in rows]),
         bearings=radial,
         top_speed=top,
-        dofs=stiffest.n,
+        dofs=mesh.n,
         seconds=clock.total(),
     )
 

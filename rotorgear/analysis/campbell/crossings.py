@@ -46,44 +46,46 @@ class Track:
     unsure: list[float] = field(default_factory=list)
 
 
-def track(modes: Callable[[float], Eigen], speeds: np.ndarray, watched: int) -> Track:
+def track(family: SpeedModes, group: int, speeds: np.ndarray, watched: int) -> Track:
     """Chain the modes at ascending speeds (k,) in rad/s.
 
     Args:
-        modes: speed -> eigenpairs of the group.
+        family: the modes at any speed; group: number of the group of dofs.
         speeds: ascending; tables of bearings may have kinks at these speeds only.
         watched: the lowest so many modes at a speed must be followed without doubt.
     """
     found = Track(np.zeros((0, 0), int))
     span = abs(speeds[-1] - speeds[0])
 
+    def modes(speed: float) -> Eigen:
+        return family.at(speed)[group]
+
+    def followed(chain: np.ndarray, partner: np.ndarray) -> np.ndarray:
+        """The partner of each member of a chain, -1 where there is none."""
+        return np.where(chain >= 0, partner[np.maximum(chain, 0)], -1) if len(partner) else np.full(len(chain), -1)
+
     def link(a: float, b: float) -> np.ndarray:
         """Partner at b of each mode at a (m_a,), over as many steps as it takes."""
         left = modes(a)
         right = modes(b)
         width = abs(b - a)
-        judged = step(left, right, b - a, _NARROWEST * span)
-        partner = judged.partner
+        partner, doubt = step(left, right, b - a, _NARROWEST * span)
         inner = np.arange(len(left.s)) < watched
         inner |= (partner >= 0) & (partner < watched)
         taken = np.isin(np.arange(len(right.s)), partner)
         ended = np.any(inner & (partner < 0)) or not taken[:watched].all()
-        if not (np.any(judged.doubt & inner & (partner >= 0)) or (ended and width > _END * span)):
+        if not (np.any(doubt & inner & (partner >= 0)) or (ended and width > _END * span)):
             return partner
         middle = 0.5 * (a + b)
         if width <= _NARROWEST * span:
             found.unsure.append(middle)
             return partner
         found.halvings += 1
-        first = link(a, middle)
-        second = link(middle, b)
-        return np.where(first >= 0, second[np.maximum(first, 0)], -1) if len(second) else np.full(len(first), -1)
+        return followed(link(a, middle), link(middle, b))
 
     chains = [np.arange(len(modes(speeds[0]).s))]
     for a, b in itertools.pairwise(speeds):
-        partner = link(float(a), float(b))
-        ends = chains[-1]
-        here = np.where(ends >= 0, partner[np.maximum(ends, 0)], -1) if len(partner) else np.full(len(ends), -1)
+        here = followed(chains[-1], link(float(a), float(b)))
         new = np.setdiff1d(np.arange(len(modes(b).s)), here)
         chains = [np.append(row, np.full(len(new), -1)) for row in chains]
         chains.append(np.append(here, new))
@@ -119,13 +121,10 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
     values = np.array([measure(s, w) if np.isfinite(s) else np.nan for s, w in zip(chain.s, speeds, strict=True)])
     found = []
     for k in range(len(speeds) - 1):
-        low = values[k]
-        high = values[k + 1]
-        if not (low * high < 0.0 or (high == 0.0 and low != 0.0)):
+        fa, fb = values[k : k + 2]
+        if not (fa * fb < 0.0 or (fb == 0.0 and fa != 0.0)):
             continue
         a, b = (float(speed) for speed in speeds[k : k + 2])
-        fa = low
-        fb = high
         s = chain.s[k]
         q = chain.q[k]
         for _ in range(60):
@@ -139,12 +138,10 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
             if f * fb < 0.0:
                 a = b
                 fa = fb
-                b = w
-                fb = f
             else:  # Illinois: the end that stays counts half
-                b = w
-                fb = f
                 fa = 0.5 * fa
+            b = w
+            fb = f
         found.append(Root(branch, float(w), s, q))
     return found
 
@@ -154,8 +151,7 @@ def _nearest(
 ) -> tuple[complex, np.ndarray]:
     """The branch at a speed between two of the track: refined from the nearer end's vector, or searched among all modes there."""
     pencil = modes.pencil(chain.group, speed)
-    start = chain.q[k] if share < 0.5 else chain.q[k + 1]
-    s, q = refined(pencil, guess, start)
+    s, q = refined(pencil, guess, chain.q[k] if share < 0.5 else chain.q[k + 1])
     gap = abs(chain.s[k + 1] - chain.s[k]) + 1e-6 * abs(guess)
     if abs(s - guess) <= gap:
         return s, q
@@ -197,16 +193,13 @@ def participation(line: ExcitationOrder, seen: Portraits, k: int) -> float:
 
     First order of a shaft is unbalance, see `driven_by_unbalance`. Other orders of a shaft may act in any motion.
     """
-    energies = seen.energies
     if line.kind != "shaft":
-        return sum(
-            float(energies.strain[f"meshes.{name}"][k]) for name in line.parts if f"meshes.{name}" in energies.strain
-        )
+        strain = seen.energies.strain
+        return sum(float(strain[f"meshes.{name}"][k]) for name in line.parts if f"meshes.{name}" in strain)
     if _is_unbalance(line):
         return sum(driven_by_unbalance(seen, name, k) for name in line.parts)
-    return sum(
-        float(v[k]) for name in line.parts for (shaft, _), v in energies.kinetic_by_shaft.items() if shaft == name
-    )
+    kinetic = seen.energies.kinetic_by_shaft.items()
+    return sum(float(share[k]) for name in line.parts for (shaft, _), share in kinetic if shaft == name)
 
 
 def driven_by_unbalance(seen: Portraits, shaft: str, k: int) -> float:
@@ -230,12 +223,12 @@ def whirl_for(line: ExcitationOrder, seen: Portraits, k: int) -> str:
     """
     if line.kind != "shaft":
         return seen.words[k]
-    driven = [name for name in line.parts if _is_unbalance(line) and driven_by_unbalance(seen, name, k) >= EXCITED]
-    if driven:
-        return whirl_word_among(
-            seen.whirl, seen.energies, [max(driven, key=lambda name: driven_by_unbalance(seen, name, k))], k
-        )
-    return whirl_word_among(seen.whirl, seen.energies, line.parts, k)
+    among = line.parts
+    if _is_unbalance(line):
+        driven = {name: driven_by_unbalance(seen, name, k) for name in line.parts}
+        most = max(driven, key=lambda name: driven[name])
+        among = (most,) if driven[most] >= EXCITED else among
+    return whirl_word_among(seen.whirl, seen.energies, among, k)
 
 
 def crossings(
@@ -248,12 +241,11 @@ def crossings(
     """All crossings of branches and lines, by speed."""
     hits: list[tuple[ExcitationOrder, Root]] = []
     for line in lines:
+
+        def measure(s: complex, speed: float, order: float = line.order) -> float:
+            return float(modes.damped(np.array([s]))[0].imag - order * abs(speed))
+
         for branch in range(len(chains)):
-            order = line.order
-
-            def measure(s: complex, speed: float, order: float = order) -> float:
-                return float(modes.damped(np.array([s]))[0].imag - order * abs(speed))
-
             hits += [(line, root) for root in roots(modes, chains, speeds, branch, measure)]
     if not hits:
         return ()

@@ -8,17 +8,18 @@ turn. Projection: Galerkin on real and imaginary parts of the modes, each indepe
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
 from rotorgear.analysis.modal.reach import Reach
-from rotorgear.analysis.modal.solve import Modes, Wanted, group_notes, solve, with_modal_damping
+from rotorgear.analysis.modal.solve import Wanted, group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, eigen
-from rotorgear.solvers.eigen.undamped_basis import Subspace
+from rotorgear.solvers.eigen.undamped_basis import ScaledBasis
 from rotorgear.system.components import dof_motions
 from rotorgear.system.system import System
 
@@ -48,7 +49,7 @@ class _Group:
     """One independent group of dofs: its basis, its projected matrices and what to look for."""
 
     dofs: np.ndarray
-    space: Subspace
+    space: ScaledBasis
     family: ReducedFamily | None = None
     shift: float = 1.0
     smallest: float = 0.0
@@ -79,11 +80,10 @@ class SpeedModes:
         self.reach = reach
         self._only = only
         self.family = SpeedFamily(system, low, high)
-        self._conservative = self.family.is_conservative
         self.snapshots: list[Snapshot] = []
         self.checks: list[tuple[float, float]] = []
         weight = np.sqrt(_size(system, low))
-        self._parts = [_Group(dofs, Subspace(weight[dofs], _NEGLIGIBLE)) for dofs in self.family.groups]
+        self._parts = [_Group(dofs, ScaledBasis(weight[dofs])) for dofs in self.family.groups]
         self._known: dict[float, list[Eigen]] = {}
         self._still = 0  # rigid motions and overdamped ones among the lowest, as far as they are known
         self._build(low, high, progress)
@@ -101,10 +101,8 @@ class SpeedModes:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences about groups of dofs that were solved apart or left out."""
-        motions = dof_motions(self.system)
-        groups = [part.dofs for part in self._parts]
         chosen = [part.dofs for part in self._parts if part.space.size]
-        return group_notes(motions, groups, chosen)
+        return group_notes(dof_motions(self.system), self.family.groups, chosen)
 
     def basis(self) -> list[np.ndarray]:
         """The basis of each group over all free dofs, (n, r_g)."""
@@ -134,18 +132,18 @@ class SpeedModes:
 
     def damped(self, s: np.ndarray) -> np.ndarray:
         """Eigenvalues with the modal damping ratio of the model added, and without rounding where nothing else damps."""
-        if self._conservative:
+        if self.family.is_conservative:
             s = np.where(np.isnan(s), s, 1j * s.imag)  # a branch that is not there stays so
         zeta = self.system.model.damping.modal_ratio
         return with_modal_damping(s, zeta) if zeta else s
 
     def _build(self, low: float, high: float, progress: Progress) -> None:
-        ends = [low] if low == high else [low, high]
+        ends = list(dict.fromkeys((low, high)))
         for k, speed in enumerate(ends):
             progress(0.3 * k / len(ends), f"true modes, {self.system.n} dofs")
             self._add(self._true(speed))
         self._project()
-        waiting = [(low, high)] if low != high else []
+        waiting = list(pairwise(ends))
         while waiting:
             a, b = waiting.pop(0)
             middle = self._true(0.5 * (a + b))
@@ -160,23 +158,21 @@ class SpeedModes:
                     f"above {TOLERANCE:g}; ask for fewer modes or a narrower range of speeds, or use modal at single speeds"
                 )
             self._project()
-            waiting += [(a, middle.speed), (middle.speed, b)]
+            waiting += pairwise((a, middle.speed, b))
 
     def _true(self, speed: float) -> Snapshot:
         """The modes at a speed by the sparse solver, with spare ones."""
-        wish = self.reach
-        spare = max(_SPARE, int(_SPARE_SHARE * (wish.modes or 0)))
-        count = None if wish.modes is None else wish.modes + spare
-        limit = None if wish.limit is None else wish.limit * _BEYOND_LIMIT
-        ask = None if count is None else count + self._still
+        asked = self.reach.modes
+        count = None if asked is None else asked + max(_SPARE, int(_SPARE_SHARE * asked))
+        limit = None if self.reach.limit is None else self.reach.limit * _BEYOND_LIMIT
         while True:
-            found: Modes = solve(self.system, Wanted(speed, ask, limit, self._only))
+            number = None if count is None else count + self._still
+            found = solve(self.system, Wanted(speed, number, limit, self._only))
             s = found.eigenvalues
             moving = np.flatnonzero(~found.rigid & (s.imag > 1e-9 * np.abs(s)))
-            if count is None or ask is None or len(moving) >= count or len(s) < ask:
+            if count is None or number is None or len(moving) >= count or len(s) < number:
                 break
-            ask += count - len(moving)
-            self._still = ask - count
+            self._still += count - len(moving)
         kept = moving[:count]
         return Snapshot(speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real)
 
@@ -188,33 +184,32 @@ class SpeedModes:
             for vectors in (snapshot.rigid, snapshot.vectors):
                 here = vectors[part.dofs]
                 here = here[:, np.abs(here).max(axis=0, initial=0.0) > 0.0]
-                new += part.space.add(here) if here.shape[1] else 0
+                new += part.space.add_modes(here, _NEGLIGIBLE) if here.shape[1] else 0
         return new
 
     def _project(self) -> None:
         self._known.clear()
         for part, V in zip(self._parts, self.basis(), strict=True):
-            counts = [0]
-            sizes = []
-            for snapshot in self.snapshots:
-                moves = np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0
-                counts.append(int(moves.sum()))
-                sizes += [np.abs(snapshot.s[moves])]
-            size = np.concatenate(sizes) if sizes else np.zeros(0)
+            # |s| of the modes of each snapshot that move the group.
+            sizes = [
+                np.abs(snapshot.s[np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0])
+                for snapshot in self.snapshots
+            ]
+            size = np.concatenate(sizes)
             if not part.space.size or not size.size:
                 part.family = self.family.reduced(V[:, :0])
                 part.count = 0
                 continue
             part.family = self.family.reduced(V)
-            part.shift, part.smallest = float(np.sqrt(size.min() * size.max())), _STILL * float(size.min())
-            part.count = max(counts) + _SPARE
+            part.shift = float(np.sqrt(size.min() * size.max()))
+            part.smallest = _STILL * float(size.min())
+            part.count = max(map(len, sizes)) + _SPARE
 
     def _error(self, true: Snapshot) -> float:
         """Largest relative error of the asked eigenvalues at a speed, each with a partner of its own."""
         from scipy.optimize import linear_sum_assignment
 
-        parts = self.at(true.speed)
-        found = self.damped(np.concatenate([part.s for part in parts])) if parts else np.zeros(0)
+        found = self.damped(np.concatenate([np.zeros(0), *(part.s for part in self.at(true.speed))]))
         asked = true.s[: max(self.reach.inside(np.abs(true.s)), 1)]
         if len(found) < len(asked):
             return float("inf")
@@ -232,6 +227,5 @@ def _size(system: System, speed: float) -> np.ndarray:
     both = (K > 0.0) & (M > 0.0)
     if not both.any():
         raise AnalysisError("nothing in the model has both stiffness and inertia: there is no vibration to follow")
-    typical = float(np.median(K[both] / M[both]))
-    size = K + 1e-4 * typical * M
+    size = K + 1e-4 * float(np.median(K[both] / M[both])) * M
     return np.where(size > 0.0, size, size[size > 0.0].min())

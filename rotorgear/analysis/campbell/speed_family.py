@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.system.assembly import StrainForms, assemble, strain_forms
+from rotorgear.system.assembly import assemble, strain_forms
 from rotorgear.system.components import groups_with_inertia, independent_groups
 from rotorgear.system.groups import ElementGroup, table_groups
 from rotorgear.system.system import System
@@ -60,9 +61,6 @@ class SpeedFamily:
 
     def __init__(self, system: System, low: float, high: float) -> None:
         self.system = system
-        self._low = low
-        self.mass = system.mass
-        self.gyroscopic = system.gyroscopic
         beta = system.model.damping.rayleigh_beta
         self._constant = strain_forms(system.groups, system.dofs, 0.0, beta)
         self._per_speed = strain_forms(system.groups, system.dofs, 1.0, beta).circulation - self._constant.circulation
@@ -74,24 +72,29 @@ class SpeedFamily:
     def _table(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """Damping and stiffness of the bearings with tables at a speed, sparse (n, n)."""
         bearings = table_groups(self.system.state, self.system.nodes, float(speed))
-        K = assemble(bearings, self.system.dofs, _whole_stiffness)
+
+        def whole(group: ElementGroup) -> np.ndarray | None:
+            K = group.matrices.stiffness
+            N = group.matrices.circulatory
+            return K if N is None else N if K is None else K + N
+
         C = assemble(bearings, self.system.dofs, lambda g: g.matrices.damping)
         beta = self.system.model.damping.rayleigh_beta
         symmetric = assemble(bearings, self.system.dofs, lambda g: g.matrices.stiffness)
-        return sp.csc_array(C + beta * symmetric), K
+        return sp.csc_array(C + beta * symmetric), assemble(bearings, self.system.dofs, whole)
 
     def _square(self, system: System) -> sp.csr_array:
         """Growth of the modulus of all strains with the square of the reference speed, sparse (s, s)."""
+        if not system.nodes.bodies:
+            return sp.csr_array(self._constant.modulus.shape)
         growing = []
         for group in system.groups:
             S = group.matrices.modulus_per_square
             D = None if S is None else group.spin**2 * S
             growing.append(replace(group, matrices=replace(group.matrices, modulus=D)))
-        if all(group.matrices.modulus is None for group in growing):
-            return sp.csr_array(self._constant.modulus.shape)
         return strain_forms(growing, system.dofs, 0.0, 0.0).modulus
 
-    @property
+    @cached_property
     def is_conservative(self) -> bool:
         """Whether nothing takes energy out or brings it in (no damping, cross-coupled or indefinite spring): s is imaginary."""
         forms = self._constant
@@ -101,25 +104,28 @@ class SpeedFamily:
         speeds = [float(speed) for speed in (*self.knots, *(self._ends if self._per_square.nnz else ()))] or [0.0]
         return quiet and tables and not alpha and all(self.system.strain_factor(w) is not None for w in speeds)
 
-    @property
+    @cached_property
     def groups(self) -> list[np.ndarray]:
         """Dofs that act on each other at no speed and have inertia, largest group first."""
         forms = self._constant
         sizes = [abs(A) for A in (forms.modulus, forms.viscosity, forms.circulation, self._per_speed, self._per_square)]
         B = abs(forms.strain)
         strained = [sp.csc_array(B.T @ A @ B) for A in sizes if A.nnz]
-        found = independent_groups([self.mass, self.gyroscopic, *strained, *(A for pair in self._tables for A in pair)])
-        return groups_with_inertia(self.system, found, self.system.damping(self._low))[0]
+        tables = [A for pair in self._tables for A in pair]
+        found = independent_groups([self.system.mass, self.system.gyroscopic, *strained, *tables])
+        return groups_with_inertia(self.system, found, self.system.damping(self._ends[0]))[0]
 
     def reduced(self, V: np.ndarray) -> ReducedFamily:
         """Matrices in the coordinates of a basis V (n, r), real."""
-        forms: StrainForms = self._constant
+        forms = self._constant
         strained = forms.strain @ V
-        mass = V.T @ (self.mass @ V)
-        gyroscopic = V.T @ (self.gyroscopic @ V)
+        mass = V.T @ (self.system.mass @ V)
+        gyroscopic = V.T @ (self.system.gyroscopic @ V)
         alpha = self.system.model.damping.rayleigh_alpha
         r = V.shape[1]
-        tables = [[V.T @ (A @ V) for A in pair] for pair in self._tables]
+        tables = np.zeros((len(self._tables), 2, r, r))
+        for k, pair in enumerate(self._tables):
+            tables[k] = [V.T @ (A @ V) for A in pair]
         return ReducedFamily(
             mass=0.5 * (mass + mass.T),
             damping=strained.T @ (forms.viscosity @ strained) + alpha * mass,
@@ -128,15 +134,9 @@ class SpeedFamily:
             per_speed=strained.T @ (self._per_speed @ strained),
             per_square=strained.T @ (self._per_square @ strained) if self._per_square.nnz else None,
             knots=self.knots,
-            table_damping=np.array([pair[0] for pair in tables]).reshape(len(tables), r, r),
-            table_stiffness=np.array([pair[1] for pair in tables]).reshape(len(tables), r, r),
+            table_damping=tables[:, 0],
+            table_stiffness=tables[:, 1],
         )
-
-
-def _whole_stiffness(group: ElementGroup) -> np.ndarray | None:
-    K = group.matrices.stiffness
-    N = group.matrices.circulatory
-    return K if N is None else (N if K is None else K + N)
 
 
 def table_speeds(system: System, low: float, high: float) -> np.ndarray:

@@ -51,10 +51,9 @@ def mesh_reach(model: Model) -> tuple[float | None, str]:
     number reaches further, or so many that they are followed only when asked for.
     """
     speed = model.operating_speed
-    highest = (
-        max((line.frequency_hz(speed) for line in excitation_orders(model, (), (1,))), default=0.0) if speed else 0.0
-    )
-    expected = expected_modes(model, 2.0 * np.pi * highest) if highest else 0.0
+    lines = excitation_orders(model, (), (1,)) if speed else ()
+    highest = max((line.frequency_hz(speed or 0.0) for line in lines), default=0.0)
+    expected = expected_modes(model, 2.0 * np.pi * highest)
     if expected <= _FEW:
         return None, ""
     fmax = _ABOVE * highest
@@ -64,12 +63,6 @@ def mesh_reach(model: Model) -> tuple[float | None, str]:
         f"modes up to the first order of every mesh at the operating speed, {highest:.5g} Hz: about {expected:.0f}; "
         f"--fmax {fmax:.4g} follows them"
     )
-
-
-def speed_range(start: float, stop: float, points: int = DEFAULT_SPEEDS) -> np.ndarray:
-    """Evenly spaced speeds (k,) in rad/s."""
-    check_whole("the number of points", points, 2)
-    return np.linspace(start, stop, points)
 
 
 def chosen_speeds(
@@ -90,7 +83,9 @@ def chosen_speeds(
         AnalysisError: fewer than two different speeds, or speeds of both senses.
     """
     if given is None:
-        speeds = speed_range(speed_in_si(start), highest_speed(model, stop), points)
+        ends = speed_in_si(start), highest_speed(model, stop)
+        check_whole("the number of points", points, 2)
+        speeds = np.linspace(*ends, points)
     else:
         speeds = np.array([speed_in_si(value) for value in given], float)
     if speeds.size and (speeds.min() < 0.0 < speeds.max()):
@@ -106,23 +101,18 @@ def chosen_speeds(
 def system_for_speeds(
     model: Model | System,
     speeds: Sequence[float],
-    *,
-    modes: int | None,
-    fmax: float | None,
-    elements: int | None,
-    accuracy: float | None,
-    only: tuple[str, ...] = (),
+    asked: ModalRequest,
     state: State | None = None,
     progress: Progress = silent,
 ) -> System:
     """Return a system whose lowest modes that oscillate are estimated to be within the accuracy at each of some speeds in rad/s.
 
-    A system is taken as it is, and `elements` fixes the mesh. Without a state the modes at each speed are about their own
+    A system is taken as it is, and `asked.elements` fixes the mesh. Without a state the modes at each speed are about their own
     equilibrium, and the system about its torque flow. Errors are those of `modal`.
     """
     if isinstance(model, System):
         return model
-    if elements is not None and accuracy is not None:
+    if asked.elements is not None and asked.accuracy is not None:
         raise AnalysisError("elements and accuracy: give one of the two; elements fixes the mesh, accuracy refines it")
     turning = [speed for speed in speeds if speed]
     direction = -1 if turning and turning[0] < 0.0 else 1
@@ -132,19 +122,17 @@ def system_for_speeds(
             return flow_system(model, plan, direction=direction)
         return linear_system(model, speeds, plan, state=state)
 
-    if elements is not None:
-        check_whole("the number of elements", elements)
-        return cut(Plan(elements))
+    if asked.elements is not None:
+        check_whole("the number of elements", asked.elements)
+        return cut(Plan(asked.elements))
     cuts: list[dict[PieceKey, tuple[int, int]]] = []
     for k, speed in enumerate(dict.fromkeys(speeds)):
         progress(0.1 * k, "refining the mesh")
-        asked = ModalRequest(speed, modes, fmax, accuracy=accuracy, only=only)
-        found = modes_about(model, asked, state)
-        if modes is not None:
-            # Rigid and overdamped modes are no branches: as many more are needed.
-            others = len(found) - int(np.count_nonzero(~found.rigid & (np.abs(found.eigenvalues.imag) > 0.0)))
-            if others:
-                found = modes_about(model, replace(asked, modes=modes + others, fmax=None), state)
+        here = replace(asked, speed=speed)
+        found = modes_about(model, here, state)
+        # Rigid and overdamped modes are no branches: as many more are needed.
+        others = len(found) - int(np.count_nonzero(~found.rigid & (np.abs(found.eigenvalues.imag) > 0.0)))
+        if asked.modes is not None and others:
+            found = modes_about(model, replace(here, modes=asked.modes + others, fmax=None), state)
         cuts.append(cut_of(found.discretisation))
-    finest = {key: max(cut[key] for cut in cuts) for key in cuts[0]}
-    return cut(Plan(cut=finest))
+    return cut(Plan(cut={key: max(cut[key] for cut in cuts) for key in cuts[0]}))

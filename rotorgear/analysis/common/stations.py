@@ -12,7 +12,7 @@ import numpy as np
 from rotorgear.casings.reduced_body import rigid_motions
 from rotorgear.elements.shaft import inner_fields
 from rotorgear.results.modal import NodeTable, body_name
-from rotorgear.system.groups import alike, element_data, shaft_dofs
+from rotorgear.system.groups import alike, element_data
 from rotorgear.system.system import System
 
 
@@ -28,12 +28,11 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
     shapes = [q[: 6 * count].reshape(count, 6, -1)]
     for name, shaft in system.model.shafts.items():
         x, y = shaft.position or (0.0, 0.0)
-        for rigid, order, elements in alike(system.model, system.nodes, name):
+        for rigid, order, elements, dofs in alike(system.model, system.nodes, name):
             if rigid or order < 2:
                 continue
             places, fields = inner_fields(element_data(system.model, name, elements), order)
-            local = q[shaft_dofs(system.nodes, elements, shaft.shear_deformation)]
-            moved = np.moveaxis(fields @ local, 0, 2)
+            moved = np.moveaxis(fields @ q[dofs], 0, 2)
             inner = moved.reshape(-1 if moved.size else moved.shape[0] * moved.shape[1], 6, q.shape[1])
             left = np.array([system.nodes.z[element.left] for element in elements])
             length = np.array([element.length for element in elements])

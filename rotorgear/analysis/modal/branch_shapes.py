@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import Energies, mode_energies
 from rotorgear.analysis.modal.whirl import Whirl, whirl_of, whirl_words
-from rotorgear.results.modal import WHIRL_WORDS, NodeTable
+from rotorgear.results.modal import WHIRL_WORDS
+from rotorgear.solvers.sparse.entries import column_forms
 from rotorgear.system.system import System
 
 # Numbers of shapes that are held at once, at most.
@@ -20,11 +22,15 @@ _CHUNK = 4_000_000
 
 @dataclass(frozen=True)
 class Portraits:
-    """Energies and whirl of m modes; `words` are those of the shaft that bends most, as in a modal result."""
+    """Energies and whirl of m modes."""
 
     energies: Energies
-    words: tuple[str, ...]
     whirl: Whirl
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """Whirl of the shaft that bends most, as in a modal result."""
+        return whirl_words(self.whirl, self.energies)
 
 
 class BasisShapes:
@@ -40,17 +46,14 @@ class BasisShapes:
         whole = np.hstack(parts)
         self.mass = whole.T @ (system.mass @ whole)
         self.everything = np.asarray(system.dofs.expand(whole))
-        self.nodes: NodeTable
         self.nodes, self.stations = shapes_at_stations(system, self.everything)
 
     def coordinates(self, group: int, q: np.ndarray) -> np.ndarray:
         """Coordinates (r, m) in the whole basis of modes q (r_g, m) of one group, of modal mass 1."""
-        first = self.offsets[group]
-        last = self.offsets[group + 1]
-        own = self.mass[first:last, first:last]
-        norm = np.sqrt(np.abs(np.einsum("rm,rm->m", q.conj(), own @ q)))
+        own = slice(*self.offsets[group : group + 2])
+        norm = np.sqrt(np.abs(column_forms(self.mass[own, own], q)))
         whole = np.zeros((int(self.offsets[-1]), q.shape[1]), complex)
-        whole[first:last] = q / np.where(norm > 0.0, norm, 1.0)
+        whole[own] = q / np.where(norm > 0.0, norm, 1.0)
         return whole
 
     def portraits(self, coordinates: np.ndarray, speeds: np.ndarray, known: float = 0.0) -> Portraits:
@@ -64,24 +67,19 @@ class BasisShapes:
         def join(tables: list[dict[Any, np.ndarray]]) -> dict[Any, np.ndarray]:
             return {key: np.concatenate([table[key] for table in tables])[back] for key in tables[0]}
 
-        names = ("kinetic", "strain", "kinetic_by_motion", "strain_by_motion", "kinetic_by_shaft")
-        energies = Energies(*(join([getattr(part.energies, name) for part in found]) for name in names))
-        words = [word for part in found for word in part.words]
+        energies = [[getattr(part.energies, item.name) for part in found] for item in fields(Energies)]
         whirl = Whirl(join([part.whirl.net for part in found]), join([part.whirl.numbers for part in found]))
-        return Portraits(energies, tuple(words[k] for k in back), whirl)
+        return Portraits(Energies(*map(join, energies)), whirl)
 
     def descriptions(self, coordinates: np.ndarray, speeds: np.ndarray) -> tuple[str, ...]:
         """One line for each mode."""
         lines: list[str] = []
+        nothing = np.zeros(1, bool)
         for k in range(coordinates.shape[1]):
             one = coordinates[:, [k]]
-            seen = self._portraits(one, speeds[[k]])
-            nothing = np.zeros(1, bool)
-            lines += describe(self.system, self.everything @ one, seen.energies, nothing, nothing)
+            energies = self._portraits(one, speeds[[k]]).energies
+            lines += describe(self.system, self.everything @ one, energies, nothing, nothing)
         return tuple(lines)
-
-    def _at_nodes(self, coordinates: np.ndarray) -> np.ndarray:
-        return np.asarray(self.stations[: len(self.system.nodes)] @ coordinates)
 
     def _batches(self, speeds: np.ndarray) -> list[np.ndarray]:
         """Numbers of modes that are looked at together: of one speed where bearings depend on it."""
@@ -90,16 +88,14 @@ class BasisShapes:
             return [order[speeds == speed] for speed in dict.fromkeys(speeds.tolist())]
         width = max(1, _CHUNK // max(self.everything.shape[0], 1))
         still = speeds == 0.0  # at standstill nothing whirls
-        groups = [order[still], order[~still]]
-        return [own[k : k + width] for own in groups for k in range(0, len(own), width)]
+        return [own[k : k + width] for own in [order[still], order[~still]] for k in range(0, len(own), width)]
 
     def _portraits(self, coordinates: np.ndarray, speeds: np.ndarray) -> Portraits:
         speed = float(speeds[0]) if len(speeds) else 0.0
-        modes = coordinates.shape[1]
-        energies = mode_energies(self.system, speed, self.everything @ coordinates, np.zeros(modes, bool))
-        shapes = self._at_nodes(coordinates)
-        whirl = whirl_of(self.system, shapes, speed)
-        return Portraits(energies, whirl_words(whirl, energies), whirl)
+        rigid = np.zeros(coordinates.shape[1], bool)
+        energies = mode_energies(self.system, speed, self.everything @ coordinates, rigid)
+        shapes = np.asarray(self.stations[: len(self.system.nodes)] @ coordinates)
+        return Portraits(energies, whirl_of(self.system, shapes, speed))
 
 
 def whirl_numbers(words: tuple[str, ...]) -> np.ndarray:

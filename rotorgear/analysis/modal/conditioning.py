@@ -30,9 +30,7 @@ def conditioning_warnings(
         strain_energy: share of each part in the strain energy of each mode, part -> (m,).
     """
     elastic = np.flatnonzero(~rigid & (np.abs(s) > 0.0))
-    K = system.stiffness(speed or 0.0).diagonal()
-    M = system.mass.diagonal()
-    ratio = np.where(M > 0.0, K / np.where(M > 0.0, M, 1.0), 0.0)
+    ratio = _squares(system, speed)
     if not elastic.size or not ratio.size:
         return ()
     # Damping moves |s| away from omega; the undamped scale of a mode is not below the lower of the two.
@@ -52,10 +50,9 @@ def conditioning_warnings(
 
 def too_far_apart(system: System, speed: float | None) -> str:
     """Why no solver can tell the motions of a system apart: its parts are more decades apart than two doubles hold; else ""."""
-    K = system.stiffness(speed or 0.0).diagonal()
-    M = system.mass.diagonal()
-    both = np.flatnonzero((K > 0.0) & (M > 0.0))
-    ratio = K[both] / M[both]
+    squares = _squares(system, speed)
+    both = np.flatnonzero(squares > 0.0)
+    ratio = squares[both]
     if not both.size or ratio.max() < _HOPELESS * ratio.min():
         return ""
     stiff = stiffest_part(system, speed or 0.0, int(both[np.argmax(ratio)]))
@@ -65,6 +62,13 @@ def too_far_apart(system: System, speed: float | None) -> str:
         f"the parts of the model are {decades:.0f} decades apart in omega^2 ({stiff}, against {soft}): leave out what is "
         "negligible"
     )
+
+
+def _squares(system: System, speed: float | None) -> np.ndarray:
+    """k_ii / m_ii of each free dof, (n,); 0 where it has no inertia."""
+    K = system.stiffness(speed or 0.0).diagonal()
+    M = system.mass.diagonal()
+    return np.where(M > 0.0, K / np.where(M > 0.0, M, 1.0), 0.0)
 
 
 def stiffest_part(system: System, speed: float, dof: int) -> str:
@@ -90,12 +94,12 @@ def stiffest_part(system: System, speed: float, dof: int) -> str:
         unit = "N/m" if kind == "meshes" or at % 6 < 3 else "N m/rad"
         return f"{group.part} has {float(np.max(np.abs(group.matrices.modulus[element]))):.3g} {unit}"
     ends = [int(dof) // 6 for dof in group.dofs[element, [0, 6]]]
-    own = next(item for item in system.nodes.elements[name] if [item.left, item.right] == ends)
-    number = own.section + 1
-    count = sum(item.piece == own.piece for item in system.nodes.elements[name])
+    elements = system.nodes.elements[name]
+    own = next(item for item in elements if [item.left, item.right] == ends)
+    count = sum(item.piece == own.piece for item in elements)
     section = system.model.shafts[name].sections[own.section]
-    whole = abs(own.length * count - section.length) <= 1e-9 * section.length
-    z = system.nodes.z[own.left]
-    what = f"section {number} of shaft {name}" if whole else f"a segment of shaft {name} at z = {millimetres(z)}"
+    what = f"section {own.section + 1} of shaft {name}"
+    if abs(own.length * count - section.length) > 1e-9 * section.length:
+        what = f"a segment of shaft {name} at z = {millimetres(system.nodes.z[own.left])}"
     cut = "" if count == 1 else f" in {count} elements"
     return f"{what} is {millimetres(own.length * count)} long{cut}"

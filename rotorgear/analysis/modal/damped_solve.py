@@ -14,14 +14,14 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.modal.problem import Problem
-from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
+from rotorgear.solvers.eigen.damped import DampedModes, damped_modes, with_largest_one
 from rotorgear.solvers.eigen.eigen import UndampedModes
 from rotorgear.solvers.eigen.gyroscopic import gyroscopic_modes
 from rotorgear.solvers.eigen.local_damping import locally_damped_modes
 from rotorgear.solvers.eigen.quadratic import corrected, newton, scaled
 from rotorgear.solvers.eigen.ritz import strain_ritz
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped
-from rotorgear.solvers.sparse.entries import magnitudes
+from rotorgear.solvers.sparse.entries import column_forms, magnitudes, unit_vectors
 from rotorgear.solvers.sparse.pencil import rounding_noise
 from rotorgear.system.assembly import StrainForms
 
@@ -54,41 +54,39 @@ def damped_group(problem: Problem, count: int | None, below: float | None) -> tu
     if found is not None:
         return found, ""
     undamped = _undamped(problem, None, None)  # the softest modes suffer most
-    rigid = undamped.vectors[:, : undamped.rigid_count]
-    elastic = undamped.eigenvalues[undamped.rigid_count :]
-    noise = relative_noise(problem, np.sqrt(elastic), undamped.vectors[:, undamped.rigid_count :])
-    scale = float(np.sqrt(elastic[0])) if len(elastic) else None
-    drift = _drift_noise(problem, rigid)
-    clean = _CLEAN if problem.K.shape[0] <= _ALL_UP_TO else _CLEAN_LARGE
-    if problem.strain is None or max(noise.max(initial=0.0), drift) <= clean:
-        found = damped_modes(
-            problem.M, problem.D, problem.K, count=count, below=below, rigid_vectors=rigid, frequency_scale=scale
-        )
-        return by_strains(problem, found), ""
-    undamped = _undamped(problem, count, below)
-    noise = relative_noise(
-        problem, np.sqrt(undamped.eigenvalues[undamped.rigid_count :]), undamped.vectors[:, undamped.rigid_count :]
-    )
-    if problem.K.shape[0] <= _ALL_UP_TO:
-        undamped = problem.lowest(None, None)
-        basis = undamped.vectors[:, undamped.rigid_count :]
+    rigid = undamped.rigid
+    noise = relative_noise(problem, undamped.frequencies, undamped.elastic)
+    small = problem.K.shape[0] <= _ALL_UP_TO
+    worst = max(noise.max(initial=0.0), _drift_noise(problem, rigid))
+    if problem.strain is None or worst <= (_CLEAN if small else _CLEAN_LARGE):
+        return by_strains(problem, _by_matrices(problem, count, below, undamped)), ""
+    if small:
+        basis = problem.lowest(None, None).elastic
     else:
         # Elastic undamped modes and the damped ones of a first round, which takes the softest modes as rigid.
-        first = undamped.rigid_count
+        undamped = _undamped(problem, count, below)
+        noise = relative_noise(problem, undamped.frequencies, undamped.elastic)
         lost = int(np.count_nonzero(noise > _AS_RIGID))
-        rest = undamped.eigenvalues[first + lost :]
-        found = damped_modes(
-            problem.M,
-            problem.D,
-            problem.K,
-            count=None if count is None else count + lost,
-            below=below,
-            rigid_vectors=undamped.vectors[:, : first + lost],
-            frequency_scale=float(np.sqrt(rest[0])) if len(rest) else None,
-        )
+        found = _by_matrices(problem, None if count is None else count + lost, below, undamped, lost)
         V = found.vectors[:, ~found.rigid]
-        basis = np.hstack([undamped.vectors[:, first:], V.real, V.imag])
+        basis = np.hstack([undamped.elastic, V.real, V.imag])
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
+
+
+def _by_matrices(
+    problem: Problem, count: int | None, below: float | None, undamped: UndampedModes, soft: int = 0
+) -> DampedModes:
+    """The damped modes of the assembled matrices, with some undamped ones known; the softest elastic ones count as rigid."""
+    frequencies = undamped.frequencies[soft:]
+    return damped_modes(
+        problem.M,
+        problem.D,
+        problem.K,
+        count=count,
+        below=below,
+        rigid_vectors=undamped.vectors[:, : undamped.rigid_count + soft],
+        frequency_scale=float(frequencies[0]) if len(frequencies) else None,
+    )
 
 
 def _near_undamped(problem: Problem, count: int | None, below: float | None) -> DampedModes | None:
@@ -103,12 +101,11 @@ def _near_undamped(problem: Problem, count: int | None, below: float | None) -> 
     if spare is not None and spare > _MOST_OF * problem.K.shape[0]:
         return None
     undamped = problem.lowest(spare, None if below is None else _REACH * below, counted=False)
-    first = undamped.rigid_count
-    frequencies = np.sqrt(undamped.eigenvalues[first:])
-    modes = undamped.vectors[:, first:]
+    frequencies = undamped.frequencies
     if undamped.complete or not len(frequencies):
         return None
-    noise = undamped.noise[first:] / frequencies**2 + damping_noise(problem, frequencies, modes)
+    noise = undamped.noise[undamped.rigid_count :] / frequencies**2
+    noise = noise + damping_noise(problem, frequencies, undamped.elastic)
     if noise.max() > _CLEAN_LARGE:
         return None
     shift = np.sqrt(-undamped.shift)
@@ -119,8 +116,8 @@ def _near_undamped(problem: Problem, count: int | None, below: float | None) -> 
         K=problem.K,
         strain=lambda V: np.asarray(S @ V),
         frequencies=frequencies,
-        modes=modes,
-        rigid=undamped.vectors[:, :first],
+        modes=undamped.elastic,
+        rigid=undamped.rigid,
         factored=(shift, undamped.factor) if undamped.factor is not None and is_low else None,
     )
     if near.halves[0].nnz:
@@ -169,16 +166,16 @@ def _in_coordinates(
     X = independent @ turn
     # A dof without inertia follows the others at once; no undamped mode holds that, so it is a coordinate of its own.
     massless = np.flatnonzero(M.diagonal() <= 0.0)
-    N = np.zeros((M.shape[0], massless.size))
-    N[massless, np.arange(massless.size)] = 1.0
+    N = unit_vectors(M.shape[0], massless)
     whole = np.hstack([_by_damping(problem.forms, rigid), X, N])
-    inertia = np.concatenate([np.ones(r + len(squares)), np.zeros(massless.size)])
-    stiffness = np.diag(np.concatenate([np.zeros(r), squares, np.zeros(massless.size)]))
+    massive = r + len(squares)
+    none = np.zeros(massless.size)
+    inertia = np.concatenate([np.ones(massive), none])
+    stiffness = np.diag(np.concatenate([np.zeros(r), squares, none]))
     if massless.size:
-        strains = S @ whole[:, r:]
-        block = strains.T @ (S @ N)
-        stiffness[r:, r + len(squares) :] = block
-        stiffness[r + len(squares) :, r:] = block.T
+        block = (S @ whole[:, r:]).T @ (S @ N)
+        stiffness[r:, massive:] = block
+        stiffness[massive:, r:] = block.T
     strained = _without_rounding(problem.forms, whole, r)
     D = strained.T @ (problem.forms.viscosity @ strained) + _inertial(problem.inertial, whole, r)
     K = stiffness + strained.T @ (problem.forms.circulation @ strained)
@@ -206,9 +203,8 @@ def _independent(M: sp.csc_array, rigid: np.ndarray, basis: np.ndarray) -> np.nd
     kept = np.zeros((M.shape[0], first + basis.shape[1]), order="F")
     kept[:, :first] = rigid
     k = first
-    for column in basis.T:
-        x = column
-        size = np.sqrt(max(column @ (mass @ column), 0.0))
+    for x in basis.T:
+        size = np.sqrt(max(x @ (mass @ x), 0.0))
         for _ in range(3):
             if size == 0.0:
                 break
@@ -258,20 +254,19 @@ def _inertial(A: sp.csc_array, whole: np.ndarray, rigid: int) -> np.ndarray:
 
 def _restored(problem: Problem, whole: np.ndarray, found: DampedModes, scale: float) -> DampedModes:
     """The modes in the coordinates of the dofs, with the residuals that they leave there."""
-    V = whole @ found.vectors
-    V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
+    V = with_largest_one(whole @ found.vectors)
     values = found.eigenvalues.copy()
     quadratic = scaled(problem.M, problem.D, problem.K, scale)
-    size = np.sqrt(np.maximum(np.real(np.einsum("ij,ij->j", V.conj(), problem.M @ V)), 1e-300))
+    size = np.sqrt(np.maximum(np.real(column_forms(problem.M, V)), 1e-300))
     clean = ~found.rigid & (relative_noise(problem, np.abs(values), V / size) <= _CLEAN)
     errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
     for k in np.flatnonzero(clean & (errors > _POLISH)):
-        z, v, _ = newton(quadratic, values[k] / quadratic.w0, V[:, k] / quadratic.scale)
+        z, v = newton(quadratic, values[k] / quadratic.w0, V[:, k] / quadratic.scale)
         if abs(z * quadratic.w0 - values[k]) <= _NEAR * abs(values[k]):
             up = z.imag >= 0.0  # of a pair next to the real axis the other one may be found
             values[k] = (z if up else np.conj(z)) * quadratic.w0
             V[:, k] = (v if up else np.conj(v)) * quadratic.scale
-    V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
+    V = with_largest_one(V)
     errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
     complete = found.complete and whole.shape[1] == problem.K.shape[0]
     return replace(found, eigenvalues=values, vectors=V, backward_error=errors, complete=complete)
@@ -282,21 +277,12 @@ def by_strains(problem: Problem, found: DampedModes) -> DampedModes:
     V = found.vectors
     forms = problem.forms
     S = forms.strain @ V
-
-    def form(A: sp.sparray, X: np.ndarray) -> np.ndarray:
-        return np.asarray(np.einsum("ij,ij->j", X.conj(), A @ X))
-
-    noise = relative_noise(problem, np.abs(found.eigenvalues), V / np.sqrt(np.real(form(problem.M, V))))
-    values = corrected(
-        found.eigenvalues,
-        np.where(found.rigid, 0.0, noise),
-        (
-            form(problem.M, V),
-            form(problem.inertial, V) + form(forms.viscosity, S),
-            form(forms.modulus, S) + form(forms.circulation, S),
-        ),
-    )
-    return replace(found, eigenvalues=values)
+    mass = column_forms(problem.M, V)
+    damping = column_forms(problem.inertial, V) + column_forms(forms.viscosity, S)
+    stiffness = column_forms(forms.modulus, S) + column_forms(forms.circulation, S)
+    noise = relative_noise(problem, np.abs(found.eigenvalues), V / np.sqrt(np.real(mass)))
+    trust = np.where(found.rigid, 0.0, noise)
+    return replace(found, eigenvalues=corrected(found.eigenvalues, trust, (mass, damping, stiffness)))
 
 
 def relative_noise(problem: Problem, size: np.ndarray, V: np.ndarray) -> np.ndarray:

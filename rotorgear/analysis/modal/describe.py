@@ -117,8 +117,7 @@ def _casing_words(body: ReducedBody, shape: np.ndarray) -> str:
     axis = np.argmax(np.abs(normals), axis=1)
     # Both faces of a wall belong to the side of the casing where it stands, whichever way they look.
     far = centres[np.arange(len(axis)), axis] > middle[axis]
-    sides = np.bincount(2 * axis + far, across, 6)
-    side = int(np.argmax(sides))
+    side = int(np.argmax(np.bincount(2 * axis + far, across, 6)))
     return f"wall at {'-+'[side % 2]}{_AXES[side // 2]} bending"
 
 
@@ -129,8 +128,7 @@ def _whole_motion(body: ReducedBody, shape: np.ndarray) -> str:
     own = R.T @ M @ R
     parts = np.linalg.solve(own, R.T @ (M @ shape))
     total = float(np.real(np.conj(shape) @ M @ shape))
-    together = float(np.real(np.conj(parts) @ own @ parts))
-    if not together > _AS_A_WHOLE * total:
+    if not np.real(np.conj(parts) @ own @ parts) > _AS_A_WHOLE * total:
         return ""
     # Displacement of the point where translation and rotation have no common energy, the centre of mass of what the seats see.
     centre = np.array([own[5, 1] - own[4, 2], own[3, 2] - own[5, 0], own[4, 0] - own[3, 1]]) / (

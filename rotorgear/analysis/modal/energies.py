@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.system.groups import by_motion
 from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.system import System
 
@@ -53,11 +54,12 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     for group in system.groups_at(speed):
         local = halves[group.dofs]  # (e, d, m or 2 m)
         M = group.matrices.mass
-        by_dof = None if M is None else np.einsum("edm,edm->dm", local, (M * group.same_motion) @ local)
+        dofs, same_motion = by_motion(group.dof_motions)
+        by_dof = None if M is None else np.einsum("edm,edm->dm", local, (M * same_motion) @ local)
         for motion in motions_of_all:
-            if by_dof is None or motion not in group.dofs_of_motions:
+            if by_dof is None or motion not in dofs:
                 continue
-            energy = _by_mode(by_dof[group.dofs_of_motions[motion]].sum(axis=0), modes)
+            energy = _by_mode(by_dof[dofs[motion]].sum(axis=0), modes)
             _add(kinetic, group.part, energy)
             _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy

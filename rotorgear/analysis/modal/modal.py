@@ -15,20 +15,13 @@ from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_request, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.modal import refine
 from rotorgear.analysis.modal.conditioning import conditioning_warnings, too_far_apart
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import mode_energies
 from rotorgear.analysis.modal.mode_count import MOST_MODES, check_count
 from rotorgear.analysis.modal.reach import Reach
-from rotorgear.analysis.modal.refine import (
-    DEFAULT_ACCURACY,
-    START,
-    all_finer,
-    enriched_errors,
-    errors_of,
-    refined,
-    total_error,
-)
+from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, errors_of, total_error
 from rotorgear.analysis.modal.solve import Modes, Wanted, solve
 from rotorgear.analysis.modal.whirl import whirl_of, whirl_words
 from rotorgear.analysis.static.state_at import linear_system
@@ -197,7 +190,7 @@ def _on_fine_mesh(
             break
         parts = errors_of(system, None, found.eigenvalues, found.vectors, found.rigid)
         watched = reach.watched(np.abs(found.eigenvalues), total_error(parts, len(found.eigenvalues)))
-        finer = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
+        finer = refine.refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
         if finer is None:
             break
         system = system.with_plan(finer)
@@ -205,7 +198,8 @@ def _on_fine_mesh(
         clock.lap("refinement")
     for round_number in range(_ROUNDS):
         progress(min(0.1 + 0.15 * round_number, 0.8), f"solving {system.n} dofs")
-        found = _solved(system, Wanted(speed, *reach.solver_request(), asked.only, asked.pruning), apart)
+        wanted = Wanted(speed, *reach.solver_request(), asked.only, asked.pruning)
+        found = _solved(system, wanted, apart)
         clock.lap("modes")
         size = np.abs(found.eigenvalues)
         estimate = np.full(len(size), np.nan)
@@ -217,22 +211,19 @@ def _on_fine_mesh(
         kept = reach.inside(size)
         if fixed:
             if asked.error_estimate:
-                estimate = enriched_errors(
-                    system, Wanted(speed, None, None, asked.only, asked.pruning), found, estimate
-                )
+                estimate = refine.enriched_errors(system, wanted, found, estimate)
             return system, found.first(kept), estimate[:kept]
         ended = reach.limit is not None and not found.is_complete  # by the highest frequency, not by the mesh
         if reach.modes is not None and len(size) < reach.modes and parts and not ended:
             # The mesh has fewer modes than asked for: every piece must be finer before any error can be estimated.
             if reach.modes > 2 * MOST_MODES:
                 raise AnalysisError(
-                    f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: "
-                    "ask for fewer (--modes)"
+                    f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: ask for fewer (--modes)"
                 )
-            finer = all_finer(system)
+            finer = refine.all_finer(system)
         else:
             watched = reach.watched(size, estimate)
-            finer = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
+            finer = refine.refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
         if finer is not None:
             system = system.with_plan(finer)
         elif reach.is_certain(size, estimate, found.is_complete):

@@ -23,6 +23,7 @@ _HIGHEST = 1e30  # rad/s; its fourth power is still a number, and far fewer mode
 def expected_modes(model: Model, limit: float) -> float:
     """About how many modes the shafts of a model have up to a frequency in rad/s; gears and springs add a few."""
     count = 0.0
+    w = min(limit, _HIGHEST)
     for name, shaft in model.shafts.items():
         for section in shaft.sections:
             if section.rigid:
@@ -34,7 +35,6 @@ def expected_modes(model: Model, limit: float) -> float:
             E = material.youngs_modulus
             G = material.g
             rho = material.density
-            w = min(limit, _HIGHEST)
             # a (k^2)^2 - b k^2 + c = 0 for the wave numbers of bending
             a = E * inertia * _SHEAR * G * area
             b = (E * inertia * rho * area + _SHEAR * G * area * rho * inertia) * w**2

@@ -72,12 +72,11 @@ class Problem:
             inertial = nothing if D is None else system.inertial_terms(at)
         else:
             D = inertial = sp.csc_array(at * system.gyroscopic) if at else nothing
-        undamped = D is None or not damped
 
         @cache
         def forms() -> StrainForms:
             whole = system.strain_forms(at)
-            if undamped:
+            if D is None or not damped:
                 whole = replace(whole, viscosity=0.0 * whole.viscosity)
             return whole if damped else replace(whole, circulation=0.0 * whole.circulation)
 
@@ -86,7 +85,6 @@ class Problem:
             # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
             coarse = system.with_plan(Plan(1))
             guess = shifted_operator(coarse.mass, coarse.stiffness()).elastic if coarse.n else None
-        takes_energy = damped and speed is not None and bool(system.damping(at).nnz)
         return cls(
             system=system,
             M=system.mass,
@@ -97,7 +95,7 @@ class Problem:
             strain=S,
             make_forms=forms,
             symmetric=not circulatory.nnz,
-            damped=takes_energy,
+            damped=damped and speed is not None and bool(system.damping(at).nnz),
             guess=guess,
         )
 
@@ -150,13 +148,7 @@ class Problem:
     def undamped(self, count: int | None, below: float | None, *, counted: bool = True) -> UndampedModes:
         """The lowest undamped modes: `count` of them, or up to |s| = `below` in rad/s; `counted` by Sturm's sequence."""
         return lowest_modes(
-            self.M,
-            self.K_symmetric,
-            count=count,
-            below=below,
-            strain=self.strain,
-            guess=self.guess,
-            counted=counted,
+            self.M, self.K_symmetric, count=count, below=below, strain=self.strain, guess=self.guess, counted=counted
         )
 
     def lowest(self, count: int | None, below: float | None, *, counted: bool = True) -> UndampedModes:
@@ -167,8 +159,7 @@ class Problem:
         known = _kept.setdefault(self.system, {})
         request = (self.dofs, count, below, counted)
         if request not in known:
-            found = self.undamped(count, below, counted=counted)
-            while len(known) >= _MOST_KEPT:
+            known[request] = self.undamped(count, below, counted=counted)
+            if len(known) > _MOST_KEPT:
                 known.pop(next(iter(known)))
-            known[request] = found
         return known[request]

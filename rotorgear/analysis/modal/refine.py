@@ -6,7 +6,9 @@ a piece that no requested mode bends stays as it is.
 
 from __future__ import annotations
 
-from collections import Counter
+from dataclasses import replace
+from itertools import groupby
+from operator import attrgetter
 
 import numpy as np
 
@@ -43,9 +45,8 @@ def errors_of(
     """Estimated relative error by piece, (m,) each, zero for rigid modes, from free shapes x (n, m)."""
     elastic = ~rigid & (np.abs(s) > 0.0)
     found = bubble_errors(system, speed, s[elastic], x[:, elastic]) if elastic.any() else {}
-    spread = {}
+    spread = {piece: np.zeros(len(s)) for piece in found}
     for piece, part in found.items():
-        spread[piece] = np.zeros(len(s))
         spread[piece][elastic] = part
     return spread
 
@@ -65,29 +66,31 @@ def refined(system: System, parts: dict[PieceKey, np.ndarray], accuracy: float) 
         ranked = np.argsort(-table[:, mode])
         left = np.cumsum(table[ranked, mode][::-1])[::-1]
         chosen |= {int(piece) for piece, rest in zip(ranked, left, strict=True) if rest > 0.5 * aim}
-    cut = dict(system.plan.cut)
-    for k in chosen:
-        worst = float(np.max(table[k]))
-        cut[names[k]] = _finer(system, names[k], worst / (aim / len(names)))
-    return Plan(system.plan.elements, system.plan.order, cut)
+    pieces = _pieces(system)
+    finer = {names[k]: _finer(*pieces[names[k]], float(np.max(table[k])) / (aim / len(names))) for k in chosen}
+    return replace(system.plan, cut={**system.plan.cut, **finer})
 
 
 def all_finer(system: System) -> Plan:
     """Return a plan with two orders more in every piece, for a mesh that has too few modes."""
-    cut = dict(system.plan.cut)
+    pieces = _pieces(system)
+    return replace(system.plan, cut={piece: _finer(*pieces[piece], np.inf) for piece in pieces})
+
+
+def _pieces(system: System) -> dict[PieceKey, tuple[int, int, bool]]:
+    """Elements and order of each piece, and whether its mass is lumped, so that it has no other order."""
+    found: dict[PieceKey, tuple[int, int, bool]] = {}
     for shaft, elements in system.nodes.elements.items():
-        for number in {element.piece for element in elements}:
-            cut[shaft, number] = _finer(system, (shaft, number), np.inf)
-    return Plan(system.plan.elements, system.plan.order, cut)
+        lumped = system.model.shafts[shaft].mass_matrix == "lumped"
+        for number, own in groupby(elements, key=attrgetter("piece")):
+            orders = [element.order for element in own]
+            found[shaft, number] = (len(orders), orders[0], lumped)
+    return found
 
 
-def _finer(system: System, piece: PieceKey, excess: float) -> tuple[int, int]:
-    """Elements and order of a piece whose error is `excess` times its share."""
-    shaft, number = piece
-    own = [element for element in system.nodes.elements[shaft] if element.piece == number]
-    count = len(own)
-    order = own[0].order
-    if system.model.shafts[shaft].mass_matrix == "lumped":
+def _finer(count: int, order: int, lumped: bool, excess: float) -> tuple[int, int]:
+    """Elements and order for a piece of some elements of an order whose error is `excess` times its share."""
+    if lumped:
         return 2 * count, order
     if not np.isfinite(excess):  # a mode is finer than the mesh: nothing to extrapolate from yet
         return (count, order + 2) if order < _SPLIT_ORDER - 2 else (2 * count, order)
@@ -104,23 +107,20 @@ def enriched_errors(system: System, wanted: Wanted, found: Modes, estimate: np.n
         system, wanted, found: the coarse mesh, what was asked of it, and its modes.
         estimate: their estimated relative errors (m,); where it is infinite it stays so.
     """
-    pieces = Counter((shaft, e.piece) for shaft, elements in system.nodes.elements.items() for e in elements)
-    limit = ROUGH if min(pieces.values(), default=0) >= _FEW_ELEMENTS else _ROUGH_WITH_FEW
+    pieces = _pieces(system)
+    fewest = min((count for count, _, _ in pieces.values()), default=0)
+    limit = ROUGH if fewest >= _FEW_ELEMENTS else _ROUGH_WITH_FEW
     rough = ~found.rigid & np.isfinite(estimate) & (estimate > limit)
     if not rough.any() or system.n > _LARGEST:
         return estimate
     # Four orders more in every piece catch what an even or odd shape hides from the next ones; else more elements.
     cut = {}
-    for shaft, elements in system.nodes.elements.items():
-        lumped = system.model.shafts[shaft].mass_matrix == "lumped"
-        for number, count in Counter(element.piece for element in elements).items():
-            order = next(element.order for element in elements if element.piece == number)
-            raised = not lumped and order + 4 <= HIGHEST_ORDER
-            cut[shaft, number] = (count, order + 4) if raised else (4 * count, order)
-    finer = system.with_plan(Plan(system.plan.elements, system.plan.order, cut))
-    asked = Wanted(wanted.speed, len(found.eigenvalues), None, wanted.only, wanted.pruning)
+    for piece, (count, order, lumped) in pieces.items():
+        raised = not lumped and order + 4 <= HIGHEST_ORDER
+        cut[piece] = (count, order + 4) if raised else (4 * count, order)
+    finer = system.with_plan(replace(system.plan, cut=cut))
     try:
-        truth = solve(finer, asked)
+        truth = solve(finer, replace(wanted, modes=len(found.eigenvalues), limit=None))
     except AnalysisError:  # the coarse modes stand, with the estimate that they have
         return estimate
     count = min(len(truth.eigenvalues), len(estimate))

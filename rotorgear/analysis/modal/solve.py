@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
 
 from rotorgear.analysis.modal.problem import Problem
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.entries import column_forms
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.system.components import dof_motions, groups_with_inertia, independent_groups
 from rotorgear.system.nodes import CASING, GEAR_BODY
@@ -98,8 +100,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
         solved: list[Modes] = []
         for group in chosen:
             problem = whole.cut(group)
-            here = replace(wanted, limit=_reach(problem, solved, wanted))
-            solved.append(_solve_group(problem, here))
+            solved.append(_solve_group(problem, replace(wanted, limit=_reach(problem, solved, wanted))))
     except LooseDofError as error:
         # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
         try:
@@ -118,10 +119,10 @@ def solve(system: System, wanted: Wanted) -> Modes:
     owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(solved)])
     column = np.concatenate([np.arange(len(part.eigenvalues)) for part in solved])
     order = np.lexsort((np.abs(s), ~rigid))[: wanted.modes]
-    in_order = np.array_equal(order, np.arange(len(order)))
     if len(solved) == 1 and len(chosen[0]) == system.n:
         # Those of large models fill a good part of the memory: no copy without a reason.
-        vectors = solved[0].vectors[:, : len(order)] if in_order else solved[0].vectors[:, order]
+        in_order = np.array_equal(order, np.arange(len(order)))
+        vectors = solved[0].vectors[:, slice(len(order)) if in_order else order]
     else:
         vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
         for place, k in enumerate(order):
@@ -130,9 +131,9 @@ def solve(system: System, wanted: Wanted) -> Modes:
         # Any combination of rigid motions is one: choose those that a person can read.
         vectors[:, rigid[order]] = _sorted_rigid(system, np.real(vectors[:, rigid[order]]))
     counts = [part.available for part in solved]
-    available = None if any(count is None for count in counts) else sum(count for count in counts if count is not None)
-    methods = list(dict.fromkeys(part.method for part in solved))
-    method = methods[0] if len(solved) == 1 else f"{len(solved)} groups of dofs; the largest: {methods[0]}"
+    available = None if None in counts else sum(count or 0 for count in counts)
+    largest = solved[0].method
+    method = largest if len(solved) == 1 else f"{len(solved)} groups of dofs; the largest: {largest}"
     return Modes(s[order], vectors, rigid[order], errors[order], method, available, notes)
 
 
@@ -141,7 +142,7 @@ def _reach(problem: Problem, solved: Sequence[Modes], wanted: Wanted) -> float |
 
     The groups before it may have as many modes as were asked for already.
     """
-    sizes = np.sort(np.concatenate([np.abs(part.eigenvalues) for part in solved])) if solved else np.zeros(0)
+    sizes = np.sort(np.concatenate([np.zeros(0), *(np.abs(part.eigenvalues) for part in solved)]))
     if wanted.modes is None or len(sizes) < wanted.modes:
         return wanted.limit
     reach = _BEYOND * float(sizes[wanted.modes - 1])
@@ -177,12 +178,10 @@ def _solve_group(problem: Problem, wanted: Wanted) -> Modes:
         s = np.where(damped.rigid, 0.0, damped.eigenvalues)
         if problem.symmetric and not problem.damped:
             s = 1j * np.abs(s)  # gyroscopic terms do no work: without damping every s is imaginary, but for rounding
-        norm = np.sqrt(np.real(np.einsum("nm,nm->m", damped.vectors.conj(), problem.M @ damped.vectors)))
-        vectors = damped.vectors / np.where(norm > 0.0, norm, 1.0)
-        kind = " ".join(
-            word for word, there in (("damped", problem.damped), ("gyroscopic", bool(wanted.speed))) if there
-        )
-        method = f"{kind or 'non-symmetric'} problem{coordinates}, {damped.method}"
+        vectors = _of_modal_mass_1(problem.M, damped.vectors)
+        words = {"damped": problem.damped, "gyroscopic": bool(wanted.speed)}
+        kind = " ".join(word for word, there in words.items() if there) or "non-symmetric"
+        method = f"{kind} problem{coordinates}, {damped.method}"
         available = len(s) if damped.complete else None
         found = Modes(s, vectors, damped.rigid, damped.backward_error, method, available)
     if zeta and wanted.speed is not None and wanted.damped:
@@ -195,8 +194,7 @@ def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
     size = np.abs(s)
     total = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0) + zeta
     oscillates = (s.imag > 0.0) & (total < 1.0)
-    turned = size * (-total + 1j * np.sqrt(np.clip(1.0 - total**2, 0.0, None)))
-    return np.where(oscillates, turned, s)
+    return np.where(oscillates, size * (-total + 1j * np.sqrt(np.clip(1.0 - total**2, 0.0, None))), s)
 
 
 def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.ndarray]) -> tuple[str, ...]:
@@ -204,9 +202,9 @@ def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.n
     notes = []
     kept = {int(group[0]) for group in chosen}
     for motion in ("bending", "axial", "torsion", CASING, GEAR_BODY):
-        dropped = [g for g in groups if int(g[0]) not in kept and motions[g[0]] == motion]
+        dropped = sum(len(g) for g in groups if int(g[0]) not in kept and motions[g[0]] == motion)
         if dropped:
-            notes.append(f"{motion}: {sum(map(len, dropped))} dofs decoupled, not among the motions asked for")
+            notes.append(f"{motion}: {dropped} dofs decoupled, not among the motions asked for")
     if len(chosen) > 1:
         sizes = ", ".join(f"{len(group)} {'/'.join(sorted(set(motions[group])))}" for group in chosen[:6])
         more = f" and {len(chosen) - 6} more" if len(chosen) > 6 else ""
@@ -218,26 +216,25 @@ def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.n
 
 def _sorted_rigid(system: System, R: np.ndarray) -> np.ndarray:
     """Turn a basis of the rigid-body motions so that motions and shafts which do not move each other stand apart."""
-    everything = system.dofs.expand(R)
+    nodes = system.nodes
     # A rigid casing is known by its seats, which count as nodes of shafts behind the last one.
     seats = [
-        everything[system.nodes.of_seat(name, k)]
-        for name in system.model.casings
-        for k in range(len(system.layout.casing(name).seats))
+        nodes.of_seat(name, k) for name in system.model.casings for k in range(len(system.layout.casing(name).seats))
     ]
-    q = np.concatenate(
-        [everything[: 6 * len(system.nodes)].reshape(len(system.nodes), 6, R.shape[1]), *([seats] if seats else [])]
-    )
+    plain = system.dofs.expand(R)[np.concatenate([np.arange(6 * len(nodes)), *seats])]
     shafts = {name: k for k, name in enumerate(system.model.shafts)}
-    weight = np.array([1.0 + shafts[name] for name in system.nodes.shaft] + [1.0 + len(shafts)] * len(seats))
+    weight = np.array([1.0 + shafts[name] for name in nodes.shaft] + [1.0 + len(shafts)] * len(seats))
     kinds = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 3.0]) * np.sqrt(2.0)
-    scaled = q * np.sqrt(np.outer(weight, kinds))[:, :, None]
-    flat = scaled.reshape(-1, q.shape[2])
-    plain = q.reshape(-1, q.shape[2])
+    scaled = plain * np.sqrt(np.outer(weight, kinds)).reshape(-1, 1)
     try:
-        turned = R @ la.eigh(flat.T @ flat, plain.T @ plain)[1]
+        turned = R @ la.eigh(scaled.T @ scaled, plain.T @ plain)[1]
     except la.LinAlgError:
         # Inertias of more than 16 decades: motions that differ in the light parts only are one in all digits. Any basis serves.
         return R
-    norm = np.sqrt(np.einsum("nm,nm->m", turned, system.mass @ turned))
-    return np.asarray(turned / np.where(norm > 0.0, norm, 1.0))
+    return _of_modal_mass_1(system.mass, turned)
+
+
+def _of_modal_mass_1(M: sp.csc_array, V: np.ndarray) -> np.ndarray:
+    """Vectors V (n, m) scaled to v^H M v = 1, but for those without inertia."""
+    norm = np.sqrt(np.real(column_forms(M, V)))
+    return np.asarray(V / np.where(norm > 0.0, norm, 1.0))

@@ -48,8 +48,7 @@ def orbits(system: System, inertia: np.ndarray, shapes: np.ndarray, shaft: str) 
     first = shapes[numbers][:, [0, 3]]
     second = shapes[numbers][:, [1, 4]]
     swept = -2.0 * np.sum(weight * np.imag(first.conj() * second), axis=1)
-    size = np.sum(weight * (np.abs(first) ** 2 + np.abs(second) ** 2), axis=1)
-    return swept, size
+    return swept, np.sum(weight * (np.abs(first) ** 2 + np.abs(second) ** 2), axis=1)
 
 
 def whirl_of(system: System, shapes: np.ndarray, speed: float) -> Whirl:

@@ -10,7 +10,8 @@ from rotorgear.analysis.response.orders import Order
 from rotorgear.analysis.response.plant import Plant, Readings, joined
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, part_of
-from rotorgear.solvers.frequency.harmonic import Dynamics, Projected, orthonormal, projected
+from rotorgear.solvers.eigen.reduced_pencil import Pencil
+from rotorgear.solvers.frequency.harmonic import Dynamics, orthonormal, projected, response_in_basis
 from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
 
 # The basis grows until its error against direct solutions is below this, at the points where its residual is largest.
@@ -89,12 +90,12 @@ class ModalSweep:
         loads = np.hstack([plant.loads(orders, float(self.speeds[-1]))[1]])
         patterns = np.hstack([loads.real, loads.imag, plant.lines.vectors])
         self.basis = orthonormal(np.zeros((plant.system.n, 0)), np.hstack([modes, shifted.solve(patterns)]), self.scale)
-        self._projection: tuple[Projected, Projected] | None = None
+        self._projection: tuple[Pencil, Pencil] | None = None
         self.modes = modes.shape[1]
         self.checked = 0
         self.error = np.inf
 
-    def reduced(self, dynamics: Dynamics, speed: float) -> Projected:
+    def reduced(self, dynamics: Dynamics, speed: float) -> Pencil:
         """The projection at a speed: put together from two speeds where nothing but W G and W K changes."""
         if self.plant.has_tables:
             return projected(dynamics, self.basis)
@@ -108,7 +109,8 @@ class ModalSweep:
         w, f = self.plant.loads(self.orders, speed)
         dynamics = self.plant.dynamics(speed)
         # Real and complex would be multiplied as two complex ones, four times the work of a wide basis.
-        y = self.reduced(dynamics, speed).solve(w, self.basis.T @ f.real + 1j * (self.basis.T @ f.imag))
+        projected_load = self.basis.T @ f.real + 1j * (self.basis.T @ f.imag)
+        y = response_in_basis(self.reduced(dynamics, speed), w, projected_load)
         q = self.basis @ y.real + 1j * (self.basis @ y.imag)
         rest = (f - dynamics.apply(w, q)) / self.scale[:, None]
         size = np.linalg.norm(f / self.scale[:, None], axis=0)

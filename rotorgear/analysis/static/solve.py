@@ -27,7 +27,7 @@ from rotorgear.solvers.sparse.nullspace import StaticSolver, UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.groups import ElementGroup
-from rotorgear.system.loads import external_load, torque_loads, weight_loads
+from rotorgear.system.loads import outer_loads
 from rotorgear.system.local_parts import LocalPart, expansion_stiffness, without_linear_part
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
@@ -271,15 +271,6 @@ def is_loaded(system: System) -> bool:
     gravity = system.model.operation.gravity if system.model.operation else None
     index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
     return bool(system.state.applied or index or (gravity and any(gravity)) or system.layout.loaded_from_outside)
-
-
-def outer_loads(system: System) -> np.ndarray:
-    """Torques, forces and moments from outside, and weight over all dofs, (a,)."""
-    operation = system.model.operation
-    loads = torque_loads(system) + external_load(system)
-    if operation and operation.gravity:
-        loads = loads + weight_loads(system, operation.gravity)
-    return loads
 
 
 def without_torsion_to_ground(

@@ -210,7 +210,7 @@ _SAME_PLACE = 1e-9
 
 def _network(model: Tables, places: Sequence[Place]) -> tuple[dict[Place, int], list[tuple[int, int, float]], int]:
     """Number of the node at each place, springs between nodes, and how many nodes: places that a rigid stretch joins are one."""
-    from rotorgear.elements.shaft import torsional_flexibility
+    from rotorgear.elements.shaft_section import torsional_flexibility
 
     node: dict[Place, int] = {}
     springs = []

@@ -17,7 +17,7 @@ import numpy as np
 from llvmlite import ir
 from numba.core import types
 from numba.core.datamodel import models
-from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.core.typing.templates import infer_global, make_concrete_template, signature
 from numba.extending import intrinsic, lower_builtin, register_model
 
 from rotorgear.solvers.time.compiled import compiled
@@ -35,11 +35,9 @@ class LaneType(types.Type):
 
 
 @register_model(LaneType)
-class LaneModel(models.PrimitiveModel):
-    """A vector register, or several."""
-
-    def __init__(self, manager: Any, lane_type: Any) -> None:
-        super().__init__(manager, lane_type, _VECTOR)
+def _model(manager: Any, lane_type: Any) -> models.PrimitiveModel:
+    """How compiled code holds them: a vector register, or several."""
+    return models.PrimitiveModel(manager, lane_type, _VECTOR)
 
 
 lanes = LaneType()
@@ -116,8 +114,7 @@ def where_positive(typing: Any, sign: Any, then: Any, otherwise: Any) -> Any:
 
     def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
         sign, then, otherwise = alike(builder, made, args)
-        mask = builder.fcmp_ordered(">", sign, ir.Constant(sign.type, None))
-        return builder.select(mask, then, otherwise)
+        return builder.select(builder.fcmp_ordered(">", sign, ir.Constant(sign.type, None)), then, otherwise)
 
     return kind, build
 
@@ -141,12 +138,7 @@ smaller = intrinsic(_extreme("<"))
 
 def _register(function: Callable[..., Any], name: str, taken: tuple[tuple[Any, ...], ...], **options: Any) -> None:
     """Make an operator known for some types that it takes, by the instruction of this name."""
-
-    class Known(ConcreteTemplate):
-        key = function
-        cases = [signature(lanes, *kinds) for kinds in taken]  # noqa: RUF012
-
-    infer_global(function)(Known)
+    infer_global(function)(make_concrete_template(name, function, [signature(lanes, *kinds) for kinds in taken]))
 
     def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
         return getattr(builder, name)(*_wide(builder, made, args), **options)

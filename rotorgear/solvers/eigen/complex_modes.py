@@ -108,8 +108,7 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     # Rigid is what strains by rounding only: sums of n products err by up to n eps, and n is below a thousand here. One whose
     # eigenvalue is not zero says that rounding hides soft modes.
     strain = np.einsum("ij,ij->j", V, stiff @ V)
-    noise = np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
-    rigid = np.abs(strain) <= 1e3 * _EPS * noise
+    rigid = np.abs(strain) <= 1e3 * _EPS * np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     # Dofs that nothing holds carry squares of rounding of the others, which is all of their noise as well.
     rigid |= np.abs(strain) <= (1e3 * _EPS) ** 2 * np.abs(strain).max(initial=0.0)
     lam = 1.0 / mu - sigma
@@ -121,8 +120,7 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     if modes is not None and modes < V.shape[1]:
         # What the modes that are cut give statically under unit local forces, as Ritz vectors with inertia.
         high = V[:, modes:]
-        residual = high @ ((high.T @ B) / lam[modes:, None])
-        V = np.hstack([V[:, :modes], ritz_residuals(dense, stiff, residual)])
+        V = np.hstack([V[:, :modes], ritz_residuals(dense, stiff, high @ ((high.T @ B) / lam[modes:, None]))])
     return V, R
 
 

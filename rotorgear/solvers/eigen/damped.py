@@ -14,7 +14,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.eigen.krylov import BlockKrylov
 from rotorgear.solvers.eigen.quadratic import (
     InverseState,
     corrected,
@@ -41,35 +40,13 @@ _ONE_DIRECTION = 1e-6  # length of a vector's imaginary part, over the whole, be
 _BLUR_LARGE = 1e-12  # the same for a large pencil, where a refinement costs more
 
 
-@dataclass
-class Search:
-    """The inverse at a chosen shift, its Krylov basis so far, and the number of factorisations spent."""
-
-    inverse: InverseState
-    krylov: BlockKrylov
-    factorisations: int
-
-    def ritz(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """mu (m,) in descending size, coordinates (m, m), residuals relative to |mu| (m,)."""
-        mu, Y = np.linalg.eig(self.krylov.projection)
-        order = np.argsort(-np.abs(mu), kind="stable")
-        mu = mu[order]
-        Y = Y[:, order]
-        keep = np.abs(mu) > EPS * np.abs(mu[:1]).max(initial=0.0)
-        return mu[keep], Y[:, keep], self.krylov.residuals(Y[:, keep]) / np.abs(mu[keep])
+# Scaled eigenvalues (k,) with Im >= 0, vectors (n, k), and the reach up to which all |lambda| are among them.
+Pairs = tuple[np.ndarray, np.ndarray, float]
 
 
-@dataclass(frozen=True)
-class Pairs:
-    """Scaled eigenvalues (k,) with Im >= 0 and vectors (n, k); all with |lambda| <= reach are among them."""
-
-    values: np.ndarray
-    vectors: np.ndarray
-    reach: float
-    method: str
-
-
-def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None) -> Search:
+def prepared(
+    M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None
+) -> InverseState:
     """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade.
 
     Where they lie is the geometric mean of the lowest few |lambda|.
@@ -77,25 +54,24 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
     w0 = first_guess(M, D, K) if frequency_scale is None else frequency_scale
     best = None
     off = np.inf
-    for attempt in range(1, 12):
+    for _ in range(11):
         quadratic = scaled(M, D, K, w0)
-        inverse = InverseState(quadratic, _SHIFT, R / quadratic.scale[:, None])
-        search = Search(inverse, BlockKrylov(inverse.apply_balanced, 2 * quadratic.n, _BLOCK), attempt)
+        inverse = InverseState(quadratic, _SHIFT, R / quadratic.scale[:, None], _BLOCK)
 
         # Three blocks see the eigenvalues nearest to the shift; nothing but zero ones leaves nothing to move to.
         for _ in range(3):
-            if not search.krylov.exhausted:
-                search.krylov.expand()
-        if search.krylov.size == 0:
-            return search
-        mu, _, residuals = search.ritz()
+            if not inverse.krylov.exhausted:
+                inverse.krylov.expand()
+        if inverse.krylov.size == 0:
+            return inverse
+        mu, _, residuals = inverse.ritz()
         converging = mu[residuals < 0.3][: 2 * _BLOCK]
         near = np.abs(inverse.sigma + 1.0 / (converging if converging.size else mu[:1]))
         lowest = float(np.exp(np.mean(np.log(np.maximum(near, np.finfo(float).tiny)))))
         if 0.1 <= lowest <= 10.0:
-            return search
+            return inverse
         if abs(np.log(lowest)) < off:
-            best = search
+            best = inverse
             off = abs(np.log(lowest))
         w0 *= lowest
     if best is None:
@@ -105,42 +81,39 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
     return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
 
 
-def solve(search: Search, rows: int | None, below: float | None, dense: bool = False) -> Pairs:
+def solve(inverse: InverseState, rows: int | None, below: float | None, dense: bool = False) -> Pairs:
     """At least `rows` pairs, and all up to `below`: more and more of the spectrum until the reach suffices."""
-    quadratic = search.inverse.quadratic
+    quadratic = inverse.quadratic
     limit = np.inf if below is None else below / quadratic.w0
     wanted = 2 * rows + 4 if rows is not None else 40
-    while (
-        not dense and quadratic.n > _DENSE_UP_TO and wanted < quadratic.n // 2 and not (rows is None and below is None)
-    ):
-        pairs = _arnoldi(search, wanted)
-        inside = int(np.count_nonzero(np.abs(pairs.values) <= pairs.reach))
-        if (rows is not None and inside >= rows) or pairs.reach >= limit:
+    iterates = not dense and quadratic.n > _DENSE_UP_TO and not (rows is None and below is None)
+    while iterates and wanted < quadratic.n // 2:
+        values, vectors, reach = _arnoldi(inverse, wanted)
+        inside = int(np.count_nonzero(np.abs(values) <= reach))
+        if (rows is not None and inside >= rows) or reach >= limit:
             shown = slice(0, inside if rows is None else rows)
             # Pairs that rounding in the Krylov basis has blurred too much are refined on the pencil itself.
-            errors = quadratic.residuals(pairs.values[shown], pairs.vectors[:, shown])
+            errors = quadratic.residuals(values[shown], vectors[:, shown])
             for i in np.flatnonzero(errors > _SOUND):
-                pairs.values[i], pairs.vectors[:, i], spent = newton(quadratic, pairs.values[i], pairs.vectors[:, i])
-                search.factorisations += spent
+                values[i], vectors[:, i] = newton(quadratic, values[i], vectors[:, i])
             # All pairs must satisfy the pencil, and none may be there twice: a wide spectrum may blur a Krylov basis too much.
-            values = pairs.values[shown]
-            V = pairs.vectors[:, shown] / np.linalg.norm(pairs.vectors[:, shown], axis=0)
-            close = np.abs(values[:, None] - values) <= _SOUND * np.abs(values)
+            z = values[shown]
+            V = vectors[:, shown] / np.linalg.norm(vectors[:, shown], axis=0)
+            close = np.abs(z[:, None] - z) <= _SOUND * np.abs(z)
             close &= np.abs(V.conj().T @ V) > 1.0 - _SOUND
-            if np.all(quadratic.residuals(values, V) <= _SOUND) and np.count_nonzero(close) == values.size:
-                return pairs
+            if np.all(quadratic.residuals(z, V) <= _SOUND) and np.count_nonzero(close) == z.size:
+                return values, vectors, reach
             break
         wanted += max(8, wanted // 4)
 
     # LAPACK's `eig` of the inverse gives all finite eigenvalues, of which the first `rows` matter.
-    inverse = search.inverse
-    size = 2 * inverse.quadratic.n
+    size = 2 * quadratic.n
     if size > _LARGEST_DENSE:
         raise ConvergenceError(
             f"All eigenvalues of {size} states were needed, which is too many: the spectrum is too wide, or too much of it was"
             " asked for. Ask for fewer modes."
         )
-    known = np.hstack([inverse.zeros, infinite_states(inverse.quadratic)])
+    known = np.hstack([inverse.zeros, infinite_states(quadratic)])
     rest = np.linalg.qr(known, mode="complete")[0][:, known.shape[1] :] if known.shape[1] else np.eye(size)
     # Off the states of zero and of infinite eigenvalues: these would spoil the others by their defective pairs.
     T = rest.T @ inverse.apply(rest)
@@ -153,17 +126,17 @@ def solve(search: Search, rows: int | None, below: float | None, dense: bool = F
     # the companion matrix itself, whose rounding goes with them. The two are equally good at the geometric mean.
     if mu.size and EPS * norm > _TOO_BLURRED * np.abs(mu).min():
         mu, X = _with_direct(inverse, mu, X)
-    return _selected(search, mu, X, known, norm, reach=np.inf, rows=rows)
+    return _selected(inverse, mu, X, known, norm, reach=np.inf, rows=rows)
 
 
-def _arnoldi(search: Search, wanted: int) -> Pairs:
+def _arnoldi(inverse: InverseState, wanted: int) -> Pairs:
     """The `wanted` eigenvalues nearest to the shift, each with all its copies.
 
     A block of width b holds at most b copies of a repeated eigenvalue: where that many are found there may be more, and
     fresh directions are added until fewer copies than directions are found.
     """
-    krylov = search.krylov
-    mu, Y = _converged(search, wanted)
+    krylov = inverse.krylov
+    mu, Y = _converged(inverse, wanted)
     while not krylov.exhausted:
         shown = mu[:wanted]
         equal = np.abs(shown[:, None] - shown) <= _EQUAL * np.abs(shown)
@@ -172,23 +145,22 @@ def _arnoldi(search: Search, wanted: int) -> Pairs:
         krylov.widen(krylov.width)
         for _ in range(3):
             krylov.expand()
-        mu, Y = _converged(search, wanted)
+        mu, Y = _converged(inverse, wanted)
     last = np.abs(mu[min(wanted, mu.size) - 1])
     size = float(np.linalg.norm(krylov.projection, 1))
     Y = Y[:, :wanted]
     X = krylov.polished(np.hstack([Y.real, Y.imag]))
-    X = search.inverse.unbalanced(X[:, : Y.shape[1]] + 1j * X[:, Y.shape[1] :])
-    return _selected(search, mu[:wanted], X, search.inverse.zeros, size, reach=float(1.0 / last))
+    X = inverse.unbalanced(X[:, : Y.shape[1]] + 1j * X[:, Y.shape[1] :])
+    return _selected(inverse, mu[:wanted], X, inverse.zeros, size, reach=float(1.0 / last))
 
 
-def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
+def _converged(inverse: InverseState, wanted: int) -> tuple[np.ndarray, np.ndarray]:
     """Expand until the first `wanted` Ritz values have converged: all mu (m,) and coordinates (m, m)."""
-    krylov = search.krylov
+    krylov = inverse.krylov
     goal = int(3.25 * wanted)
     while True:
-        while krylov.size < goal and not krylov.exhausted:
-            krylov.expand()
-        mu, Y, residuals = search.ritz()
+        krylov.grow(goal)
+        mu, Y, residuals = inverse.ritz()
         if krylov.exhausted:
             return mu, Y
         worst = residuals[:wanted].max() if mu.size >= wanted else 1.0
@@ -204,7 +176,7 @@ def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
 def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The pairs of the inverse with the upper part of the spectrum from the companion matrix, where M is regular."""
     quadratic = inverse.quadratic
-    n = inverse.quadratic.n
+    n = quadratic.n
     M = quadratic.M.toarray()
     if np.any(M.diagonal() <= 0.0) or np.linalg.cond(M) > 1e12:
         return mu, X
@@ -231,14 +203,20 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
 
 
 def _selected(
-    search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, size: float, reach: float, rows: int | None = None
+    inverse: InverseState,
+    mu: np.ndarray,
+    X: np.ndarray,
+    known: np.ndarray,
+    size: float,
+    reach: float,
+    rows: int | None = None,
 ) -> Pairs:
     """One eigenpair a conjugate pair, refined, in ascending |lambda|; `size` is the norm of the matrix that gave mu.
 
     That norm, not the largest |mu|, is what rounding goes with: a fast spin makes the matrix far from normal.
     """
-    quadratic = search.inverse.quadratic
-    sigma = search.inverse.sigma
+    quadratic = inverse.quadratic
+    sigma = inverse.sigma
     # Two equal real roots that rounding has made a conjugate pair are two real ones again, whose vectors are its two parts. Where
     # both parts are one direction, the double root has one vector and stays a pair.
     distance = 1.0 / mu
@@ -249,7 +227,7 @@ def _selected(
         mu = np.where(twins, mu.real, mu)
     one = mu.imag <= 0.0  # Im lambda >= 0, since mu = 1 / (lambda - sigma)
     mu = mu[one].astype(complex)
-    V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
+    V = inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
     values = sigma + 1.0 / mu
 
     # An error e of mu is one of |lambda - sigma|^2 e of lambda. What it blurs is refined on the pencil itself.
@@ -260,13 +238,12 @@ def _selected(
         values = corrected(values, rounding, quadratic.forms(V))
         blurred = rounding * np.minimum(np.abs(values.real) / np.abs(values) + rounding, 1.0) > _BLUR_LARGE
     for i in np.flatnonzero(blurred):
-        values[i], V[:, i], spent = newton(quadratic, values[i], V[:, i])
-        search.factorisations += spent
+        values[i], V[:, i] = newton(quadratic, values[i], V[:, i])
         if values[i].imag < 0.0:  # of a pair next to the real axis the other one may be found
             values[i] = np.conj(values[i])
             V[:, i] = np.conj(V[:, i])
     order = np.lexsort((values.imag, np.abs(values)))
-    return Pairs(values[order], V[:, order], reach - sigma, "dense" if np.isinf(reach) else "block Arnoldi")
+    return values[order], V[:, order], reach - sigma
 
 
 @dataclass(frozen=True)
@@ -281,8 +258,6 @@ class DampedModes:
         zero_count: how many of the 2n eigenvalues are exactly zero, drift partners included.
         complete: True when these are all the finite eigenvalues there are.
         method: "dense" or "block Arnoldi".
-        shift: sigma in rad/s.
-        factorisations: how many matrices were factored.
     """
 
     eigenvalues: np.ndarray
@@ -292,8 +267,6 @@ class DampedModes:
     zero_count: int
     complete: bool
     method: str
-    shift: float
-    factorisations: int
 
 
 def damped_modes(
@@ -328,23 +301,23 @@ def damped_modes(
     check_finite(M=M, D=D, K=K)
     R = np.zeros((K.shape[0], 0)) if rigid_vectors is None else np.asarray(rigid_vectors, dtype=float)
     with single_thread(K.shape[0]):
-        search = prepared(M, D, K, R, frequency_scale)
+        inverse = prepared(M, D, K, R, frequency_scale)
         rows = None if count is None else max(count - R.shape[1], 0)
-        pairs = solve(search, rows, below, dense)
+        found, elastic, reach = solve(inverse, rows, below, dense)
 
         # Rigid motions come first; the search has left them out. All is scaled here to unit diagonals.
-        quadratic = search.inverse.quadratic
+        quadratic = inverse.quadratic
         limit = np.inf if below is None else below * (1.0 + EDGE) / quadratic.w0
-        inside = np.count_nonzero(np.abs(pairs.values) <= min(limit, pairs.reach))
+        inside = np.count_nonzero(np.abs(found) <= min(limit, reach))
         shown = slice(0, inside if rows is None else min(inside, rows))
+        elastic = elastic[:, shown]
         rigid = R / quadratic.scale[:, None]
         listed = rigid[:, :count]
-        values = np.concatenate([np.zeros(listed.shape[1]), pairs.values[shown]])
-        V = np.hstack([listed, pairs.vectors[:, shown]])
+        values = np.concatenate([np.zeros(listed.shape[1]), found[shown]])
+        V = np.hstack([listed, elastic])
         errors = quadratic.residuals(values, V)
 
         # A vector outside the given rigid-body motions that K strains by rounding only: its eigenvalue would be noise.
-        elastic = pairs.vectors[:, shown]
         force = np.abs(quadratic.K @ elastic)
         rounding = 32.0 * EPS * (abs(quadratic.K) @ np.abs(elastic))
         Q = np.linalg.qr(rigid)[0]
@@ -355,16 +328,17 @@ def damped_modes(
                 "pass the rigid modes of the undamped system."
             )
 
-        V = V * quadratic.scale[:, None]
-        largest = np.argmax(np.abs(V), axis=0)
         return DampedModes(
             eigenvalues=values * quadratic.w0,
-            vectors=V / V[largest, np.arange(largest.size)],
+            vectors=with_largest_one(V * quadratic.scale[:, None]),
             rigid=np.arange(values.size) < listed.shape[1],
             backward_error=errors,
-            zero_count=search.inverse.zeros.shape[1],
-            complete=bool(np.isinf(pairs.reach)) and values.size == R.shape[1] + pairs.values.size,
-            method=pairs.method,
-            shift=search.inverse.sigma * quadratic.w0,
-            factorisations=search.factorisations,
+            zero_count=inverse.zeros.shape[1],
+            complete=bool(np.isinf(reach)) and values.size == R.shape[1] + found.size,
+            method="dense" if np.isinf(reach) else "block Arnoldi",
         )
+
+
+def with_largest_one(V: np.ndarray) -> np.ndarray:
+    """Vectors V (n, m) scaled so that the largest component of each is 1."""
+    return np.asarray(V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])])

@@ -41,7 +41,7 @@ _FEW = (
 )  # it is slower already above 100 unknowns where 12 times the number of modes is less than that of unknowns
 _SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
 _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
-_UNCOUNTED = (0.0, 0)  # a shift below which there is nothing to count
+
 _ATTEMPTS = 6  # each with three times the spare pairs of the one before
 _UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
 _ENDLESS = 1e100  # rad/s; no limit at all, and its square is still a number
@@ -62,7 +62,6 @@ class UndampedModes:
         sturm_expected: modes below it that this solver has.
         method: "dense" or "block Lanczos".
         shift: sigma.
-        factorisations: how many matrices were factored.
         noise: (m,) what rounding of the stored K does to Rayleigh quotients, in (rad/s)^2.
         factor: that of K - sigma M, where the modes were not counted: a basis of other modes goes on with it.
     """
@@ -77,9 +76,23 @@ class UndampedModes:
     sturm_expected: int
     method: str
     shift: float
-    factorisations: int
     noise: np.ndarray
     factor: SymmetricFactor | None
+
+    @property
+    def rigid(self) -> np.ndarray:
+        """(n, r) vectors of the modes without strain."""
+        return self.vectors[:, : self.rigid_count]
+
+    @property
+    def elastic(self) -> np.ndarray:
+        """(n, m - r) vectors of the other modes."""
+        return self.vectors[:, self.rigid_count :]
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """(m - r,) omega of the other modes in rad/s."""
+        return np.sqrt(self.eigenvalues[self.rigid_count :])
 
     @property
     def sturm_count_ok(self) -> bool:
@@ -134,7 +147,6 @@ def lowest_modes(
         if below is not None:
             # Counted a little beyond the edge, so that a mode on the limit is computed before it is judged.
             target = min(target, count_below(operator.M, operator.K, below**2 * (1.0 + 1e3 * EDGE)))
-            operator.factorisations += 1
         if count is not None:
             target = min(count, target)
 
@@ -144,31 +156,33 @@ def lowest_modes(
         spare = _SPARE if counted else 0
         modes = None
         for _ in range(_ATTEMPTS):
-            pairs = _candidates(operator, massless, target, spare, strain)
-            keep = int(np.count_nonzero(pairs.values <= limit))
+            V, sure, finite, method = _ritz_basis(operator, massless, target, spare)
+            values, V, noise, rigid = _refined(operator, V, strain)
+            keep = int(np.count_nonzero(values <= limit))
             if count is not None:
                 keep = min(keep, count)
-            gap = (_gap_above(pairs, keep) if counted else _UNCOUNTED) if keep <= pairs.sure else None
+            gap: tuple[float, int] | None = None
+            if keep <= sure:  # a shift of zero has nothing to count below it
+                gap = _gap_above(values, noise, keep, finite) if counted else (0.0, 0)
             if gap is not None:
                 sturm_shift, expected = gap
-                errors = np.full(len(pairs.values), np.nan)
+                errors = np.full(len(values), np.nan)
+                sturm_count = expected
                 if counted:
-                    errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
-                sturm_count = count_below(operator.M, operator.K, sturm_shift) if counted else expected
-                operator.factorisations += counted
+                    errors = backward_errors(operator.mass, operator.stiffness, values, V)
+                    sturm_count = count_below(operator.M, operator.K, sturm_shift)
                 modes = UndampedModes(
-                    eigenvalues=pairs.values[:keep],
-                    vectors=pairs.vectors[:, :keep],
-                    rigid_count=min(pairs.rigid, keep),
+                    eigenvalues=values[:keep],
+                    vectors=V[:, :keep],
+                    rigid_count=min(rigid, keep),
                     backward_error=errors[:keep],
-                    available=pairs.finite,
+                    available=finite,
                     sturm_shift=sturm_shift,
                     sturm_count=sturm_count,
                     sturm_expected=expected,
-                    method=pairs.method,
+                    method=method,
                     shift=operator.sigma,
-                    factorisations=operator.factorisations,
-                    noise=pairs.noise[:keep],
+                    noise=noise[:keep],
                     factor=None if counted else operator.factor,
                 )
                 if modes.sturm_count_ok:
@@ -183,38 +197,33 @@ def lowest_modes(
     )
 
 
-@dataclass(frozen=True)
-class _Candidates:
-    """Refined Ritz pairs in ascending order; the first `sure` are converged, `finite` exist."""
+def _ritz_basis(
+    operator: ShiftInvert, massless: np.ndarray, target: int, spare: int
+) -> tuple[np.ndarray, int, int, str]:
+    """Ritz vectors (n, m) of the `target` lowest modes and up to `spare` more, among which a gap may be found.
 
-    values: np.ndarray
-    vectors: np.ndarray
-    noise: np.ndarray
-    rigid: int
-    sure: int
-    finite: int
-    method: str
-
-
-def _candidates(
-    operator: ShiftInvert, massless: np.ndarray, target: int, spare: int, strain: Strain | None
-) -> _Candidates:
-    """Refined Ritz pairs: `target` lowest ones and up to `spare` more, among which a gap may be found."""
+    Returns:
+        The vectors, how many of them are converged, how many finite modes exist, and the name of the method.
+    """
     n = operator.K.shape[0]
     few = n > _FEW[0] and _FEW[1] * (target + spare) < n
-    dense = (n <= _DENSE_UP_TO and not few) or 3 * (target + spare) > n
-    if dense:
+    if (n <= _DENSE_UP_TO and not few) or 3 * (target + spare) > n:
         V = dense_modes(operator, massless, target + spare)
-        sure = finite = V.shape[1]
-        V = V[:, : target + 10 * spare]
-    else:
-        if spare:
-            sure = target + 1  # one more must be converged: the gap lies below it
-            V = lanczos_modes(operator, sure, spare)
-        else:
-            sure = target
-            V = basis_vectors(operator, max(target, 1))
-        finite = n - massless.size
+        return V[:, : target + 10 * spare], V.shape[1], V.shape[1], "dense"
+    finite = n - massless.size
+    if spare:
+        # One more than the target must be converged: the gap lies below it.
+        return lanczos_modes(operator, target + 1, spare), target + 1, finite, "block Lanczos"
+    return basis_vectors(operator, max(target, 1)), target, finite, "block Lanczos"
+
+
+def _refined(
+    operator: ShiftInvert, V: np.ndarray, strain: Strain | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Ascending Rayleigh quotients (m,) of Ritz vectors V (n, m), which are overwritten, M-orthonormal vectors, and their noise.
+
+    The last number says how many of them are rigid.
+    """
     orthonormalise(operator.mass, V)
     if strain is None:
         values, V = stiffness_ritz(operator.K, V, operator.sigma)
@@ -227,15 +236,13 @@ def _candidates(
     rigid = count_rigid(operator, values, V, noise, strain is not None)
     if strain is None:
         values[:rigid] = 0.0
-    return _Candidates(values, V, noise, rigid, sure, finite, "dense" if dense else "block Lanczos")
+    return values, V, noise, rigid
 
 
-def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
+def _gap_above(values: np.ndarray, noise: np.ndarray, keep: int, finite: int) -> tuple[float, int] | None:
     """A shift in the widest relative gap above the modes to keep, and the number of modes below it; None: no gap."""
-    values = candidates.values
-    noise = candidates.noise
     # With all finite modes at hand any shift above the last one is in a gap.
-    if values.size == candidates.finite:
+    if values.size == finite:
         values = np.append(values, max(4.0 * values[-1], 1e3 * noise.max()))
         noise = np.append(noise, 0.0)
     first = max(keep, 1)

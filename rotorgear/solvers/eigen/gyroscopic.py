@@ -13,11 +13,11 @@ Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3.10 (gyroscopic and
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
-from rotorgear.solvers.eigen.damped import DampedModes
+from rotorgear.solvers.eigen.damped import DampedModes, with_largest_one
 from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
-from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, with_near
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, ScaledBasis, with_near
+from rotorgear.solvers.sparse.entries import column_forms
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EDGE
 
@@ -47,12 +47,12 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
     rows = len(problem.frequencies) if count is None else max(count - problem.rigid.shape[1], 0)
     limit = np.inf if below is None else below
     with single_thread(problem.K.shape[0]):
-        space = UndampedBasis(problem)
+        space = ScaledBasis(problem.weight, problem.modes)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
                 return None
             basis = space.basis
-            small = space.pencil(basis)
+            small = problem.pencil(basis)
             w, Y = gyroscopic_pairs(small.M, 0.5 * (small.D - small.D.T), small.K, len(problem.frequencies))
             wanted = with_near(w, rows, limit)
             if wanted >= len(w):
@@ -68,7 +68,7 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
                     return None
                 middle = float(0.5 * (w[gap - 1] + w[gap]))
                 return found if problem.counted_below(middle) == gap + problem.rigid.shape[1] else None
-            space.add(corrections, space.sizes(V), _COARSE)
+            space.add_corrections(corrections, space.sizes(V), _COARSE)
     return None
 
 
@@ -76,13 +76,11 @@ def _corrections(problem: NearUndamped, w: np.ndarray, V: np.ndarray) -> tuple[n
     """(K + sigma^2 M)^-1 Q(i w) v of each pair, (n, m), and whether eigenvalues and vectors have converged by them."""
     residual = problem.K @ V + (problem.D @ V) * (1j * w) - (problem.M @ V) * w**2
     found = problem.without_rigid(problem.factor.solve(residual))
-
-    def form(A: sp.csc_array, X: np.ndarray) -> np.ndarray:
-        return np.asarray(np.real(np.einsum("ij,ij->j", X.conj(), A @ X)))
-
+    strain = column_forms(problem.K, V).real
     # v^H Q'(w) v = -(v^H K v + w^2 v^H M v)/w, since v^H Q v = 0.
-    error = np.abs(np.einsum("ij,ij->j", residual.conj(), found)) / (form(problem.K, V) + w**2 * form(problem.M, V))
-    turned = np.sqrt(np.maximum(form(problem.K, found), 0.0) / form(problem.K, V))
+    slope = strain + w**2 * column_forms(problem.M, V).real
+    error = np.abs(np.einsum("ij,ij->j", residual.conj(), found)) / slope
+    turned = np.sqrt(np.maximum(column_forms(problem.K, found).real, 0.0) / strain)
     return found, bool(error.max(initial=0.0) <= _CONVERGED and turned.max(initial=0.0) <= _CONVERGED_VECTOR)
 
 
@@ -98,12 +96,10 @@ def counted_modes(problem: NearUndamped, s: np.ndarray, V: np.ndarray, count: in
     V = np.hstack([rigid, V])
     return DampedModes(
         eigenvalues=values,
-        vectors=V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])],
+        vectors=with_largest_one(V),
         rigid=np.arange(len(values)) < rigid.shape[1],
         backward_error=problem.backward_errors(values, V, problem.applied(values, V)),
         zero_count=2 * problem.rigid.shape[1],
         complete=False,
         method=f"{basis}, counted by pivot signs",
-        shift=problem.shift,
-        factorisations=2,
     )

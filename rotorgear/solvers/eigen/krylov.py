@@ -26,34 +26,25 @@ _WELL_SPREAD = 3.0  # log of the ratio of singular values up to which one pass l
 class BlockKrylov:
     """Growing W-orthonormal basis; `basis` (n, m), `projection` H (m, m), `residuals(Y)` of Ritz vectors basis @ Y.
 
-    The start is T applied to random directions, `width` of them; so is whatever replaces a direction that has closed.
+    `width` directions are expanded together; `size` m counts the basis vectors whose image under T is known.
+    The start is T applied to random directions; so is whatever replaces a direction that has closed.
     """
 
     def __init__(self, apply: Apply, n: int, width: int, inner: Apply | None = None) -> None:
         self._apply = apply
         self._inner = inner
         self._random = np.random.default_rng(20)
-        self._width = min(width, n)
+        self.width = min(width, n)
         room = min(n, _ROOM) + width
         self._V = np.empty((n, room), order="F")  # untouched pages cost nothing
         self._H = np.zeros((room, room))
-        self._size = 0
+        self.size = 0
         self._border = np.zeros((0, 0))
         self._border_start = 0
         self._longest = 0.0
         self._drift = (_CLEAN, _CLEAN)
-        self._block, _, self._weighted_block = self._orthonormal(self._fresh(self._width))
+        self._block, _, self._weighted_block = self._orthonormal(self._fresh(self.width))
         self._weighted_before = self._weighted_block[:, :0]
-
-    @property
-    def width(self) -> int:
-        """Number of directions that are expanded together."""
-        return self._width
-
-    @property
-    def size(self) -> int:
-        """Number of basis vectors whose image under T is known."""
-        return self._size
 
     @property
     def exhausted(self) -> bool:
@@ -63,20 +54,20 @@ class BlockKrylov:
     @property
     def basis(self) -> np.ndarray:
         """V (n, m)."""
-        return self._V[:, : self._size]
+        return self._V[:, : self.size]
 
     @property
     def projection(self) -> np.ndarray:
         """H = V^T W T V (m, m)."""
-        return self._H[: self._size, : self._size]
+        return self._H[: self.size, : self.size]
 
     def expand(self) -> None:
         """Apply T to the newest block and orthonormalise the image into the next one."""
-        old = self._size
-        new = self._size + self._block.shape[1]
+        old = self.size
+        new = self.size + self._block.shape[1]
         self._reserve(new + self._block.shape[1])
         self._V[:, old:new] = self._block
-        self._size = new
+        self.size = new
         weighted = self._weighted_block
         # Symmetric T couples a block to its neighbours only: one full pass is then left to remove rounding.
         near = [] if self._inner is None else [self._weighted_before, weighted]
@@ -86,12 +77,17 @@ class BlockKrylov:
         self._border = coefficients[new:]
         self._border_start = old
         self._H[new : new + self._border.shape[0], old:new] = self._border
-        if self._block.shape[1] < self._width:
-            self._inject(self._width - self._block.shape[1])
+        if self._block.shape[1] < self.width:
+            self._inject(self.width - self._block.shape[1])
+
+    def grow(self, size: int) -> None:
+        """Expand until the basis has `size` vectors, or nothing is left to expand."""
+        while self.size < size and not self.exhausted:
+            self.expand()
 
     def widen(self, count: int) -> None:
         """Add fresh directions to the newest block: finds copies of eigenvalues that the start did not hold."""
-        self._width += count
+        self.width += count
         self._inject(count)
 
     def _fresh(self, count: int) -> np.ndarray:
@@ -100,13 +96,13 @@ class BlockKrylov:
 
     def _inject(self, count: int) -> None:
         """Add fresh directions to the newest block, orthogonal to it and to the basis."""
-        held = self._size
+        held = self.size
         pending = self._block.shape[1]
         self._reserve(held + pending)
         self._V[:, held : held + pending] = self._block
-        self._size = held + pending  # for the orthogonalisation only: the images of these are not known yet
+        self.size = held + pending  # for the orthogonalisation only: the images of these are not known yet
         fresh, _, weighted = self._orthonormal(self._fresh(count))
-        self._size = held
+        self.size = held
         self._block = np.hstack([self._block, fresh])
         self._weighted_block = np.hstack([self._weighted_block, weighted])
 
@@ -132,7 +128,7 @@ class BlockKrylov:
         if size > self._V.shape[1]:
             room = 2 * size
             V = np.empty((self._V.shape[0], room), order="F")
-            V[:, : self._size] = self.basis
+            V[:, : self.size] = self.basis
             H = np.zeros((room, room))
             H[: self._H.shape[0], : self._H.shape[1]] = self._H
             self._V = V

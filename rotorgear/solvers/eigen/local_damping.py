@@ -23,7 +23,7 @@ import numpy as np
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
-from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, forces, with_near
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, ScaledBasis, forces, with_near
 from rotorgear.solvers.sparse.entries import columns_of, times
 from rotorgear.solvers.sparse.factor import negative_eigenvalues, single_thread
 from rotorgear.solvers.sparse.pencil import EDGE
@@ -76,17 +76,17 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
     limit = np.inf if below is None else below
     with single_thread(problem.K.shape[0]):
         # Undamped modes, static responses to dampers, and what the velocities of the first `rows` modes excite.
-        space = UndampedBasis(problem)
+        space = ScaledBasis(problem.weight, problem.modes)
         modes = problem.modes[:, :rows]
         forced = problem.without_rigid(problem.factor.solve(np.hstack([P, problem.D @ modes])))
         local = forced[:, : P.shape[1]]
-        space.add(local, np.maximum(space.sizes(local), np.finfo(float).tiny), 0.0)
-        space.add(forced[:, P.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
+        space.add_corrections(local, np.maximum(space.sizes(local), np.finfo(float).tiny), 0.0)
+        space.add_corrections(forced[:, P.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
                 return None
             basis = space.basis
-            small = space.pencil(basis)
+            small = problem.pencil(basis)
             shift = float(np.sqrt(problem.frequencies[0] * problem.frequencies[-1]))
             # No rigid-body motion is in the basis: what hardly moves is a motion that dampers slow.
             found = eigen(small, shift, 0.0, most)
@@ -111,7 +111,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
                 if found_modes.backward_error.max(initial=0.0) <= _SOUND:
                     last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
                     return found_modes if _none_is_missing(problem, small, last) else None
-            space.add(e, space.sizes(right), _COARSE)
+            space.add_corrections(e, space.sizes(right), _COARSE)
     return None
 
 

@@ -16,9 +16,10 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides, times
+from rotorgear.solvers.eigen.krylov import BlockKrylov
+from rotorgear.solvers.sparse.entries import column_forms, norm_1, scaled_on_both_sides, times, unit_vectors
 from rotorgear.solvers.sparse.factor import Factor, factor_general
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
+from rotorgear.solvers.sparse.nullspace import left_null_space, supported_solver
 from rotorgear.solvers.sparse.pencil import EPS, LooseDofError
 
 
@@ -48,8 +49,7 @@ class Quadratic:
 
     def forms(self, V: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """v^H M v, v^H D v and v^H K v of each column of V (n, k): three times (k,)."""
-        mass, velocity, stiffness = (np.einsum("ij,ij->j", V.conj(), A @ V) for A in (self.M, self.D, self.K))
-        return mass, velocity, stiffness
+        return column_forms(self.M, V), column_forms(self.D, V), column_forms(self.K, V)
 
     def residuals(self, values: np.ndarray, V: np.ndarray) -> np.ndarray:
         """Backward errors ||Q(z) v|| / ((|z|^2 ||M||_1 + |z| ||D||_1 + ||K||_1) ||v||) of scaled pairs: (m,)."""
@@ -94,9 +94,12 @@ def scaled(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, w0: float) -> Quad
 
 
 class InverseState:
-    """T = (A - sigma)^-1 on states (2n, k), with the zero eigenvalues of the rigid-body motions projected out."""
+    """T = (A - sigma)^-1 on states (2n, k), with the zero eigenvalues of the rigid-body motions projected out.
 
-    def __init__(self, quadratic: Quadratic, sigma: float, rigid: np.ndarray) -> None:
+    `krylov` is its block Krylov basis so far, in balanced coordinates (`apply_balanced`).
+    """
+
+    def __init__(self, quadratic: Quadratic, sigma: float, rigid: np.ndarray, block: int) -> None:
         self.quadratic = quadratic
         self.sigma = sigma
         self.factor: Factor = factor_general(quadratic.at(sigma))
@@ -106,10 +109,7 @@ class InverseState:
         inertia = np.maximum(quadratic.M.diagonal(), 0.0)
         # A massless dof has a speed that weighs nothing; rounding of the heaviest stands in, so that B can be inverted.
         self._balance = np.sqrt(np.maximum(inertia, EPS * inertia.max(initial=0.0)))[:, None]
-
-    def project(self, x: np.ndarray) -> np.ndarray:
-        """x (2n, k) without its part in the zero eigenspace."""
-        return x - self.zeros @ (self.zeros.T @ x) if self.zeros.shape[1] else x
+        self.krylov = BlockKrylov(self.apply_balanced, 2 * quadratic.n, block)
 
     def apply(self, x: np.ndarray) -> np.ndarray:
         """T x (2n, k)."""
@@ -123,17 +123,25 @@ class InverseState:
         In energies T is normal but for damping. Without B speeds outweigh displacements, and Ritz values stray among the
         converged ones.
         """
-        return self._balanced(self.project(self.apply(self.unbalanced(y))))
+        n = self.quadratic.n
+        x = self.apply(self.unbalanced(y))
+        if self.zeros.shape[1]:
+            x = x - self.zeros @ (self.zeros.T @ x)
+        return np.vstack([x[:n], self._balance * x[n:]])
 
     def unbalanced(self, y: np.ndarray) -> np.ndarray:
         """B^-1 y (2n, k)."""
         n = self.quadratic.n
         return np.vstack([y[:n], y[n:] / self._balance])
 
-    def _balanced(self, x: np.ndarray) -> np.ndarray:
-        """B x (2n, k)."""
-        n = self.quadratic.n
-        return np.vstack([x[:n], self._balance * x[n:]])
+    def ritz(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """mu (m,) in descending size, coordinates (m, m) in the Krylov basis, residuals relative to |mu| (m,)."""
+        mu, Y = np.linalg.eig(self.krylov.projection)
+        order = np.argsort(-np.abs(mu), kind="stable")
+        mu = mu[order]
+        Y = Y[:, order]
+        keep = np.abs(mu) > EPS * np.abs(mu[:1]).max(initial=0.0)
+        return mu[keep], Y[:, keep], self.krylov.residuals(Y[:, keep]) / np.abs(mu[keep])
 
     def restored(self, mu: np.ndarray, X: np.ndarray, known: np.ndarray) -> np.ndarray:
         """Eigenvectors (2n, k) of T from those X of T projected off the invariant subspace `known` (2n, z).
@@ -174,8 +182,7 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
             "A vector given as rigid-body motion is strained: it is not in the null space of the stiffness."
         )
     L = left_null_space(K, M, R)
-    drag = L.T @ (D @ R)
-    U, size, W = la.svd(drag)
+    U, size, W = la.svd(L.T @ (D @ R))
     # R carries rounding of EPS in every dof, so a drag up to EPS |D| is none, wherever the exact R moves no damper.
     noise = 100.0 * EPS * norm_1(D)
     rank = int(np.count_nonzero(size > max(noise, EPS**2)))
@@ -183,10 +190,9 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     first = np.vstack([R, np.zeros_like(R)])
     if drift.shape[1] == 0:
         return first
-    follow = SupportedSolver(K, R, L).solve(-(D @ drift))
+    follow = supported_solver(K, R, L)(-(D @ drift))
     # Condition 1e12: what solves with it would keep four digits, and an inertia so small beside others is that of rounding.
-    inertia = (L @ U[:, rank:]).T @ (M @ drift + D @ follow)
-    if np.linalg.cond(inertia) > 1e12:
+    if np.linalg.cond((L @ U[:, rank:]).T @ (M @ drift + D @ follow)) > 1e12:
         raise AnalysisError("A rigid-body motion has no inertia: give the parts that it moves a mass or a support.")
     return np.linalg.qr(np.hstack([first, np.vstack([follow, drift])]))[0]
 
@@ -204,8 +210,7 @@ def infinite_states(quadratic: Quadratic) -> np.ndarray:
     massless = np.flatnonzero(quadratic.M.diagonal() <= 0.0)
     if massless.size == 0:
         return np.zeros((2 * n, 0))
-    N = np.zeros((n, massless.size))
-    N[massless, np.arange(massless.size)] = 1.0
+    N = unit_vectors(n, massless)
     DN = quadratic.D @ N
     U, size, W = la.svd(N.T @ DN)
     rank = int(np.count_nonzero(size > 100 * EPS * max(abs(quadratic.D).max(), EPS)))
@@ -219,27 +224,24 @@ def infinite_states(quadratic: Quadratic) -> np.ndarray:
     if free.shape[1] and np.linalg.cond(held) > 1e12:
         raise LooseDofError(massless)
     first = np.vstack([np.zeros_like(N), N])
-    second = np.vstack([N @ free, follow])
-    return np.linalg.qr(np.hstack([first, second]))[0]
+    return np.linalg.qr(np.hstack([first, np.vstack([N @ free, follow])]))[0]
 
 
 # Largest step of a refinement relative to the eigenvalue.
 _LONGEST_STEP = 0.1
 # Convergence is quadratic: after a step as small as this only rounding is left.
 _LAST_STEP = 1e-10
+_MOST_STEPS = 5
 
 
-def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[complex, np.ndarray, int]:
-    """Inverse iteration on Q itself: Q(z) u = Q'(z) v, z <- z - (v^H v)/(v^H u); with the number of factorisations.
+def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[complex, np.ndarray]:
+    """Inverse iteration on Q itself: Q(z) u = Q'(z) v, z <- z - (v^H v)/(v^H u).
 
     Quadratic convergence from a pair blurred by rounding; a real pair stays real. Tisseur and Meerbergen, section 5.
     A step that leads away from the pair that was given is not taken: it belongs to another one.
     """
-    real = value.imag == 0.0
-    z, v = (value.real, vector.real) if real else (value, vector)
-    spent = 0
-    while spent < 5:
-        spent += 1
+    z, v = (value.real, vector.real) if (value.imag == 0.0) else (value, vector)
+    for _ in range(_MOST_STEPS):
         v = v / np.linalg.norm(v)
         try:
             factor = factor_general(quadratic.at(z))
@@ -253,7 +255,7 @@ def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[co
         v = u
         if abs(step) <= _LAST_STEP * abs(z):
             break
-    return complex(z), v / np.linalg.norm(v) + 0j, spent
+    return complex(z), v / np.linalg.norm(v) + 0j
 
 
 def first_guess(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array) -> float:

@@ -52,8 +52,7 @@ def largest_pairs(B: NDArray[np.float64], count: int) -> tuple[NDArray[np.float6
         if gaps.max() >= _GAP * pairs[0]:
             span = X[:, 2 * (m - int(ends[np.argmax(gaps)])) :]
     if span is None:
-        top = (size - count, size - 1)
-        theta, Y = la.eigh(-1j * B, subset_by_index=top, overwrite_a=True, check_finite=False)
+        theta, Y = la.eigh(-1j * B, subset_by_index=(size - count, size - 1), overwrite_a=True, check_finite=False)
         return np.asarray(theta[::-1]), np.asarray(Y[:, ::-1])
     theta, c = la.eigh(-1j * (span.T @ B @ span), driver="evd", check_finite=False)
     largest = slice(None, -count - 1, -1)  # they come in pairs +-theta
@@ -75,6 +74,11 @@ class Pencil:
     def at(self, s: complex) -> np.ndarray:
         """s^2 M + s D + K."""
         return np.asarray(s * s * self.M + s * self.D + self.K)
+
+    def between(self, other: Pencil, share: float) -> Pencil:
+        """This one plus a share of the way to another, for matrices that are linear in a parameter."""
+        pairs = ((self.M, other.M), (self.D, other.D), (self.K, other.K))
+        return Pencil(*(mine + share * (theirs - mine) for mine, theirs in pairs))
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from scipy.linalg.lapack import dsygvd
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.krylov import BlockKrylov
-from rotorgear.solvers.sparse.entries import magnitudes
+from rotorgear.solvers.sparse.entries import magnitudes, unit_vectors
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
 from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
@@ -38,13 +38,12 @@ Modes = tuple[np.ndarray, np.ndarray]
 
 @dataclass
 class ShiftInvert:
-    """A factored shift; `factorisations` counts how many were needed, `krylov` keeps the probe to go on from."""
+    """A factored shift; `krylov` keeps the probe to go on from."""
 
     M: sp.csc_array
     K: sp.csc_array
     sigma: float
     factor: SymmetricFactor
-    factorisations: int
     elastic: float = 0.0  # the first eigenvalue above rounding as the probe saw it; 0 when there is none
 
     def __post_init__(self) -> None:
@@ -59,8 +58,8 @@ class ShiftInvert:
 
     def move(self, sigma: float) -> None:
         """Factor at another shift and start the Krylov basis anew."""
-        self.sigma, self.factor = sigma, factor_symmetric(sp.csc_array(self.K - sigma * self.M))
-        self.factorisations += 1
+        self.sigma = sigma
+        self.factor = factor_symmetric(sp.csc_array(self.K - sigma * self.M))
         self._start()
 
     def apply(self, X: np.ndarray) -> np.ndarray:
@@ -95,9 +94,7 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
         stiffness = K.diagonal()
         both = (mass > 0.0) & (stiffness > 0.0)
         sigma = -(_START * float(np.min(stiffness[both] / mass[both])) if np.any(both) else 1.0)
-    factored = 0
     for _ in range(12):
-        factored += 1
         try:
             factor = factor_symmetric(sp.csc_array(K - sigma * M))
         except ConvergenceError:
@@ -105,19 +102,18 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
         if factor is None or factor.negative_count() > 0:
             sigma *= 1e3  # a free structure: sigma M must rise above the rounding of K
             continue
-        operator = ShiftInvert(M, K, sigma, factor, factored)
-        elastic = _first_elastic(operator)
-        operator.elastic = elastic or 0.0
-        if elastic is None or _USEFUL[0] <= -sigma / elastic <= _USEFUL[1]:
+        operator = ShiftInvert(M, K, sigma, factor)
+        operator.elastic = _first_elastic(operator)
+        if not operator.elastic or _USEFUL[0] <= -sigma / operator.elastic <= _USEFUL[1]:
             return operator
-        sigma = -0.1 * elastic
+        sigma = -0.1 * operator.elastic
     raise ConvergenceError(
         "No shift makes K - sigma M positive definite: some motion meets neither stiffness nor inertia."
     )
 
 
-def _first_elastic(operator: ShiftInvert) -> float | None:
-    """The lowest Ritz value above the rounding of K, or None when the Krylov space holds rigid modes only."""
+def _first_elastic(operator: ShiftInvert) -> float:
+    """The lowest Ritz value above the rounding of K, or 0 when the Krylov space holds rigid modes only."""
     krylov = operator.krylov
     while not krylov.exhausted and krylov.size < 30 * _BLOCK:
         krylov.expand()
@@ -131,7 +127,7 @@ def _first_elastic(operator: ShiftInvert) -> float | None:
             raise unstable(float(values.min()))
         if np.any(values > noise):
             return float(values[values > noise].min())
-    return None
+    return 0.0
 
 
 def unstable(eigenvalue: float) -> AnalysisError:
@@ -154,28 +150,26 @@ def basis_vectors(operator: ShiftInvert, count: int) -> np.ndarray:
 
 def _ritz_vectors(operator: ShiftInvert, converged: int, enough: int, begin: int, tolerance: float) -> np.ndarray:
     """Ritz vectors (n, enough), `converged` of them with residuals below a tolerance, from at least `begin` Krylov vectors."""
-    krylov = operator.krylov
     goal = begin
     while True:
-        while krylov.size < goal and not krylov.exhausted:
-            krylov.expand()
+        krylov = operator.krylov
+        krylov.grow(goal)
         values, Y, residuals = operator.ritz(enough)
         stagnant = krylov.size > 10 * enough + 200  # the Sturm count will tell whether it matters
-        if krylov.exhausted or stagnant or np.all(residuals[:converged] < tolerance):
-            highest = values[min(converged, values.size) - 1]
-            if highest <= _SPREAD * -operator.sigma:
-                # One more solve for the modes below |sigma| takes the rounding in stiff modes out of soft ones.
-                V = krylov.polished(Y)
-                low = values < -operator.sigma
-                if np.any(low):
-                    V[:, low] = operator.apply(V[:, low])
-                return V
-            # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
-            operator.move(-1e-4 * highest)
-            krylov = operator.krylov
-            goal = begin
+        if not (krylov.exhausted or stagnant or np.all(residuals[:converged] < tolerance)):
+            goal = krylov.size + 1 + krylov.size // 16
             continue
-        goal = krylov.size + 1 + krylov.size // 16
+        highest = values[min(converged, values.size) - 1]
+        if highest <= _SPREAD * -operator.sigma:
+            # One more solve for the modes below |sigma| takes the rounding in stiff modes out of soft ones.
+            V = krylov.polished(Y)
+            low = values < -operator.sigma
+            if np.any(low):
+                V[:, low] = operator.apply(V[:, low])
+            return V
+        # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
+        operator.move(-1e-4 * highest)
+        goal = begin
 
 
 def symmetric_pair(A: np.ndarray, B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -217,14 +211,12 @@ def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.
     values = sigma + 1.0 / mu[finite]
     V = V[:, finite] / np.sqrt(mu[finite])
     # Every mu errs by eps of the largest: those above 1e-6 of it keep ten digits.
-    resolved = int(np.count_nonzero(mu[finite] > 1e-6 * mu[0]))
-    if wanted <= resolved:
+    if wanted <= int(np.count_nonzero(mu[finite] > 1e-6 * mu[0])):
         return V
 
     # High modes: K v = lambda M v after exact condensation of the massless dofs. Where M stays singular there is nothing better.
     massive = np.delete(np.arange(K.shape[0]), massless)
-    follow = np.zeros((K.shape[0], massive.size))
-    follow[massive, np.arange(massive.size)] = 1.0
+    follow = unit_vectors(K.shape[0], massive)
     if massless.size:
         follow[massless] = -la.solve(K[np.ix_(massless, massless)], K[np.ix_(massless, massive)], assume_a="pos")
     try:

@@ -180,7 +180,7 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
     for _ in range(12):
         D, K = family.at(speed)
         quadratic = scaled(family.M, D, K, order * abs(speed))
-        z, v, _ = newton(quadratic, value / quadratic.w0, v / quadratic.scale)
+        z, v = newton(quadratic, value / quadratic.w0, v / quadratic.scale)
         value = z * quadratic.w0
         v = v * quadratic.scale
         gap = value.imag - order * speed
@@ -211,8 +211,7 @@ def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
         return False
     x = one.vector
     y = other.vector
-    sizes = abs(np.vdot(x, M @ x)) * abs(np.vdot(y, M @ y))
-    return bool(abs(np.vdot(x, M @ y)) ** 2 > 0.98 * sizes)
+    return bool(abs(np.vdot(x, M @ y)) ** 2 > 0.98 * (abs(np.vdot(x, M @ x)) * abs(np.vdot(y, M @ y))))
 
 
 def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> bool:

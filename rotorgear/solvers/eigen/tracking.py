@@ -14,7 +14,7 @@ Bucher and Braun, Mech. Syst. Signal Process. 11 (1997).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,20 +26,7 @@ _WORST = 0.7  # cost above which two modes are not the same one
 _SAME = 1e-7  # derivatives, relative to |s| over the step, that count as equal
 
 
-@dataclass(frozen=True)
-class Step:
-    """Links of a step from a to b.
-
-    Attributes:
-        partner: (m_a,) number at b of each mode at a, -1 where it has none.
-        doubt: (m_a,) whether the link is one that makes the step too long.
-    """
-
-    partner: np.ndarray
-    doubt: np.ndarray
-
-
-def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
+def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> tuple[np.ndarray, np.ndarray]:
     """Link the modes at a to those at b.
 
     Args:
@@ -47,11 +34,14 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
         b: eigenpairs at its end, of a pencil in the same coordinates.
         length: b - a in rad/s; it may be negative.
         narrowest: a veering that is narrower in speed than this, in rad/s, is a crossing.
+
+    Returns:
+        The number at b of each mode at a, (m_a,), -1 where it has none; and whether its link makes the step too long, (m_a,).
     """
     from scipy.optimize import linear_sum_assignment
 
     if not len(a.s) or not len(b.s):
-        return Step(np.full(len(a.s), -1), np.zeros(len(a.s), bool))
+        return np.full(len(a.s), -1), np.zeros(len(a.s), bool)
     slope = Pencil(0.0 * a.pencil.M, (b.pencil.D - a.pencil.D) / length, (b.pencil.K - a.pencil.K) / length)
     a, rate_a = parted(a, slope)
     b, rate_b = parted(b, slope)
@@ -59,8 +49,7 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     def product(one: Eigen, other: Eigen) -> np.ndarray:
         """c_ij (m_a, m_b)."""
         damping = one.y.conj().T @ (one.pencil.D @ other.q)
-        mass = one.y.conj().T @ (one.pencil.M @ other.q)
-        return np.asarray(damping + (one.s[:, None] + other.s) * mass)
+        return np.asarray(damping + (one.s[:, None] + other.s) * (one.y.conj().T @ (one.pencil.M @ other.q)))
 
     # Vectors of twins are anyone's: the MAC of a mode is summed over them, and no twin counts as the second best.
     mac = product(a, b) * product(b, a).T
@@ -77,11 +66,9 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     partner[rows] = columns
 
     # Doubt where a link is not clearly better than the second best of its mode at either end, or does not follow its derivatives.
-    others = cost[rows].copy()
-    others[twins_b[columns] > 0.0] = np.inf
-    other_rows = cost[:, columns].T.copy()
-    other_rows[twins_a[rows] > 0.0] = np.inf
-    second = np.minimum(others.min(axis=1), other_rows.min(axis=1))
+    others_b = np.where(twins_b[columns] > 0.0, np.inf, cost[rows])
+    others_a = np.where(twins_a[rows] > 0.0, np.inf, cost[:, columns].T)
+    second = np.minimum(others_b.min(axis=1), others_a.min(axis=1))
     doubt = np.zeros(len(a.s), bool)
     doubt[rows] = (cost[rows, columns] > AMBIGUOUS * second) | (mismatch[rows, columns] > MISMATCH)
     # Modes change places with others that act on them: too coarse a step to tell a veering from a crossing.
@@ -92,10 +79,8 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     for i, j in linked[np.argwhere(np.triu(swapped))]:
         if max(_width(a, rate_a, slope, i, j), _width(b, rate_b, slope, partner[i], partner[j])) > narrowest:
             doubt[[i, j]] = True
-    poor = np.zeros(len(a.s), bool)
-    poor[rows] = (1.0 - mac[rows, columns]) > _WORST
-    partner[poor] = -1
-    return Step(partner, doubt)
+    partner[rows[(1.0 - mac[rows, columns]) > _WORST]] = -1
+    return partner, doubt
 
 
 def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
@@ -106,8 +91,7 @@ def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
         if len(equal) < 2:
             continue
         s = np.mean(at.s[equal])
-        derivative = -(y[:, equal].conj().T @ ((s * slope.D + slope.K) @ q[:, equal]))
-        W = np.linalg.eig(derivative)[1]
+        W = np.linalg.eig(-(y[:, equal].conj().T @ ((s * slope.D + slope.K) @ q[:, equal])))[1]
         if np.linalg.cond(W) < 1e6:  # a defective derivative has no such directions; the vectors stay as they are
             q = q.copy()
             y = y.copy()
@@ -132,5 +116,4 @@ def _width(at: Eigen, rate: np.ndarray, slope: Pencil, i: int, j: int) -> float:
     closing = abs(rate[i].imag - rate[j].imag)
     if closing == 0.0:
         return 0.0
-    reach = abs(at.s[i].imag - at.s[j].imag) / closing
-    return float(2.0 * reach * np.sqrt(abs(coupling)) / closing)
+    return float(2.0 * (abs(at.s[i].imag - at.s[j].imag) / closing) * np.sqrt(abs(coupling)) / closing)

@@ -15,12 +15,16 @@ from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked_colu
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric
 
 
-class _ScaledBasis:
-    """Span of real vectors, orthonormal in coordinates scaled by `weight` (n,), in which metres and radians count alike."""
+class ScaledBasis:
+    """Span of real vectors, orthonormal in coordinates scaled by `weight` (n,), in which metres and radians count alike.
 
-    def __init__(self, weight: np.ndarray, scaled: np.ndarray) -> None:
+    It begins with the vectors `first` (n, m), whose directions its first columns keep: QR takes one after the other, so that a
+    soft mode is not turned among stiff ones.
+    """
+
+    def __init__(self, weight: np.ndarray, first: np.ndarray | None = None) -> None:
         self._weight = weight
-        self._scaled = scaled
+        self._scaled = np.zeros((len(weight), 0)) if first is None else np.linalg.qr(first * weight[:, None])[0]
 
     @property
     def size(self) -> int:
@@ -32,44 +36,53 @@ class _ScaledBasis:
         """(n, size), real, in the coordinates of the dofs."""
         return np.asarray(self._scaled / self._weight[:, None])
 
+    def sizes(self, V: np.ndarray) -> np.ndarray:
+        """Norms (m,) of vectors V (n, m) in scaled coordinates."""
+        return np.asarray(np.linalg.norm(V * self._weight[:, None], axis=0))
+
     def _beside(self, scaled: np.ndarray) -> np.ndarray:
         """What real scaled vectors (n, m) have beside the span."""
         for _ in range(2):  # twice is enough for the rounding
             scaled = scaled - self._scaled @ (self._scaled.T @ scaled)
         return scaled
 
+    def add_modes(self, vectors: np.ndarray, tolerance: float) -> int:
+        """Add real and imaginary parts of modes (n, m) of any scale; return the number of new columns.
 
-class Subspace(_ScaledBasis):
-    """Span of the real and imaginary parts of the vectors added so far.
-
-    The first columns keep the directions of the vectors that came first: a soft mode is not turned among stiff ones.
-    """
-
-    def __init__(self, weight: np.ndarray, tolerance: float) -> None:
-        super().__init__(weight, np.zeros((len(weight), 0)))
-        self._tolerance = tolerance
-
-    def add(self, vectors: np.ndarray) -> int:
-        """Add what vectors (n, m) have beside the span; return the number of new columns."""
+        A part of a mode beside the span that is below the tolerance, relative to the mode, is not worth a column.
+        """
         scaled = vectors * self._weight[:, None]
         scaled = scaled / np.maximum(np.linalg.norm(scaled, axis=0), np.finfo(float).tiny)
         # The phase of a mode is free: turned so that its real part is as large as can be, little is left for the imaginary one.
-        turn = np.sum(scaled**2, axis=0)
-        scaled = scaled * np.exp(-0.5j * np.angle(turn))
+        scaled = scaled * np.exp(-0.5j * np.angle(np.sum(scaled**2, axis=0)))
         before = self.size
         for part in (scaled.real, scaled.imag):
             beside = self._beside(part.copy())
             if self.size == 0:
                 # QR takes the first vectors one after the other: soft modes keep their directions.
                 Q, R = np.linalg.qr(beside)
-                columns = Q[:, np.abs(np.diag(R)) > self._tolerance]
+                columns = Q[:, np.abs(np.diag(R)) > tolerance]
             else:
                 # Of later ones only what is new counts, largest first.
                 U, size, _ = np.linalg.svd(beside, full_matrices=False)
-                columns = U[:, size > self._tolerance]
+                columns = U[:, size > tolerance]
             columns = columns - self._scaled @ (self._scaled.T @ columns)
             self._scaled = np.hstack([self._scaled, columns])
         return self.size - before
+
+    def add_corrections(self, vectors: np.ndarray, size: np.ndarray, coarse: float) -> None:
+        """Add what real or complex vectors (n, m) have beside the span.
+
+        Args:
+            vectors: (n, m).
+            size: what they correct, (m,) norms in scaled coordinates.
+            coarse: share of the largest addition that waits for the next round: a correction is no better than that.
+        """
+        new = vectors * self._weight[:, None] / size
+        beside = self._beside(np.hstack([new.real, new.imag]) if np.iscomplexobj(new) else new)
+        U, sizes, _ = np.linalg.svd(beside, full_matrices=False)
+        least = max(_NEGLIGIBLE, coarse * float(sizes.max(initial=0.0)))
+        self._scaled = np.hstack([self._scaled, U[:, sizes > least]])
 
 
 # sigma over the first frequency where no factor is there.
@@ -111,11 +124,9 @@ class NearUndamped:
     @cached_property
     def factor(self) -> Factor:
         """Factor of K + sigma^2 M."""
-        return (
-            factor_symmetric(sp.csc_array(self.K + self.shift**2 * self.M))
-            if self.factored is None
-            else self.factored[1]
-        )
+        if self.factored is not None:
+            return self.factored[1]
+        return factor_symmetric(sp.csc_array(self.K + self.shift**2 * self.M))
 
     @cached_property
     def weight(self) -> np.ndarray:
@@ -137,6 +148,11 @@ class NearUndamped:
     def _rows(self) -> sp.csr_array:
         """[M; D; K], sparse (3 n, n)."""
         return stacked_columns((self.M, self._mirror, self.K))
+
+    def pencil(self, V: np.ndarray) -> Pencil:
+        """M, D and K on a basis V (n, r); K through its strains, free of the rounding of the assembled one."""
+        S = self.strain(V)
+        return Pencil(V.T @ (self.M @ V), V.T @ (self.D @ V), S.T @ S)
 
     def products(self, V: np.ndarray) -> np.ndarray:
         """M V, D V and K V: (3, n, m) for real or complex V (n, m)."""
@@ -203,35 +219,3 @@ def with_near(size: np.ndarray, rows: int, limit: float) -> int:
     """How many pairs of a basis, by size (m,), may be among the first `rows` up to a limit once they are corrected."""
     last = float(size[rows - 1]) if 0 < rows <= len(size) else np.inf if rows else 0.0
     return int(np.count_nonzero(size <= min(limit, last) * (1.0 + _CORRECTED)))
-
-
-class UndampedBasis(_ScaledBasis):
-    """Undamped modes and what their residuals ask for, scaled by the weight of the problem."""
-
-    def __init__(self, problem: NearUndamped) -> None:
-        # QR takes one vector after the other: soft modes keep their directions among stiff ones.
-        super().__init__(problem.weight, np.linalg.qr(problem.modes * problem.weight[:, None])[0])
-        self._problem = problem
-
-    def pencil(self, V: np.ndarray) -> Pencil:
-        """M, D and K on a basis V (n, r); K through its strains, free of the rounding of the assembled one."""
-        S = self._problem.strain(V)
-        return Pencil(V.T @ (self._problem.M @ V), V.T @ (self._problem.D @ V), S.T @ S)
-
-    def add(self, vectors: np.ndarray, size: np.ndarray, coarse: float) -> None:
-        """Add what real or complex vectors (n, m) have beside the span.
-
-        Args:
-            vectors: (n, m).
-            size: what they correct, (m,) norms in scaled coordinates.
-            coarse: share of the largest addition that waits for the next round: a correction is no better than that.
-        """
-        new = vectors * self._weight[:, None] / size
-        beside = self._beside(np.hstack([new.real, new.imag]) if np.iscomplexobj(new) else new)
-        U, sizes, _ = np.linalg.svd(beside, full_matrices=False)
-        least = max(_NEGLIGIBLE, coarse * float(sizes.max(initial=0.0)))
-        self._scaled = np.hstack([self._scaled, U[:, sizes > least]])
-
-    def sizes(self, V: np.ndarray) -> np.ndarray:
-        """Norms (m,) of vectors V (n, m) in scaled coordinates."""
-        return np.asarray(np.linalg.norm(V * self._weight[:, None], axis=0))

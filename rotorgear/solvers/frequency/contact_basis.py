@@ -30,7 +30,7 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.eigen.ritz import ritz_residuals
 from rotorgear.solvers.sparse.factor import factor_general, single_thread
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
+from rotorgear.solvers.sparse.nullspace import in_comparable_units, left_null_space, supported_solver
 from rotorgear.solvers.time.local_system import LocalSystem
 
 # Of the largest that a column could reach by its own static compliance: responses below are rounding.
@@ -192,14 +192,14 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
     K = local.stiffness_about
     lowest = lowest_modes(M, sp.csc_array(0.5 * (K + K.T)), count=min(count, local.n))
     V = lowest.vectors
+    R = lowest.rigid
     rigid = lowest.rigid_count
-    R = V[:, :rigid]
 
     # Attachment vectors: static shapes under forces whose share on rigid-body motions is carried by inertia (a free structure).
-    solver = SupportedSolver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
+    solve = supported_solver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
     B = local.B.toarray()
     forces = np.hstack([B, loads])
-    X = solver.solve(forces - M @ (R @ (R.T @ forces)))
+    X = solve(forces - M @ (R @ (R.T @ forces)))
 
     # What modes leave over of them, twice for the rounding.
     rest = X
@@ -217,10 +217,8 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
     Ke[:, :rigid] = 0.0
     Be[:rigid, strained] = 0.0
     size = E.shape[1]
-    G = np.zeros((size, size)) if local.G is None else E.T @ (local.G @ E)
     statics = np.zeros((size, forces.shape[1]))
     statics[rigid:] = np.linalg.solve(Ke[rigid:, rigid:], (E.T @ forces)[rigid:])
-    kept = np.concatenate([acting, B.shape[1] + np.arange(loads.shape[1])])
     return Candidates(
         vectors=E,
         rigid=rigid,
@@ -228,9 +226,9 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
         w=np.sqrt(np.maximum(np.diag(Ke), 0.0)),
         K=Ke,
         D=E.T @ (local.damping_about @ E),
-        G=G,
+        G=np.zeros((size, size)) if local.G is None else E.T @ (local.G @ E),
         B=Be,
-        statics=statics[:, kept],
+        statics=statics[:, np.concatenate([acting, B.shape[1] + np.arange(loads.shape[1])])],
     )
 
 
@@ -250,8 +248,8 @@ def reduced_receptances(among: Candidates, Q: np.ndarray, probes: Probes) -> tup
     s = probes.s[:, None, None]
     W = probes.speed[:, None, None]
     K = Q.T @ among.K @ Q
-    D = Q.T @ among.D @ Q
     G = Q.T @ among.G @ Q
+    D = Q.T @ among.D @ Q
     Z = K + s * D + (s * W) * G + (s * s) * np.eye(len(K))
     B = (Q.T @ among.B).astype(complex)
     try:

@@ -14,6 +14,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.solvers.sparse.factor import factor_general
 
 # Residuals relative to the forces inside: refined until below the first, refused above the second.
@@ -106,39 +107,23 @@ class Dynamics:
         out = self.K @ q + (self.D @ q) * (1j * w) - (self.M @ q) * (w**2)
         if self.low_rank is not None:
             P = self.low_rank.vectors
-            d = self.low_rank.sizes
-            out = out + (P @ (d[:, None] * (P.T @ q))) * (1j * w)
+            out = out + (P @ (self.low_rank.sizes[:, None] * (P.T @ q))) * (1j * w)
         return np.asarray(out)
 
 
-@dataclass(frozen=True)
-class Projected:
-    """X^T M X, X^T D X and X^T K X in a real basis X, each (r, r)."""
-
-    M: np.ndarray
-    D: np.ndarray
-    K: np.ndarray
-
-    def between(self, other: Projected, share: float) -> Projected:
-        """This one plus a share of the way to another, for matrices that are linear in a parameter."""
-        M, D, K = (
-            mine + share * (theirs - mine) for mine, theirs in ((self.M, other.M), (self.D, other.D), (self.K, other.K))
-        )
-        return Projected(M, D, K)
-
-    def solve(self, w: np.ndarray, f: np.ndarray) -> np.ndarray:
-        """Solve at p frequencies (p,) with their own projected right sides f (r, p): coordinates y (r, p)."""
-        Z = self.K[None] + 1j * w[:, None, None] * self.D[None] - (w**2)[:, None, None] * self.M[None]
-        return np.asarray(np.linalg.solve(Z, f.T[:, :, None])[:, :, 0].T)
-
-
-def projected(dynamics: Dynamics, X: np.ndarray) -> Projected:
-    """Project M, D and K on a basis X (n, r)."""
+def projected(dynamics: Dynamics, X: np.ndarray) -> Pencil:
+    """X^T M X, X^T D X and X^T K X in a real basis X (n, r)."""
     M, D, K = (X.T @ (part @ X) for part in (dynamics.M, dynamics.D, dynamics.K))
     if dynamics.low_rank is not None:
         seen = dynamics.low_rank.vectors.T @ X
         D = D + seen.T @ (dynamics.low_rank.sizes[:, None] * seen)
-    return Projected(M, D, K)
+    return Pencil(M, D, K)
+
+
+def response_in_basis(pencil: Pencil, w: np.ndarray, f: np.ndarray) -> np.ndarray:
+    """Coordinates y (r, p) at p frequencies w (p,) in rad/s, each with its own projected right side f (r, p)."""
+    Z = pencil.K[None] + 1j * w[:, None, None] * pencil.D[None] - (w**2)[:, None, None] * pencil.M[None]
+    return np.asarray(np.linalg.solve(Z, f.T[:, :, None])[:, :, 0].T)
 
 
 def orthonormal(X: np.ndarray, new: np.ndarray, scale: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
+from rotorgear.solvers.sparse.nullspace import Solve, inertia_relief
 from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -53,26 +53,17 @@ class Plant:
         return self.C if self.gyroscopic is None else sp.csc_array(self.C + self.speed * self.gyroscopic)
 
     @cached_property
-    def elastic(self) -> tuple[SupportedSolver, np.ndarray]:
-        """The factors of K, and static displacements X (n, m) of unit local forces."""
-        solver = SupportedSolver(
-            self.K,
-            in_comparable_units(self.free, self.K, self.M),
-            left_null_space(self.K, self.M, self.free),
-        )
-        return solver, self._static(solver, self.B)
+    def elastic(self) -> tuple[Solve, np.ndarray]:
+        """What gives static displacements without the motions `free`, and those (n, m) of unit local forces."""
+        solve = inertia_relief(self.K, self.M, self.free)
+        return solve, solve(self.B)
 
     @cached_property
     def static(self) -> StaticSolution:
         """What follows from stiffness and load."""
-        solver, X = self.elastic
-        q = self._static(solver, self.load)
+        solve, X = self.elastic
+        q = solve(self.load)
         return StaticSolution(X, q, self.B.T @ X, self.B.T @ q)
-
-    def _static(self, solver: SupportedSolver, f: np.ndarray) -> np.ndarray:
-        """Static displacements of forces f without the motions `free`."""
-        q = solver.solve(f - self.M @ (self.free @ (self.free.T @ f)))
-        return np.asarray(q - self.free @ (self.free.T @ (self.M @ q)))
 
 
 @dataclass(frozen=True)

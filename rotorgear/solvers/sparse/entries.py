@@ -14,8 +14,7 @@ _ROWS = 4096  # about thirty columns of this many rows fill the cache of a core
 
 def norm_1(A: sp.csc_array | sp.csr_array) -> float:
     """||A||_1, the largest sum of magnitudes in a column."""
-    sums = np.bincount(columns_of(A), np.abs(A.data), minlength=A.shape[1])
-    return float(sums.max(initial=0.0))
+    return float(np.bincount(columns_of(A), np.abs(A.data), minlength=A.shape[1]).max(initial=0.0))
 
 
 def scaled_norm_1(A: sp.csc_array, scale: np.ndarray) -> float:
@@ -72,6 +71,18 @@ def times(A: sp.csc_array | sp.csr_array | np.ndarray, X: np.ndarray) -> np.ndar
     if not np.iscomplexobj(X):
         return np.asarray(A @ X)
     return np.asarray((A @ np.ascontiguousarray(X).view(float)).view(complex))
+
+
+def unit_vectors(n: int, places: np.ndarray) -> np.ndarray:
+    """Columns of the identity, (n, k) for places (k,)."""
+    columns = np.zeros((n, places.size))
+    columns[places, np.arange(places.size)] = 1.0
+    return columns
+
+
+def column_forms(A: sp.sparray | np.ndarray, V: np.ndarray) -> np.ndarray:
+    """v^H A v of each column of V (n, m): (m,)."""
+    return np.asarray(np.einsum("ij,ij->j", V.conj(), A @ V))
 
 
 def stretches(n: int) -> Iterator[slice]:

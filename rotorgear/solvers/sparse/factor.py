@@ -133,8 +133,7 @@ def solve_error(A: sp.csc_array, factor: Factor) -> float:
     # Random, so that it meets every pivot; fixed, to be repeatable.
     b = np.random.default_rng(7).standard_normal(factor.n)
     x = factor.solve(b)
-    scale = norm_1(A) * np.linalg.norm(x) + np.linalg.norm(b)
-    return float(np.linalg.norm(A @ x - b) / scale)
+    return float(np.linalg.norm(A @ x - b) / (norm_1(A) * np.linalg.norm(x) + np.linalg.norm(b)))
 
 
 def _superlu(A: sp.csc_array, **how: Any) -> SuperLU:

@@ -17,7 +17,6 @@ import threading
 import time
 from collections.abc import Callable
 from contextvars import copy_context
-from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -81,18 +80,6 @@ _COST: dict[Solver, tuple[float, float, float, float]] = {
 _LONG = 20.0
 
 
-@dataclass(frozen=True)
-class Forecast:
-    """What a factorisation will take, about: the machine and the shape of the body make a factor of two either way."""
-
-    solver: Solver
-    seconds: float
-    memory: float
-
-    def __str__(self) -> str:
-        return f"about {self.seconds:.0f} s and {self.memory / 1e9:.1f} GB"
-
-
 def best_solver() -> Solver:
     """The best of what is installed."""
     if importlib.util.find_spec("pypardiso"):
@@ -100,11 +87,14 @@ def best_solver() -> Solver:
     return "metis" if importlib.util.find_spec("pymetis") else "mmd"
 
 
-def forecast(unknowns: int, solver: Solver) -> Forecast:
-    """Time and memory of one factorisation."""
+def forecast(unknowns: int, solver: Solver) -> tuple[float, float]:
+    """Seconds and bytes that one factorisation takes, about.
+
+    The machine and the shape of the body make a factor of two either way.
+    """
     seconds, time_power, memory, memory_power = _COST[solver]
     ratio = unknowns / _MEASURED
-    return Forecast(solver, seconds * ratio**time_power, memory * ratio**memory_power)
+    return seconds * ratio**time_power, memory * ratio**memory_power
 
 
 class LargeFactor:
@@ -160,28 +150,28 @@ def factor_positive(
         ConvergenceError: the matrix is singular.
     """
     solver = solver or best_solver()
-    cost = forecast(A.shape[0], solver)
+    seconds, memory = forecast(A.shape[0], solver)
+    cost = f"about {seconds:.0f} s and {memory / 1e9:.1f} GB"
     text = f"{what}: factorisation of {A.shape[0]} unknowns"
     try:
         installed = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):  # the system does not tell
         installed = sys.maxsize
-    if cost.memory > installed:
+    if memory > installed:
         better = ", or install pymetis: pip install 'rotorgear[casing]'" if solver == "mmd" else ""
         raise AnalysisError(
             f"{what}: a factorisation of {A.shape[0]} unknowns takes {cost}, and this machine has {installed / 1e9:.1f} GB. "
             f"Use a coarser model{better}."
         )
-    if cost.seconds > _LONG:
+    if seconds > _LONG:
         hint = "; pymetis would take a tenth of it (pip install 'rotorgear[casing]')" if solver == "mmd" else ""
         text += f", {cost}{hint}"
     progress(0.0, text)
 
     def factored() -> LargeFactor:
-        order = nested_dissection(A, blocks) if solver == "metis" else None
-        return LargeFactor(sp.csr_array(A), solver, order)
+        return LargeFactor(sp.csr_array(A), solver, nested_dissection(A, blocks) if solver == "metis" else None)
 
-    return watched(factored, cost.seconds, lambda share: progress(share, text))
+    return watched(factored, seconds, lambda share: progress(share, text))
 
 
 def nested_dissection(A: Any, blocks: int) -> np.ndarray:
@@ -190,9 +180,8 @@ def nested_dissection(A: Any, blocks: int) -> np.ndarray:
 
     graph = sp.bsr_array(A, blocksize=(blocks, blocks))
     nodes = graph.shape[0] // blocks
-    pattern = sp.csr_array(
-        (np.ones(len(graph.indices), dtype=np.int8), graph.indices, graph.indptr), shape=(nodes, nodes)
-    )
+    ones = np.ones(len(graph.indices), dtype=np.int8)
+    pattern = sp.csr_array((ones, graph.indices, graph.indptr), shape=(nodes, nodes))
     pattern.setdiag(0)
     pattern.eliminate_zeros()
     if hasattr(pymetis, "CSRAdjacency"):

@@ -85,8 +85,7 @@ def local_equilibrium(
     left = iter(range(evaluations))
 
     def counted(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        if next(left, None) is None:
-            raise _SpentError
+        next(left)  # it stops where the laws were evaluated as often as they may be
         return laws(d)
 
     def residual(d: np.ndarray, F: np.ndarray) -> np.ndarray:
@@ -101,8 +100,7 @@ def local_equilibrium(
             return True
         if extents is None:
             return False
-        parts = np.abs(A) @ (np.abs(tangent) @ extents)
-        return bool(worst <= ROUNDING * (terms + parts).max(initial=0.0))
+        return bool(worst <= ROUNDING * (terms + (np.abs(A) @ (np.abs(tangent) @ extents))).max(initial=0.0))
 
     try:
         steps = 0
@@ -130,22 +128,13 @@ def local_equilibrium(
             s /= _LONGER
         F, tangent = counted(d0)
         return LocalEquilibrium(d0, F, tangent, False, steps, _STEPS)
-    except _SpentError:
+    except StopIteration:
         F, tangent = laws(d0)
         return LocalEquilibrium(d0, F, tangent, False)
 
 
-class _SpentError(Exception):
-    """The laws were evaluated as often as they may be."""
-
-
 def _newton(
-    start: np.ndarray,
-    A: np.ndarray,
-    k: np.ndarray,
-    laws: Laws,
-    residual: Residual,
-    small: Small,
+    start: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, residual: Residual, small: Small
 ) -> LocalEquilibrium:
     """Newton's method for a residual of derivative 1 + A (dF/dd - k); a step is halved until it brings the residual down."""
     d = start.copy()
@@ -173,4 +162,4 @@ def _newton(
         stuck = stuck + 1 if not np.linalg.norm(r) <= (1.0 - 1e-6) * before else 0
         if stuck == _STUCK:
             break
-    return LocalEquilibrium(d, F, tangent, small(d, F, tangent, r) if np.all(np.isfinite(r)) else False, _ITERATIONS)
+    return LocalEquilibrium(d, F, tangent, bool(np.all(np.isfinite(r))) and small(d, F, tangent, r), _ITERATIONS)

@@ -9,13 +9,17 @@ Golub and Van Loan, Matrix Computations, 4th ed., section 5.4 (column pivoting).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.sparse.factor import Factor, factor_general
+from rotorgear.solvers.sparse.factor import factor_general
+
+Solve = Callable[[np.ndarray], np.ndarray]
 
 # Square of a frequency far below those of dofs on springs, over their median square.
 _SLOW = 1e-10
@@ -44,16 +48,19 @@ def _bodies(R: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     dof, motion = np.nonzero(R)
     graph = sp.coo_array((np.ones(len(dof), dtype=np.int8), (dof, n + motion)), shape=(n + r, n + r))
     label = connected_components(graph, directed=False)[1]
-    of_dofs = np.argsort(label[:n], kind="stable")
-    of_motions = np.argsort(label[n:], kind="stable")
-    values = np.unique(label[n:])
-    # The places of each number in both sorted lists.
-    first = [np.searchsorted(label[:n][of_dofs], values, side) for side in ("left", "right")]
-    second = [np.searchsorted(label[n:][of_motions], values, side) for side in ("left", "right")]
-    bodies = [(of_dofs[a:b], of_motions[c:d]) for a, b, c, d in zip(*first, *second, strict=True)]
+    of_dofs = by_label(label[:n])
+    none = np.zeros(0, dtype=int)
+    bodies = [(of_dofs.get(number, none), motions) for number, motions in by_label(label[n:]).items()]
     if any(len(dofs) < len(motions) for dofs, motions in bodies):
         return [(np.arange(n), np.arange(r))]
     return bodies
+
+
+def by_label(label: np.ndarray) -> dict[int, np.ndarray]:
+    """The places of each number among `label` (k,), ascending."""
+    order = np.argsort(label, kind="stable")
+    values, first = np.unique(label[order], return_index=True)
+    return dict(zip(values.tolist(), np.split(order, first[1:]), strict=False))  # no places have one empty part
 
 
 def in_comparable_units(R: np.ndarray, K: sp.csc_array, M: sp.csc_array) -> np.ndarray:
@@ -82,30 +89,39 @@ def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarr
     return L
 
 
-class SupportedSolver:
-    """Solves K q = f for f orthogonal to L; q is zero at the support dofs of R.
+def supported_solver(K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> Solve:
+    """What solves K q = f, each (n,) or (n, m), for f orthogonal to L; q is zero at the support dofs of R.
 
     Raises:
         AnalysisError: K stays singular on the support: it has more rigid-body motions than R.
     """
+    every = np.arange(K.shape[0])
+    columns = np.setdiff1d(every, support_dofs(R))
+    rows = columns if L is R else np.setdiff1d(every, support_dofs(L))
+    try:
+        factor = factor_general(sp.csc_array(K[rows][:, columns]))
+    except ConvergenceError as error:
+        raise AnalysisError(
+            f"The stiffness has more rigid-body motions (to its rounding) than the {R.shape[1]} given: give them all."
+        ) from error
 
-    def __init__(self, K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> None:
-        n = K.shape[0]
-        self._columns = np.setdiff1d(np.arange(n), support_dofs(R))
-        self._rows = self._columns if L is R else np.setdiff1d(np.arange(n), support_dofs(L))
-        try:
-            self._factor: Factor = factor_general(sp.csc_array(K[self._rows][:, self._columns]))
-        except ConvergenceError as error:
-            raise AnalysisError(
-                f"The stiffness has more rigid-body motions (to its rounding) than the {R.shape[1]} given: give them all."
-            ) from error
-        self._n = n
-
-    def solve(self, f: np.ndarray) -> np.ndarray:
-        """q (n,) or (n, m) for f of that shape."""
+    def solve(f: np.ndarray) -> np.ndarray:
         q = np.zeros(f.shape)
-        q[self._columns] = self._factor.solve(f[self._rows])
+        q[columns] = factor.solve(f[rows])
         return q
+
+    return solve
+
+
+def inertia_relief(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> Solve:
+    """What gives static displacements without the M-orthonormal motions R (n, r); their inertia carries its share of forces."""
+    supported = supported_solver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
+
+    def solve(f: np.ndarray) -> np.ndarray:
+        q = supported(f - M @ (R @ (R.T @ f)))
+        return np.asarray(q - R @ (R.T @ (M @ q)))
+
+    return solve
 
 
 _BALANCE = 1e-8  # work relative to the sum of its absolute parts that counts as none
@@ -141,7 +157,7 @@ class StaticSolver:
         typical = float(np.median(diagonal[diagonal > 0.0])) if np.any(diagonal > 0.0) else 1.0
         self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))
         self._R = orthonormal_motions(R * self._scale[:, None])  # of q * scale
-        self._solver = SupportedSolver(self._K, self._R, self._R)
+        self._solve = supported_solver(self._K, self._R, self._R)
 
     def solve(self, f: np.ndarray, *, carried: bool = False) -> np.ndarray:
         """Return q (n, p) for loads f (n, p); with `carried` their work on free motions is left out instead of refused.
@@ -156,7 +172,7 @@ class StaticSolver:
         q = np.zeros_like(f)
         size = abs(self._K)
         for _ in range(_REFINEMENTS):
-            q = q + self._solver.solve(residual)
+            q = q + self._solve(residual)
             residual = self._without_rigid(target - self._K @ q)
             scale = np.abs(size @ np.abs(q)) + np.abs(target)
             noise = np.max(np.abs(residual / self._scale[:, None]), axis=0)

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.sparse.newton import local_equilibrium
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space, support_dofs
+from rotorgear.solvers.sparse.nullspace import in_comparable_units, inertia_relief, support_dofs
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, local_tangent
 
@@ -57,12 +57,7 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
     M = system.M
     R = free_motions(M, K) if free is None else free
     B = system.B.toarray()
-    solver = SupportedSolver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
-
-    def static(f: np.ndarray) -> np.ndarray:
-        q = solver.solve(f - M @ (R @ (R.T @ f)))
-        return np.asarray(q - R @ (R.T @ (M @ q)))
-
+    static = inertia_relief(K, M, R)
     q0 = static(system.load)
     X = static(B) if system.m else np.zeros((system.n, 0))
     forces = system.forces

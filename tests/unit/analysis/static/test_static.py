@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.elements.shaft import cowper
+from rotorgear.elements.shaft_section import cowper
 from rotorgear.results.static import StaticResult
 from tests.paths import ROOT
 
