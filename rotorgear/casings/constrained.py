@@ -24,7 +24,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
-from rotorgear.solvers.sparse.large import LargeFactor, factor_positive
+from rotorgear.solvers.sparse.large import factor_positive
 
 Columns = Callable[[np.ndarray], np.ndarray]
 _TOLERANCE = 1e-10
@@ -105,7 +105,6 @@ class ElasticBody:
 
     def __init__(self, K: Any, rigid: np.ndarray, what: str, progress: Progress = silent) -> None:
         self.rigid = rigid
-        self.factor: LargeFactor
         self._pins = np.zeros(0, dtype=int)
         if rigid.shape[1]:
             # Six dofs that hold the body best: the pivots of its rigid motions.
@@ -119,14 +118,14 @@ class ElasticBody:
             diagonal = K.diagonal()
             diagonal[self._pins] = diagonal.max()
             K.setdiag(diagonal)
-        self.factor = factor_positive(K, 3, what, progress)
+        self._solve = factor_positive(K, 3, what, progress)
 
     def flexibility(self, forces: np.ndarray) -> np.ndarray:
         """A f for f (n, k): exact for forces in balance, if the body floats."""
         if len(self._pins):
             forces = forces.copy()
             forces[self._pins] = 0.0
-        return self.factor.solve(forces)
+        return self._solve(forces)
 
 
 class Constrained:

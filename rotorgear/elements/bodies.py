@@ -54,22 +54,14 @@ def elastic_gear(mass: float, polar_inertia: np.ndarray, diametral_inertia: floa
     """
     whole = rigid_body(mass, float(polar_inertia.sum()), diametral_inertia)
     assert whole.mass is not None
-    M = np.zeros((1, 12, 12))
-    M[:, :6, :6] = whole.mass
+    behind = ((0, 0), (0, 6), (0, 6))
+    M = np.pad(whole.mass, behind)
     # Only the rotations of node and teeth differ; the teeth's other dofs are those of the node, counted once.
     M[0][np.ix_([5, 11], [5, 11])] = polar_inertia
-    G = np.zeros_like(M)
-    if whole.gyroscopic is not None:
-        G[:, :6, :6] = whole.gyroscopic
+    G = None if whole.gyroscopic is None else np.pad(whole.gyroscopic, behind)
     B = np.zeros((1, 1, 12))
-    B[0, 0, 5] = -1.0
-    B[0, 0, 11] = 1.0
-    return ElementMatrices(
-        strain=B,
-        modulus=np.full((1, 1, 1), stiffness),
-        mass=M,
-        gyroscopic=None if whole.gyroscopic is None else G,
-    )
+    B[0, 0, [5, 11]] = (-1.0, 1.0)
+    return ElementMatrices(strain=B, modulus=np.full((1, 1, 1), stiffness), mass=M, gyroscopic=G)
 
 
 if TYPE_CHECKING:

@@ -82,10 +82,8 @@ def shaft_bubbles(data: ShaftElements, order: int, points: int) -> tuple[np.ndar
     fields[3][:, :, yz] = -tilt
     fields[2][:, :, z] = fields[5][:, :, theta_z] = along
     strain = np.zeros((e, count, count))
-    strain[:, xz, xz] = plane_root
-    strain[:, yz, yz] = plane_root
-    strain[:, z, z] = axial_root
-    strain[:, theta_z, theta_z] = twist_root
+    for own, root in ((xz, plane_root), (yz, plane_root), (z, axial_root), (theta_z, twist_root)):
+        strain[:, own, own] = root
     turn = np.zeros((count, count))
     turn[xz, yz] = -np.eye(b)
     turn[yz, xz] = np.eye(b)

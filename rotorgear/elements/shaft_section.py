@@ -41,11 +41,9 @@ class ShaftElements:
     def unique(self) -> tuple[ShaftElements, np.ndarray]:
         """Return the different elements, and for each element its place among them."""
         columns = [np.reshape(getattr(self, name), (len(self.length), -1)) for name in self.__dataclass_fields__]
-        table = np.hstack(columns)
         # NaN (Cowper) is unequal to itself; -1 can't be a shear coefficient.
-        _, first, inverse = np.unique(
-            np.nan_to_num(table, nan=-1.0, posinf=-2.0), axis=0, return_index=True, return_inverse=True
-        )
+        table = np.nan_to_num(np.hstack(columns), nan=-1.0, posinf=-2.0)
+        _, first, inverse = np.unique(table, axis=0, return_index=True, return_inverse=True)
         picked = {name: getattr(self, name)[first] for name in self.__dataclass_fields__}
         return ShaftElements(**picked), inverse.ravel()
 

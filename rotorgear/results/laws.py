@@ -53,7 +53,7 @@ def law_rows(points: Iterable[OperatingPoint]) -> tuple[LawRow, ...]:
     return tuple(LawRow(**vars(point)) for point in points)
 
 
-def about(state: State) -> str:
+def about_state(state: State) -> str:
     """What a linear analysis is linear about, for the words on its method; "" where nothing depends on the mean load."""
     speeds = dict.fromkeys(f"{point.speed * RPM_PER_RAD_S:.6g}" for point in state.operating)
     if not (speeds or state.faces or state.cycle):

@@ -22,8 +22,11 @@ Term = Callable[[ElementGroup], np.ndarray | None]
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-def _entries(parts: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray | None]]) -> Entries:
-    """Values, rows and columns of small matrices (e, r, c), or (1, r, c) for all e, at rows (e, r) and columns (e, c)."""
+def _entries(parts: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray | None]], *, zeros: bool = False) -> Entries:
+    """Values, rows and columns of small matrices (e, r, c), or (1, r, c) for all e, at rows (e, r) and columns (e, c).
+
+    Values that are zero are left out, but for `zeros`.
+    """
     values = [np.zeros(0)]
     rows = [np.zeros(0, INDEX)]
     cols = [np.zeros(0, INDEX)]
@@ -34,19 +37,14 @@ def _entries(parts: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray | None]]) 
         values.append(np.broadcast_to(part, shape).ravel())
         rows.append(np.broadcast_to(row.astype(INDEX)[:, :, None], shape).ravel())
         cols.append(np.broadcast_to(col.astype(INDEX)[:, None, :], shape).ravel())
-    return np.concatenate(values), np.concatenate(rows), np.concatenate(cols)
-
-
-def _nonzero(entries: Entries) -> Entries:
-    """Those entries whose value is not zero."""
-    value, row, col = entries
-    kept = value != 0.0
+    value, row, col = (np.concatenate(every) for every in (values, rows, cols))
+    kept = slice(None) if zeros else value != 0.0
     return value[kept], row[kept], col[kept]
 
 
 def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc_array:
     """Return the sum over all elements of `term(group)`, each (e, d, d) or None, as a sparse (n, n)."""
-    value, row, col = _nonzero(_entries((group.dofs, group.dofs, term(group)) for group in groups))
+    value, row, col = _entries((group.dofs, group.dofs, term(group)) for group in groups)
     if dofs.selects:
         row = dofs.column[row]
         col = dofs.column[col]
@@ -78,11 +76,12 @@ def strain_factor(groups: Iterable[ElementGroup], dofs: DofMap) -> sp.csr_array 
     rows, count = _strain_rows(stiff)
     parts = []
     for group, row in zip(stiff, rows, strict=True):
-        root = _root(group.matrices.modulus)
+        D = group.matrices.modulus
+        root = None if D is None else _root(D)
         if root is None:
             return None
         parts.append((row, group.dofs, root @ group.matrices.strain))
-    value, row, col = _entries(parts)
+    value, row, col = _entries(parts, zeros=True)
     full = sp.csr_array(sp.coo_array((value, (row, col)), shape=(count, dofs.transform.shape[0])))
     return sp.csr_array(full @ dofs.transform)
 
@@ -132,10 +131,8 @@ class StrainForms:
         """The same for a group of dofs that no other dof acts on."""
         B = sp.csr_array(sp.csc_array(self.strain)[:, dofs])
         rows = np.flatnonzero(np.diff(B.indptr) > 0)
-        return StrainForms(
-            sp.csr_array(B[rows]),
-            *(sp.csr_array(A[rows][:, rows]) for A in (self.modulus, self.viscosity, self.circulation)),
-        )
+        D, V, Z = (sp.csr_array(A[rows][:, rows]) for A in (self.modulus, self.viscosity, self.circulation))
+        return StrainForms(sp.csr_array(B[rows]), D, V, Z)
 
 
 def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, rayleigh_beta: float) -> StrainForms:
@@ -162,7 +159,7 @@ def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, ray
         return scattered([(row, row, term(group)) for row, group in zip(rows, strained, strict=True)], count)
 
     def scattered(parts: list[tuple[np.ndarray, np.ndarray, np.ndarray | None]], width: int) -> sp.csr_array:
-        value, row, col = _nonzero(_entries(parts))
+        value, row, col = _entries(parts)
         return sp.csr_array(sp.coo_array((value, (row, col)), shape=(count, width)))
 
     of_dofs = [(row, group.dofs, group.matrices.strain) for row, group in zip(rows, strained, strict=True)]

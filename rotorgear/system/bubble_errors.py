@@ -25,7 +25,8 @@ looked at, with r* r in the sum.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -72,8 +73,9 @@ def bubble_groups(system: System) -> Iterator[tuple[str, list[Element], np.ndarr
                 continue
             kinds, which = element_data(model, name, elements).unique()
             b = _bubble_modes(kinds, order, shaft.shear_deformation, lumped, model.motions)
-            terms = (b.squared, b.mass, b.stiffness, b.gyroscopic, b.lumping)
-            yield name, elements, dofs, Bubbles(*(None if term is None else term[which] for term in terms))
+            of_elements: dict[str, Any] = {item.name: getattr(b, item.name) for item in fields(Bubbles)}
+            of_elements = {term: None if A is None else A[which] for term, A in of_elements.items()}
+            yield name, elements, dofs, Bubbles(**of_elements)
 
 
 def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndarray) -> dict[PieceKey, np.ndarray]:
@@ -161,7 +163,8 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
         plain = distinct_elements(kinds, lumped=True).mass
         assert plain is not None
         lumping = rich.mass[:, :12, :12] - plain
-    return Bubbles(np.array(squared), *(np.array(rows) for rows in taken), lumping)
+    mass, stiffness, gyroscopic = (np.array(rows) for rows in taken)
+    return Bubbles(np.array(squared), mass, stiffness, gyroscopic, lumping)
 
 
 _LIGHT = 0.03  # damping ratio up to which x does for an estimate

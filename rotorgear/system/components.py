@@ -54,19 +54,16 @@ def groups_with_inertia(
     still: list[str] = []
     mass = system.mass.diagonal()
     for group in groups:
-        if np.any(mass[group] > 0.0):
+        has_modes = bool(np.any(mass[group] > 0.0))
+        if not has_modes:
+            held = np.linalg.eigvalsh(system.stiffness()[group][:, group].toarray())
+            has_modes = held[0] <= 1e-13 * held[-1]
+        if has_modes:
             moving.append(group)
             continue
-        held = np.linalg.eigvalsh(system.stiffness()[group][:, group].toarray())
-        if held[0] <= 1e-13 * held[-1]:
-            moving.append(group)
-            continue
-        names = "; ".join(system.dofs.describe(dof, system.nodes) for dof in group[:4])
-        names += f" and {len(group) - 4} more" if len(group) > 4 else ""
+        names = system.dofs.describe_some(group.tolist(), system.nodes)
         if velocity is not None and velocity[group].nnz:
-            raise AnalysisError(
-                f"dampers but no inertia: {names}; give the body there its inertia, or leave its dampers out"
-            )
+            raise AnalysisError(f"dampers but no inertia: {names}; give the body inertia or no dampers")
         still.append(names)
     return moving, (f"modes of what has stiffness but no inertia: {'; '.join(still)}",) if still else ()
 

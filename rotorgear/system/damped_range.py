@@ -26,6 +26,5 @@ def undamped_above(limit: float, zeta: float) -> tuple[str, ...]:
     """A sentence on what modes above a frequency in rad/s lack, where there is one."""
     if not zeta or not np.isfinite(limit):
         return ()
-    return (
-        f"the damping ratio of modes above {limit / (2.0 * np.pi):.4g} Hz, {_ABOVE:g} times the highest excitation",
-    )
+    hertz = limit / (2.0 * np.pi)
+    return (f"the damping ratio of modes above {hertz:.4g} Hz, {_ABOVE:g} times the highest excitation",)

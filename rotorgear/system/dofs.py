@@ -7,6 +7,7 @@ rigid sections and such bodies T only selects.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,11 @@ class DofMap:
         everything = np.zeros((len(free), *q.shape[1:]), dtype=q.dtype)
         everything[free] = q
         return everything
+
+    def describe_some(self, dofs: Sequence[int], nodes: Nodes) -> str:
+        """Say which displacements some free dofs are: the first four, and how many more."""
+        named = "; ".join(self.describe(dof, nodes) for dof in dofs[:4])
+        return f"{named} and {len(dofs) - 4} more" if len(dofs) > 4 else named
 
     def describe(self, dof: int, nodes: Nodes) -> str:
         """Say which displacement a free dof is, for messages."""

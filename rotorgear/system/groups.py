@@ -159,11 +159,8 @@ def table_groups(state: State, nodes: Nodes, speed: float) -> list[ElementGroup]
     Raises:
         AnalysisError: the speed of a bearing's shaft lies outside its table.
     """
-    return [
-        _spring_group(state.layout, nodes, address, *state.spring_at(address, speed))
-        for address, held in state.springs.items()
-        if held.varies
-    ]
+    varying = [address for address, held in state.springs.items() if held.varies]
+    return [_spring_group(state.layout, nodes, address, *state.spring_at(address, speed)) for address in varying]
 
 
 def _spring_group(

@@ -50,8 +50,7 @@ def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndar
     f = np.zeros(system.dofs.transform.shape[0])
     moved = np.zeros_like(f)
     count = 6 * len(system.nodes)
-    for axis in range(3):
-        moved[axis:count:6] = gravity[axis]
+    moved[:count].reshape(-1, 6)[:, :3] = gravity
     for name in system.model.casings:
         forces = system.layout.casing(name).inertia_force[:, :3] @ np.array(gravity)
         # A body that was reduced elsewhere may come without its weight; results say so.

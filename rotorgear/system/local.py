@@ -84,7 +84,7 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         rotation: speed of the reference over time.
         speed: at which bearings with tables and internal damping are taken, in rad/s.
         along_faces: loaded teeth that feel the tilt of their shafts follow it in time, by maps at several tilts; otherwise they
-            stand askew as in the static state, and resist a tilt by the tangent about it.
+            keep the tilt of the static state, and resist another one by the tangent about it.
     """
     from rotorgear.solvers.time.local_forces import gather
 
@@ -191,7 +191,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart
         part = LocalPart(address, label, working, columns, rotation, transverse)
         yield from (part, *blows) if along else (*blows, part)
         yield from friction_part(system, force, geometry, label, spring, dofs[:12], approach)
-        # Coast flanks behind those that tilt stand askew as in the mean state, and so are no part of the same law.
+        # Coast flanks behind flanks that tilt keep the tilt of the mean state, so they are a law of their own.
         if spring.gap == "unilateral" or (along and spring.gap == "dead zone"):
             turned = replace(geometry, torque_sense=-geometry.torque_sense)
             normal = columns_at(system, dofs[:12], contact_vector(turned)[None])

@@ -12,6 +12,7 @@ import numpy as np
 
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.errors import AnalysisError
+from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.plan import Plan
@@ -128,8 +129,7 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
         ends = np.cumsum([shaft.start, *[section.length for section in shaft.sections]])
         found[name] = [(float(ends[0]), "start")]
         found[name] += [(float(z), f"end of section {number}") for number, z in enumerate(ends[1:])]
-    standing = ("gears", "disks", "point_masses", "bearings", "supports", "couplings", "nonlinear_elements")
-    for address, part in model.parts_of(*standing, "loads", "unbalances", "points"):
+    for address, part in model.parts_of(*ON_SHAFTS, "couplings", "loads", "unbalances", "points"):
         # Torques without a place stand at an end of their shaft, a point on a part where that part has its node.
         if address.startswith(("loads.", "points.")) and (part.shaft is None or part.at is None):
             continue
@@ -185,7 +185,7 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
 
 def _add_shaft(nodes: Nodes, model: Tables, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
     part = model.shafts[shaft]
-    # A shaft without length has one place, whatever number stands for it.
+    # A shaft without length has one place, whatever z its parts give.
     tolerance = MERGE_DISTANCE * part.length if part.sections else np.inf
     kept: list[tuple[float, str]] = []
     for place, what in sorted(wanted):
@@ -220,18 +220,9 @@ def _add_shaft(nodes: Nodes, model: Tables, shaft: str, wanted: list[tuple[float
         share = np.clip((edges - ends[number]) / section.length, 0.0, 1.0)
         for k in range(count):
             node = first + len(z) - 1
-            element = Element(
-                left=node,
-                right=node + 1,
-                length=length,
-                section=number,
-                start=float(share[k]),
-                stop=float(share[k + 1]),
-                piece=piece,
-                order=order,
-                internal=len(nodes.internal),
-            )
-            pieces.append(element)
+            within = (float(share[k]), float(share[k + 1]))
+            own = {"piece": piece, "order": order, "internal": len(nodes.internal)}
+            pieces.append(Element(node, node + 1, length, number, *within, **own))
             nodes.internal += motions
             z.append(float(edges[k + 1]))
     nodes.z += z

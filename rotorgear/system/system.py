@@ -174,10 +174,8 @@ class System:
         )
 
     @cached_property
-    def stiffness_per_square(self) -> sp.csc_array | None:
-        """What the stiffness grows by with the square of the reference speed, sparse (n, n); None without gear bodies."""
-        if not self.nodes.bodies:
-            return None
+    def stiffness_per_square(self) -> sp.csc_array:
+        """What the stiffness grows by with the square of the reference speed, sparse (n, n), by gear bodies."""
         return self._sum(self.groups, lambda g: g.stiffness_per_square)
 
     @_kept

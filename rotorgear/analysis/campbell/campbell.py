@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.campbell.crossings import Chain, Track, crossings, margins, roots, track
+from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roots, track
 from rotorgear.analysis.campbell.snapshot_basis import SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import (
@@ -38,9 +38,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
-from rotorgear.results.laws import about as about_state
-from rotorgear.results.laws import law_rows
+from rotorgear.results.campbell import CampbellResult, ExcitationOrder, Margin, Onset
+from rotorgear.results.laws import about_state, law_rows
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.system import System
 
@@ -123,13 +122,7 @@ def campbell(
         estimate = diagram.error_estimate() if error_estimate else np.full(len(diagram.chains), np.nan)
         clock.lap("error estimate")
         lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
-        progress(0.85, "crossings")
-        shapes = BasisShapes(system, found.basis())
-        met = crossings(found, shapes, diagram.chains, diagram.grid, lines)
-        onsets = diagram.onsets()
-        clock.lap("crossings")
-        progress(0.92, "energies")
-        result = diagram.result(shapes, lines, met, onsets, estimate)
+        result = diagram.result(lines, estimate, clock, progress)
         clock.lap("energies")
         progress(1.0, "done")
     worst = float(np.max(estimate, initial=0.0, where=np.isfinite(estimate)))
@@ -153,14 +146,16 @@ class _Diagram:
         found: the modes at any speed.
         asked: speeds that were asked for; grid: those of the track, the operating speed and rows of bearing tables among them.
         chains: branches that are asked for at one of the speeds asked for at least, lowest first.
-        tracks: of each group of dofs, how its modes were followed.
+        halvings: how many speeds were put between those of the track, to follow the modes.
+        unsure: speeds in rad/s at which two modes stayed hard to tell.
     """
 
     found: SpeedModes
     asked: np.ndarray
     grid: np.ndarray
     chains: list[Chain]
-    tracks: list[Track]
+    halvings: int
+    unsure: list[float]
 
     @classmethod
     def of(cls, found: SpeedModes, asked: np.ndarray, progress: Progress) -> _Diagram:
@@ -182,13 +177,15 @@ class _Diagram:
             limit = together[count - 1] * (1.0 + 1e-12) if count else -1.0
             wanted.append([int(np.sum(group <= limit)) for group in frequencies])
         chains: list[Chain] = []
-        tracks = []
+        halvings = 0
+        unsure = []
         for group, counts in enumerate(np.array(wanted).T):
             watched = int(counts.max(initial=0))
             if not watched:
                 continue
-            tracks.append(track(found, group, grid, watched + 1))
-            places = tracks[-1].number
+            places, halved, doubted = track(found, group, grid, watched + 1)
+            halvings += len(halved)
+            unsure += doubted
             kept = np.any((places >= 0) & (places < counts[:, None]) & np.isin(grid, asked)[:, None], axis=0)
             modes = [found.at(speed)[group] for speed in grid]
             for branch in places[:, kept].T:
@@ -203,7 +200,7 @@ class _Diagram:
             first = int(np.argmax(np.isfinite(chain.s)))
             return first, float(np.abs(chain.s[first]))
 
-        return cls(found, asked, grid, sorted(chains, key=first_place), tracks)
+        return cls(found, asked, grid, sorted(chains, key=first_place), halvings, unsure)
 
     def error_estimate(self) -> np.ndarray:
         """Estimated relative discretisation error of each branch (b,), the larger of both ends of the range."""
@@ -233,10 +230,10 @@ class _Diagram:
             if np.isfinite(first) and first.real > 1e-9 * abs(first):
                 onsets.append(Onset(b + 1, float(grid[0]), float(first.imag) / (2.0 * np.pi)))
             # The real part of s; what is rounding counts as decay.
-            for root in roots(found, self.chains, grid, b, lambda s, speed: s.real - 1e-10 * abs(s)):
-                k = int(np.searchsorted(np.abs(grid), abs(root.speed)))
+            for speed, s, _ in roots(found, self.chains, grid, b, lambda s, speed: s.real - 1e-10 * abs(s)):
+                k = int(np.searchsorted(np.abs(grid), abs(speed)))
                 if chain.s[min(k, len(grid) - 1)].real > 0.0:
-                    onsets.append(Onset(b + 1, root.speed, float(root.s.imag) / (2.0 * np.pi)))
+                    onsets.append(Onset(b + 1, speed, float(s.imag) / (2.0 * np.pi)))
         grows = (speed for speed in grid if any(np.any(part.real > 0.0) for part in found.at(speed)))
         onsets += [Onset(0, float(speed), 0.0) for speed in itertools.islice(grows, 1)]
         return tuple(sorted(onsets, key=lambda onset: abs(onset.speed)))
@@ -252,18 +249,19 @@ class _Diagram:
         return place if abs(grid[place] - operating) <= _SAME_SPEED * max(float(np.ptp(grid)), 1e-300) else None
 
     def result(
-        self,
-        shapes: BasisShapes,
-        lines: tuple[ExcitationOrder, ...],
-        met: tuple[Crossing, ...],
-        onsets: tuple[Onset, ...],
-        estimate: np.ndarray,
+        self, lines: tuple[ExcitationOrder, ...], estimate: np.ndarray, clock: Clock, progress: Progress
     ) -> CampbellResult:
-        """The branches at the speeds asked for, with their energies and whirl, and the margins at the operating speed."""
+        """The branches at the speeds asked for, with their energies, whirl and crossings, and margins at the operating speed."""
         found = self.found
         system = found.system
         chains = self.chains
         grid = self.grid
+        progress(0.85, "crossings")
+        shapes = BasisShapes(system, found.basis())
+        met = crossings(found, shapes, chains, grid, lines)
+        onsets = self.onsets()
+        clock.lap("crossings")
+        progress(0.92, "energies")
         kept = np.flatnonzero(np.isin(grid, self.asked))
         branches = np.array([chain.s for chain in chains]).T
         s = found.damped(branches)
@@ -293,7 +291,6 @@ class _Diagram:
         # A branch is described by its mode at the first speed where it oscillates: all of them exist there, but not everywhere.
         first = [int(np.argmax(np.isfinite(chain.s))) for chain in chains]
         columns = [shapes.coordinates(chain.group, chain.q[n][:, None]) for chain, n in zip(chains, first, strict=True)]
-        halvings = sum(branches.halvings for branches in self.tracks)
         bound = 10.0 ** np.ceil(np.log10(max(found.error, 1e-10)))  # what is below is rounding
         return CampbellResult(
             model=system.model,
@@ -321,7 +318,7 @@ class _Diagram:
             left_out=self.left_out(),
             warnings=self.warnings(onsets),
             method=f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a "
-            f"check: off by at most {bound:.0e}; {len(grid)} speeds, {halvings} steps halved to follow the modes"
+            f"check: off by at most {bound:.0e}; {len(grid)} speeds, {self.halvings} steps halved to follow the modes"
             f"{about_state(system.state)}",
         )
 
@@ -347,9 +344,8 @@ class _Diagram:
         for onset in onsets[:3]:
             what = f"branch {onset.branch}" if onset.branch else "a motion that does not oscillate"
             notes.append(f"{what} is unstable from {onset.speed * RPM_PER_RAD_S:.6g} rpm on: the motion grows")
-        unsure = [speed for branches in self.tracks for speed in branches.unsure]
-        if unsure:
-            places = ", ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in unsure[:3])
+        if self.unsure:
+            places = ", ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in self.unsure[:3])
             notes.append(f"two branches can't be told apart near {places} rpm: they meet or part there in a point")
         return tuple(notes)
 

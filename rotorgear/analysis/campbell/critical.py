@@ -1,6 +1,6 @@
 """Critical speeds, directly: speeds at which an order of a shaft or a mesh meets a natural frequency; and their errors.
 
-At a critical speed Im s(W) = p W. A mesh that puts s off by e |s| at a held speed moves the crossing by
+At a critical speed Im s(W) = p W. A mesh whose error in s is e |s| at a fixed speed moves the crossing by
 
     dW / W = e / (1 - s' / p),     s' = Im ds/dW = - Im [ y^H (s D_1 + K_1) x / y^H (2 s M + D) x ] ,
 
@@ -38,8 +38,7 @@ from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.critical import CriticalResult, CriticalSpeed
-from rotorgear.results.laws import about as about_state
-from rotorgear.results.laws import law_rows
+from rotorgear.results.laws import about_state, law_rows
 from rotorgear.solvers.eigen.synchronous import LEAST_SHARE, Affine, Synchronous, synchronous_speeds
 from rotorgear.solvers.sparse.pencil import count_below
 from rotorgear.system.bubble_errors import left_shapes
@@ -88,7 +87,7 @@ def critical(
 
     Raises:
         AnalysisError: no speed range, no line, a speed outside of a bearing's table.
-        ConvergenceError: a root doesn't settle, or is missing by count.
+        ConvergenceError: a root does not converge, or a count shows that one is missing.
     """
     parts = model.model if isinstance(model, System) else model
     top = highest_speed(parts, stop)
@@ -161,7 +160,7 @@ def _speed_error(system: System, ranges: Sequence[Affine], root: Synchronous, or
     here = min(ranges, key=lambda piece: max(piece.low - root.speed, root.speed - piece.high))
     D, _ = here.at(root.speed)
     y = left_shapes(system, speed, s, x)[:, 0].conj()
-    K_slope = here.K1 if here.K2 is None else here.K1 + 2.0 * root.speed * here.K2
+    K_slope = here.K1 + 2.0 * root.speed * here.K2
     turned = y @ (root.eigenvalue * (here.D1 @ root.vector) + K_slope @ root.vector)
     held = y @ (2.0 * root.eigenvalue * (here.M @ root.vector) + D @ root.vector)
     along = abs(1.0 + float(np.imag(turned / held)) / order)
@@ -222,27 +221,26 @@ def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool)
     knots = np.abs(family.knots).tolist()
     inner = [speed for speed in knots if 0.0 < speed < end * (1.0 - 1e-12)]
     edges = sorted({min(knots, default=0.0), *inner, end})
-    square = system.stiffness_per_square
+    K2 = system.stiffness_per_square
 
     def matrices(speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         gyroscopic = speed * system.gyroscopic
         if not damped:
             return sp.csc_array(gyroscopic), system.stiffness(speed)
         stiffness = system.stiffness(speed) + system.circulatory(speed)
-        return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(stiffness)
+        return sp.csc_array(system.damping(speed) + gyroscopic), stiffness
 
     for low, high in itertools.pairwise(edges):
         (D_a, K_a), (D_b, K_b) = (matrices(sign * speed) for speed in (low, high))
-        if square is not None:
-            K_a = sp.csc_array(K_a - low**2 * square)
-            K_b = sp.csc_array(K_b - high**2 * square)
+        K_a = K_a - low**2 * K2
+        K_b = K_b - high**2 * K2
         D1 = (D_b - D_a) / (high - low)
         K1 = (K_b - K_a) / (high - low)
         D0 = D_a - low * D1
         K0 = K_a - low * K1
         parts = ((D0, D_a), (D1, D_b / high), (K0, K_a), (K1, K_b / high))
         D0, D1, K0, K1 = (_clean(A, scale) for A, scale in parts)
-        yield Affine(system.mass, D0, D1, K0, K1, low, high, square)
+        yield Affine(system.mass, D0, D1, K0, K1, K2, low, high)
 
 
 def _clean(A: sp.csc_array, scale: sp.csc_array) -> sp.csc_array:

@@ -1,7 +1,7 @@
-"""Undamped critical speed map: critical speeds over one radial stiffness that stands for that of all bearings.
+"""Undamped critical speed map: critical speeds over one radial stiffness that replaces that of all bearings.
 
 Rieger, Vibrations of Rotating Machinery; Vance, Rotordynamics of Turbomachinery, chapter 3: where the stiffness of a real bearing
-cuts the curves, its undamped critical speeds are read off.
+cuts the curves, its undamped critical speeds are read from the map.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg.lapack import zgetrf, zgetrs
@@ -34,27 +34,22 @@ _NARROWEST = 2.0**-16
 _END = 2.0**-10
 
 
-@dataclass
-class Track:
-    """Chains of modes: `number` (speeds, chains) place of each chain's mode at a speed, -1 where it doesn't oscillate.
-
-    `halvings` counts the speeds that were put between; `unsure` lists speeds in rad/s at which two modes stayed hard to tell.
-    """
-
-    number: np.ndarray
-    halvings: int = 0
-    unsure: list[float] = field(default_factory=list)
-
-
-def track(family: SpeedModes, group: int, speeds: np.ndarray, watched: int) -> Track:
+def track(
+    family: SpeedModes, group: int, speeds: np.ndarray, watched: int
+) -> tuple[np.ndarray, list[float], list[float]]:
     """Chain the modes at ascending speeds (k,) in rad/s.
 
     Args:
         family: the modes at any speed; group: number of the group of dofs.
         speeds: ascending; tables of bearings may have kinks at these speeds only.
-        watched: the lowest so many modes at a speed must be followed without doubt.
+        watched: how many of the lowest modes at a speed must be followed without doubt.
+
+    Returns:
+        (speeds, chains) place of each chain's mode at a speed, -1 where it doesn't oscillate; the speeds that were put between,
+        and those at which two modes stayed hard to tell, in rad/s.
     """
-    found = Track(np.zeros((0, 0), int))
+    halved: list[float] = []
+    unsure: list[float] = []
     span = abs(speeds[-1] - speeds[0])
 
     def modes(speed: float) -> Eigen:
@@ -78,9 +73,9 @@ def track(family: SpeedModes, group: int, speeds: np.ndarray, watched: int) -> T
             return partner
         middle = 0.5 * (a + b)
         if width <= _NARROWEST * span:
-            found.unsure.append(middle)
+            unsure.append(middle)
             return partner
-        found.halvings += 1
+        halved.append(middle)
         return followed(link(a, middle), link(middle, b))
 
     chains = [np.arange(len(modes(speeds[0]).s))]
@@ -89,8 +84,7 @@ def track(family: SpeedModes, group: int, speeds: np.ndarray, watched: int) -> T
         new = np.setdiff1d(np.arange(len(modes(b).s)), here)
         chains = [np.append(row, np.full(len(new), -1)) for row in chains]
         chains.append(np.append(here, new))
-    found.number = np.array(chains)
-    return found
+    return np.array(chains), halved, unsure
 
 
 @dataclass(frozen=True)
@@ -102,16 +96,8 @@ class Chain:
     q: np.ndarray
 
 
-@dataclass(frozen=True)
-class Root:
-    """Where a function of a branch is zero: branch (from 0), speed, eigenvalue, coordinates in the group's basis."""
-
-    branch: int
-    speed: float
-    s: complex
-    q: np.ndarray
-
-
+# Where a function of a branch is zero: speed, eigenvalue, coordinates in the group's basis.
+Root = tuple[float, complex, np.ndarray]
 Measure = Callable[[complex, float], float]
 
 
@@ -142,7 +128,7 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
                 fa = 0.5 * fa
             b = w
             fb = f
-        found.append(Root(branch, float(w), s, q))
+        found.append((float(w), s, q))
     return found
 
 
@@ -239,28 +225,27 @@ def crossings(
     lines: Sequence[ExcitationOrder],
 ) -> tuple[Crossing, ...]:
     """All crossings of branches and lines, by speed."""
-    hits: list[tuple[ExcitationOrder, Root]] = []
+    hits: list[tuple[ExcitationOrder, int, Root]] = []
     for line in lines:
 
         def measure(s: complex, speed: float, order: float = line.order) -> float:
             return float(modes.damped(np.array([s]))[0].imag - order * abs(speed))
 
         for branch in range(len(chains)):
-            hits += [(line, root) for root in roots(modes, chains, speeds, branch, measure)]
+            hits += [(line, branch, root) for root in roots(modes, chains, speeds, branch, measure)]
     if not hits:
         return ()
-    at = np.array([root.speed for _, root in hits])
-    coordinates = np.hstack([shapes.coordinates(chains[root.branch].group, root.q[:, None]) for _, root in hits])
-    seen = shapes.portraits(coordinates, at)
+    columns = [shapes.coordinates(chains[branch].group, q[:, None]) for _, branch, (_, _, q) in hits]
+    seen = shapes.portraits(np.hstack(columns), np.array([speed for _, _, (speed, _, _) in hits]))
     found = []
-    for place, (line, root) in enumerate(hits):
-        s = modes.damped(np.array([root.s]))[0]
+    for place, (line, branch, (speed, s, _)) in enumerate(hits):
+        s = modes.damped(np.array([s]))[0]
         share = participation(line, seen, place)
         found.append(
             Crossing(
                 line.name,
-                root.branch + 1,
-                root.speed,
+                branch + 1,
+                speed,
                 float(s.imag) / (2.0 * np.pi),
                 float(-s.real / abs(s)) + 0.0,
                 whirl_for(line, seen, place),

@@ -7,12 +7,13 @@ turn. Projection: Galerkin on real and imaginary parts of the modes, each indepe
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
+from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.solve import Wanted, group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -50,7 +51,7 @@ class _Group:
 
     dofs: np.ndarray
     space: ScaledBasis
-    family: ReducedFamily | None = None
+    family: Callable[[float], Pencil]
     shift: float = 1.0
     smallest: float = 0.0
     count: int = 0
@@ -83,7 +84,8 @@ class SpeedModes:
         self.snapshots: list[Snapshot] = []
         self.checks: list[tuple[float, float]] = []
         weight = np.sqrt(_size(system, low))
-        self._parts = [_Group(dofs, ScaledBasis(weight[dofs])) for dofs in self.family.groups]
+        nothing = self.family.reduced(np.zeros((system.n, 0)))
+        self._parts = [_Group(dofs, ScaledBasis(weight[dofs]), nothing) for dofs in self.family.groups]
         self._known: dict[float, list[Eigen]] = {}
         self._still = 0  # rigid motions and overdamped ones among the lowest, as far as they are known
         self._build(low, high, progress)
@@ -117,18 +119,13 @@ class SpeedModes:
         """Oscillating modes of each group at a speed, in coordinates of its basis; without the model's modal damping ratio."""
         speed = float(speed)
         if speed not in self._known:
-            self._known[speed] = [
-                eigen(part.family.at(speed), part.shift, part.smallest, part.count)
-                for part in self._parts
-                if part.family is not None
-            ]
+            parts = self._parts
+            self._known[speed] = [eigen(p.family(speed), p.shift, p.smallest, p.count) for p in parts]
         return self._known[speed]
 
     def pencil(self, group: int, speed: float) -> Pencil:
         """Projected matrices of a group at a speed."""
-        family = self._parts[group].family
-        assert family is not None
-        return family.at(speed)
+        return self._parts[group].family(speed)
 
     def damped(self, s: np.ndarray) -> np.ndarray:
         """Eigenvalues with the modal damping ratio of the model added, and without rounding where nothing else damps."""
@@ -191,14 +188,10 @@ class SpeedModes:
         self._known.clear()
         for part, V in zip(self._parts, self.basis(), strict=True):
             # |s| of the modes of each snapshot that move the group.
-            sizes = [
-                np.abs(snapshot.s[np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0])
-                for snapshot in self.snapshots
-            ]
+            moves = [np.abs(one.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0 for one in self.snapshots]
+            sizes = [np.abs(one.s[moving]) for one, moving in zip(self.snapshots, moves, strict=True)]
             size = np.concatenate(sizes)
             if not part.space.size or not size.size:
-                part.family = self.family.reduced(V[:, :0])
-                part.count = 0
                 continue
             part.family = self.family.reduced(V)
             part.shift = float(np.sqrt(size.min() * size.max()))

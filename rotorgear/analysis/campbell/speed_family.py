@@ -6,8 +6,8 @@ at these rows is exact. Stiffness is projected through its strains, so that soft
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -18,38 +18,6 @@ from rotorgear.system.assembly import assemble, strain_forms
 from rotorgear.system.components import groups_with_inertia, independent_groups
 from rotorgear.system.groups import ElementGroup, table_groups
 from rotorgear.system.system import System
-
-
-@dataclass(frozen=True)
-class ReducedFamily:
-    """Dense matrices (r, r) over speed; `table_damping` and `table_stiffness` (k, r, r) at the speeds `knots` (k,).
-
-    `per_square` grows with the square of the speed, by centrifugal forces in gear bodies; None without them.
-    """
-
-    mass: np.ndarray
-    damping: np.ndarray
-    gyroscopic: np.ndarray
-    stiffness: np.ndarray
-    per_speed: np.ndarray
-    per_square: np.ndarray | None
-    knots: np.ndarray
-    table_damping: np.ndarray
-    table_stiffness: np.ndarray
-
-    def at(self, speed: float) -> Pencil:
-        """M, D and K at a speed in rad/s."""
-        D = self.damping + speed * self.gyroscopic
-        K = self.stiffness + speed * self.per_speed
-        if self.per_square is not None:
-            K = K + speed**2 * self.per_square
-        if len(self.knots):
-            right = int(np.clip(np.searchsorted(self.knots, speed), 1, len(self.knots) - 1))
-            left = right - 1
-            share = (speed - self.knots[left]) / (self.knots[right] - self.knots[left])
-            D = D + (1.0 - share) * self.table_damping[left] + share * self.table_damping[right]
-            K = K + (1.0 - share) * self.table_stiffness[left] + share * self.table_stiffness[right]
-        return Pencil(self.mass, D, K)
 
 
 class SpeedFamily:
@@ -115,28 +83,36 @@ class SpeedFamily:
         found = independent_groups([self.system.mass, self.system.gyroscopic, *strained, *tables])
         return groups_with_inertia(self.system, found, self.system.damping(self._ends[0]))[0]
 
-    def reduced(self, V: np.ndarray) -> ReducedFamily:
-        """Matrices in the coordinates of a basis V (n, r), real."""
+    def reduced(self, V: np.ndarray) -> Callable[[float], Pencil]:
+        """M, D and K (r, r) over the speed in rad/s, in the coordinates of a basis V (n, r), real."""
         forms = self._constant
         strained = forms.strain @ V
         mass = V.T @ (self.system.mass @ V)
         gyroscopic = V.T @ (self.system.gyroscopic @ V)
-        alpha = self.system.model.damping.rayleigh_alpha
-        r = V.shape[1]
-        tables = np.zeros((len(self._tables), 2, r, r))
-        for k, pair in enumerate(self._tables):
-            tables[k] = [V.T @ (A @ V) for A in pair]
-        return ReducedFamily(
-            mass=0.5 * (mass + mass.T),
-            damping=strained.T @ (forms.viscosity @ strained) + alpha * mass,
-            gyroscopic=0.5 * (gyroscopic - gyroscopic.T),
-            stiffness=strained.T @ (forms.modulus @ strained) + strained.T @ (forms.circulation @ strained),
-            per_speed=strained.T @ (self._per_speed @ strained),
-            per_square=strained.T @ (self._per_square @ strained) if self._per_square.nnz else None,
-            knots=self.knots,
-            table_damping=tables[:, 0],
-            table_stiffness=tables[:, 1],
-        )
+        M = 0.5 * (mass + mass.T)
+        G = 0.5 * (gyroscopic - gyroscopic.T)
+        damping = strained.T @ (forms.viscosity @ strained) + self.system.model.damping.rayleigh_alpha * mass
+        stiffness = strained.T @ (forms.modulus @ strained) + strained.T @ (forms.circulation @ strained)
+        per_speed = strained.T @ (self._per_speed @ strained)
+        # What centrifugal forces in gear bodies add grows with the square of the speed.
+        per_square = strained.T @ (self._per_square @ strained) if self._per_square.nnz else None
+        knots = self.knots
+        tables = [[V.T @ (A @ V) for A in pair] for pair in self._tables]
+
+        def at(speed: float) -> Pencil:
+            D = damping + speed * G
+            K = stiffness + speed * per_speed
+            if per_square is not None:
+                K = K + speed**2 * per_square
+            if len(knots):
+                right = int(np.clip(np.searchsorted(knots, speed), 1, len(knots) - 1))
+                (C_a, K_a), (C_b, K_b) = tables[right - 1 : right + 1]
+                share = (speed - knots[right - 1]) / (knots[right] - knots[right - 1])
+                D = D + (1.0 - share) * C_a + share * C_b
+                K = K + (1.0 - share) * K_a + share * K_b
+            return Pencil(M, D, K)
+
+        return at
 
 
 def table_speeds(system: System, low: float, high: float) -> np.ndarray:

@@ -38,9 +38,7 @@ def highest_speed(model: Model, given: float | str | None = None) -> float:
         return speed_in_si(given)
     operating = model.operating_speed
     if not operating:
-        raise AnalysisError(
-            "the model has no operating speed, so say up to which speed to look (--to, such as '12000 rpm')"
-        )
+        raise AnalysisError("the model has no operating speed: give the highest speed (--to '12000 rpm')")
     return _BEYOND * operating
 
 

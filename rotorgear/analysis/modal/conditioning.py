@@ -58,10 +58,8 @@ def too_far_apart(system: System, speed: float | None) -> str:
     stiff = stiffest_part(system, speed or 0.0, int(both[np.argmax(ratio)]))
     soft = system.dofs.describe(int(both[np.argmin(ratio)]), system.nodes)
     decades = np.log10(ratio.max() / ratio.min())
-    return (
-        f"the parts of the model are {decades:.0f} decades apart in omega^2 ({stiff}, against {soft}): leave out what is "
-        "negligible"
-    )
+    apart = f"{decades:.0f} decades apart in omega^2 ({stiff}, against {soft})"
+    return f"the parts of the model are {apart}: leave out what is negligible"
 
 
 def _squares(system: System, speed: float | None) -> np.ndarray:

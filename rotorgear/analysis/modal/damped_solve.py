@@ -33,7 +33,7 @@ _CLEAN_LARGE = 1e-8
 _AS_RIGID = 1e-6
 # Dofs up to which all undamped modes are cheap: the basis is then complete, and no approximation.
 _ALL_UP_TO = 120
-# Undamped modes for the basis of gyroscopic ones: so many times those asked for, and some more; up to a share of the dofs.
+# Undamped modes for the basis of gyroscopic ones: a multiple of those asked for, and some more; up to a share of the dofs.
 _REACH = 1.35
 _MORE = 8
 _MOST_OF = 0.4
@@ -94,11 +94,10 @@ def _near_undamped(problem: Problem, count: int | None, below: float | None) -> 
     S = problem.strain
     if S is None or problem.K.shape[0] <= _ALL_UP_TO or (count is None and below is None):
         return None
-    if problem.K is not problem.K_symmetric and (problem.K - problem.K_symmetric).nnz:
-        return None
     # Gyroscopic moments bring modes down from above those that are asked for.
     spare = None if count is None else int(_REACH * count) + _MORE
-    if spare is not None and spare > _MOST_OF * problem.K.shape[0]:
+    too_many = spare is not None and spare > _MOST_OF * problem.K.shape[0]
+    if too_many or (problem.K is not problem.K_symmetric and (problem.K - problem.K_symmetric).nnz):
         return None
     undamped = problem.lowest(spare, None if below is None else _REACH * below, counted=False)
     frequencies = undamped.frequencies
@@ -143,12 +142,12 @@ def _undamped(problem: Problem, count: int | None, below: float | None) -> Undam
     """The rigid modes and enough elastic ones to see which of those asked for suffer from rounding: at least one."""
     if count is None and below is not None:
         found = problem.lowest(None, below)
-        if found.rigid_count < len(found.eigenvalues):
+        if len(found.frequencies):
             return found
-    number = 6 if count is None else max(6, count)  # a shaft free along and about its axis, twice over
+    number = max(6, count or 0)  # a shaft free along and about its axis, twice over
     while True:
         found = problem.lowest(number, None)
-        if found.rigid_count < len(found.eigenvalues) or found.complete:
+        if len(found.frequencies) or found.complete:
             return found
         number = 4 * number + 3
 
@@ -180,16 +179,9 @@ def _in_coordinates(
     D = strained.T @ (problem.forms.viscosity @ strained) + _inertial(problem.inertial, whole, r)
     K = stiffness + strained.T @ (problem.forms.circulation @ strained)
     lowest = float(np.sqrt(squares[0])) if len(squares) else None
-    reduced = damped_modes(
-        sp.csc_array(np.diag(inertia)),
-        sp.csc_array(D),
-        sp.csc_array(K),
-        count=count,
-        below=below,
-        rigid_vectors=np.eye(len(inertia))[:, :r],
-        frequency_scale=lowest,
-        dense=True,
-    )
+    matrices = (sp.csc_array(A) for A in (np.diag(inertia), D, K))
+    R = np.eye(len(inertia))[:, :r]
+    reduced = damped_modes(*matrices, count=count, below=below, rigid_vectors=R, frequency_scale=lowest, dense=True)
     return _restored(problem, whole, reduced, lowest or 1.0)
 
 

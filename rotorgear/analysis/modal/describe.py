@@ -54,21 +54,16 @@ def _line(system: System, q: np.ndarray, ranked: list[tuple[float, tuple[str, st
     shape = q[: 6 * len(system.nodes)].reshape(-1, 6)
     text = _words(system, q, shaft, motion)
     total = share + sum(item[0] for item in mates)
-    together: list[str] = []
-    against: list[str] = []
+    moving: dict[str, list[str]] = {"with": [], "against": []}
     for _, (name, _) in mates[:_MOST_NAMED]:
-        (together if _agree(system, shape, motion, shaft, name) >= 0 else against).append(name)
+        moving["with" if _agree(system, shape, motion, shaft, name) >= 0 else "against"].append(name)
     if len(mates) > _MOST_NAMED:
-        (together or against).append(f"{len(mates) - _MOST_NAMED} more")
-    if together:
-        text += f" with {_and(together)}"
-    if against:
-        text += f" against {_and(against)}"
+        (moving["with"] or moving["against"]).append(f"{len(mates) - _MOST_NAMED} more")
+    text += "".join(f" {word} {_and(names)}" for word, names in moving.items() if names)
     text += f", {100.0 * total:.0f} %"
-    if total < _DOMINANT:
-        rest = [item for item in ranked[1:] if item not in mates]
-        if rest:
-            text += f"; {_words(system, q, *rest[0][1])}, {100.0 * rest[0][0]:.0f} %"
+    rest = [item for item in ranked[1:] if item not in mates]
+    if total < _DOMINANT and rest:
+        text += f"; {_words(system, q, *rest[0][1])}, {100.0 * rest[0][0]:.0f} %"
     return text
 
 
@@ -131,11 +126,10 @@ def _whole_motion(body: ReducedBody, shape: np.ndarray) -> str:
     if not np.real(np.conj(parts) @ own @ parts) > _AS_A_WHOLE * total:
         return ""
     # Displacement of the point where translation and rotation have no common energy, the centre of mass of what the seats see.
-    centre = np.array([own[5, 1] - own[4, 2], own[3, 2] - own[5, 0], own[4, 0] - own[3, 1]]) / (
-        2.0 * np.trace(own[:3, :3]) / 3.0
-    )
+    mass = np.trace(own[:3, :3]) / 3.0
+    centre = np.array([own[5, 1] - own[4, 2], own[3, 2] - own[5, 0], own[4, 0] - own[3, 1]]) / (2.0 * mass)
     along = parts[:3] + np.cross(parts[3:], centre)
-    inertia = np.diagonal(own)[3:] - np.trace(own[:3, :3]) / 3.0 * (centre @ centre - centre**2)
+    inertia = np.diagonal(own)[3:] - mass * (centre @ centre - centre**2)
     energies = np.concatenate([np.diagonal(own)[:3] * np.abs(along) ** 2, inertia * np.abs(parts[3:]) ** 2])
     largest = int(np.argmax(energies))
     return f"moving along {_AXES[largest]}" if largest < 3 else f"rocking about {_AXES[largest - 3]}"

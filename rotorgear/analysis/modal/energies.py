@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,15 +12,8 @@ from rotorgear.system.groups import by_motion
 from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.system import System
 
-_SPRING_KINDS = {
-    "meshes": "mesh",
-    "gears": "gears",
-    "casings": CASING,
-    "bearings": "supports",
-    "supports": "supports",
-    "couplings": "couplings",
-    "nonlinear_elements": "supports",
-}
+# What springs of these tables count as; those of another table count under its name.
+_SPRING_KINDS = {"meshes": "mesh", "casings": CASING, "bearings": "supports", "nonlinear_elements": "supports"}
 
 
 @dataclass(frozen=True)
@@ -41,16 +35,13 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     modes = q.shape[1]
     # |q|^2 = (Re q)^2 + (Im q)^2: with twice as many real columns the matrices stay real.
     halves = np.hstack([q.real, q.imag]) if np.iscomplexobj(q) else q
-    kinetic: dict[str, np.ndarray] = {}
-    strain: dict[str, np.ndarray] = {}
-    motions_of_all = (
-        *system.model.motions,
-        *((CASING,) if system.model.casings else ()),
-        *((GEAR_BODY,) if system.nodes.bodies else ()),
+    kinetic, strain, strain_by_motion, kinetic_by_shaft = (
+        defaultdict[Any, np.ndarray](lambda: np.zeros(modes)) for _ in range(4)
     )
+    elastic_bodies = {CASING: system.model.casings, GEAR_BODY: system.nodes.bodies}
+    motions_of_all = (*system.model.motions, *(name for name, bodies in elastic_bodies.items() if bodies))
     kinetic_by_motion: dict[str, np.ndarray] = {motion: np.zeros(modes) for motion in motions_of_all}
-    strain_by_motion: dict[str, np.ndarray] = {}
-    kinetic_by_shaft: dict[tuple[str, str], np.ndarray] = {}
+
     for group in system.groups_at(speed):
         local = halves[group.dofs]  # (e, d, m or 2 m)
         M = group.matrices.mass
@@ -60,8 +51,8 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
             if by_dof is None or motion not in dofs:
                 continue
             energy = _by_mode(by_dof[dofs[motion]].sum(axis=0), modes)
-            _add(kinetic, group.part, energy)
-            _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
+            kinetic[group.part] += energy
+            kinetic_by_shaft[("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion)] += energy
             kinetic_by_motion[motion] += energy
         B = group.matrices.strain
         D = group.matrices.modulus
@@ -70,12 +61,13 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
         strains = B @ local
         by_strain = np.einsum("esm,esm->sm", strains, D @ strains)
         # Of a shaft by motion, of springs under their kind.
-        labels = group.strain_motions or (_SPRING_KINDS[group.part.partition(".")[0]],) * len(by_strain)
+        table = group.part.partition(".")[0]
+        labels = group.strain_motions or (_SPRING_KINDS.get(table, table),) * len(by_strain)
         for label in dict.fromkeys(labels):
             energy = by_strain[[k for k, name in enumerate(labels) if name == label]].sum(axis=0)
             elastic = np.where(rigid, 0.0, _by_mode(energy, modes))
-            _add(strain, group.part, elastic)
-            _add(strain_by_motion, label, elastic)
+            strain[group.part] += elastic
+            strain_by_motion[label] += elastic
     kinetic_total = sum(kinetic_by_motion.values(), np.zeros(modes))
     strain_total = sum(strain_by_motion.values(), np.zeros(modes))
     return Energies(
@@ -90,10 +82,6 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
 def _by_mode(energy: np.ndarray, modes: int) -> np.ndarray:
     """Energies (m,) from those of real columns, or of real and imaginary ones (2 m,)."""
     return energy.reshape(-1, modes).sum(axis=0) if modes else energy
-
-
-def _add(table: dict[Any, np.ndarray], key: Any, energy: np.ndarray) -> None:
-    table[key] = table[key] + energy if key in table else energy
 
 
 def _shares(table: dict[Any, np.ndarray], total: np.ndarray) -> dict[Any, np.ndarray]:

@@ -30,8 +30,7 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
-from rotorgear.results.laws import about as about_state
-from rotorgear.results.laws import law_rows
+from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.modal import ModalResult
 from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.plan import Plan
@@ -172,9 +171,7 @@ def _on_fine_mesh(
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     if not (fixed or asked.error_estimate):
-        raise AnalysisError(
-            "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
-        )
+        raise AnalysisError("refining to an accuracy needs the error estimate; give elements to do without")
     target = np.inf if fixed else asked.accuracy or DEFAULT_ACCURACY
     if not fixed and asked.modes is None and asked.fmax is not None:
         check_count(system.model, asked.fmax)

@@ -13,7 +13,7 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 
-# More modes than this are a slip of the pen, and their shapes would fill the memory.
+# A request for more modes than this is taken for a mistake: their shapes would fill the memory.
 MOST_MODES = 2000
 
 _SHEAR = 0.9  # coefficient of a round section: a count needs no more
@@ -49,13 +49,11 @@ def expected_modes(model: Model, limit: float) -> float:
 
 
 def check_count(model: Model, fmax: float) -> None:
-    """Refuse a frequency in Hz below which there are more modes than anyone reads, before they are sought.
+    """Refuse a frequency in Hz below which there are more modes than can be used, before they are computed.
 
     Raises:
         AnalysisError: more than `MOST_MODES` are expected.
     """
     expected = expected_modes(model, 2.0 * np.pi * fmax)
     if expected > MOST_MODES:
-        raise AnalysisError(
-            f"about {expected:.2g} modes lie below {fmax:g} Hz, more than {MOST_MODES}; ask for a lower frequency"
-        )
+        raise AnalysisError(f"about {expected:.2g} modes lie below {fmax:g} Hz, above {MOST_MODES}; ask for fewer")

@@ -1,6 +1,6 @@
 """The eigenproblem (s^2 M + s D + K) q = 0 of a system, whole or of one independent group of its dofs, and its undamped modes.
 
-Damped modes are built on undamped ones. A Campbell diagram, and whoever asks for modes at one speed after another, needs the same
+Damped modes are built on undamped ones. A Campbell diagram, like every analysis at one speed after another, needs the same
 ones each time: where the stiffness does not depend on the speed they are kept as long as the system lives.
 """
 

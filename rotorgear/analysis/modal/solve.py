@@ -106,10 +106,9 @@ def solve(system: System, wanted: Wanted) -> Modes:
         try:
             check_pencil(whole.M, whole.K_symmetric)
         except LooseDofError as loose:
-            names = "; ".join(system.dofs.describe(dof, system.nodes) for dof in loose.dofs[:4])
-            more = f" and {len(loose.dofs) - 4} more" if len(loose.dofs) > 4 else ""
+            names = system.dofs.describe_some(loose.dofs, system.nodes)
             remedy = "give the body there its inertia, or hold the motion with a support"
-            raise AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}") from None
+            raise AnalysisError(f"neither inertia nor stiffness: {names}; {remedy}") from None
         raise AnalysisError(str(error)) from None
     # Put the modes of all groups in one order: rigid first, then by |s|, and no more than were asked for.
     notes = (*group_notes(motions, groups, chosen), *still)

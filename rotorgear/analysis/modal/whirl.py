@@ -74,12 +74,11 @@ def whirl_of(system: System, shapes: np.ndarray, speed: float) -> Whirl:
         area = np.abs(swept).sum(axis=0)
         one_way = np.maximum(swept, 0.0).sum(axis=0)
         other_way = np.maximum(-swept, 0.0).sum(axis=0)
-        # The first that holds counts: later lines overrule.
-        found = np.where(net[name] > 0.0, WHIRL_WORDS.index("forward"), WHIRL_WORDS.index("backward"))
-        found[np.minimum(one_way, other_way) > _MIXED * area] = WHIRL_WORDS.index("mixed")
-        found[area < _PLANAR * total] = WHIRL_WORDS.index("planar")
-        found[~moves] = WHIRL_WORDS.index("")
-        numbers[name] = found.astype(np.int8)
+        mixed = np.minimum(one_way, other_way) > _MIXED * area
+        # The first that holds counts.
+        holds = [~moves, area < _PLANAR * total, mixed, net[name] > 0.0]
+        words = [WHIRL_WORDS.index(word) for word in ("", "planar", "mixed", "forward")]
+        numbers[name] = np.select(holds, words, WHIRL_WORDS.index("backward")).astype(np.int8)
     return Whirl(net, numbers)
 
 
@@ -91,17 +90,14 @@ def bending_shares(energies: Energies, shafts: Iterable[str]) -> dict[str, np.nd
 
 def whirl_words(whirl: Whirl, energies: Energies) -> tuple[str, ...]:
     """One word a mode, for the shaft with the most bending: forward, backward, mixed, planar, or ""."""
-    modes = len(next(iter(whirl.net.values())))
     shares = bending_shares(energies, whirl.numbers)
     if not shares:
-        return ("",) * modes
+        return ("",) * len(next(iter(whirl.net.values())))
     names = list(shares)
     table = np.array([shares[name] for name in names])
     most = table.argmax(axis=0)
-    return tuple(
-        WHIRL_WORDS[whirl.numbers[names[most[k]]][k]] if table[most[k], k] >= _LEAST_BENDING else ""
-        for k in range(modes)
-    )
+    words = (WHIRL_WORDS[whirl.numbers[names[n]][k]] for k, n in enumerate(most))
+    return tuple(word if bends >= _LEAST_BENDING else "" for word, bends in zip(words, table.max(axis=0), strict=True))
 
 
 def whirl_word_among(whirl: Whirl, energies: Energies, shafts: Iterable[str], mode: int) -> str:

@@ -26,8 +26,7 @@ from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
-from rotorgear.results.laws import about as about_state
-from rotorgear.results.laws import law_rows
+from rotorgear.results.laws import about_state, law_rows
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.bubble_errors import ForcedChanges

@@ -42,8 +42,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.laws import about as about_state
-from rotorgear.results.laws import law_rows
+from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above

@@ -30,8 +30,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
-from rotorgear.results.laws import about as about_state
-from rotorgear.results.laws import law_rows
+from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general, single_thread

@@ -95,8 +95,8 @@ def whole_frequencies(model: Model, name: str, count: int) -> np.ndarray:
     M = sp.csr_array(sp.block_diag([shapes.T @ mass @ shapes, empty]) + P.T @ (rotor_mass @ P))
     # Rotors may turn freely: a shift below the elastic modes makes the matrix one that is positive.
     shift = float(K.diagonal().sum() / M.diagonal().sum()) * 1e-8
-    factor = factor_positive(sp.csr_array(K + shift * M), 1, f"casings.{name} with the rotors", silent)
-    squares, _ = lowest_modes(factor.solve, lambda x: np.asarray(M @ x), K.shape[0], count + 8)
+    solve = factor_positive(sp.csr_array(K + shift * M), 1, f"casings.{name} with the rotors", silent)
+    squares, _ = lowest_modes(solve, lambda x: np.asarray(M @ x), K.shape[0], count + 8)
     squares = squares - shift
     return np.asarray(np.sqrt(squares[_elastic(squares, count)]) / (2.0 * np.pi))
 

@@ -36,7 +36,6 @@ class ComplexModes:
         basis: V (n, b), M-orthonormal.
         gains: (nz, b), so that W f = gains (V^T f).
         rigid: R (n, r), M-orthonormal.
-        condition: of the matrix of eigenvectors.
     """
 
     s: np.ndarray
@@ -44,7 +43,6 @@ class ComplexModes:
     basis: np.ndarray
     gains: np.ndarray
     rigid: np.ndarray
-    condition: float
 
 
 def complex_modes(
@@ -81,8 +79,8 @@ def complex_modes(
             Db = V.T @ (D @ V)
         if modal_ratio:
             Db = Db + np.diag(2.0 * modal_ratio * np.sqrt(np.maximum(np.diag(Kb), 0.0)))
-        s, X, gains, condition = _pairs(Kb, Db)
-    return ComplexModes(s, V @ X, V, gains, R, condition)
+        s, X, gains = _pairs(Kb, Db)
+    return ComplexModes(s, V @ X, V, gains, R)
 
 
 def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | None) -> tuple[np.ndarray, np.ndarray]:
@@ -149,11 +147,11 @@ def _freed_of_slower(M: np.ndarray, K: np.ndarray, R: np.ndarray, V: np.ndarray)
     return slower[:, R.shape[1] :], np.concatenate(squares)
 
 
-def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Roots, shapes (b, nz), gains (nz, b) and condition of q'' + D q' + K q = f in an orthonormal basis."""
+def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Roots, shapes (b, nz) and gains (nz, b) of q'' + D q' + K q = f in an orthonormal basis."""
     b = K.shape[0]
     if b == 0:
-        return np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex), 1.0
+        return np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex)
     diagonal = np.diag(K)
 
     # Modal damping: K and D are diagonal but for the rounding of V^T D V, and the roots are those of single oscillators.
@@ -163,7 +161,7 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
         root = np.sqrt((half**2 - diagonal).astype(complex))
         if np.all(root.imag > 0.0):
             s = -half + root
-            return s, 2.0 * np.eye(b, dtype=complex), np.diag(1.0 / (2.0 * root)), 1.0
+            return s, 2.0 * np.eye(b, dtype=complex), np.diag(1.0 / (2.0 * root))
 
     # In w = [sqrt(k_jj) q_j, q_j'] an undamped structure has orthogonal eigenvectors, whatever its frequencies.
     unit = np.sqrt(np.maximum(diagonal, 1e-12 * np.abs(diagonal).max(initial=1e-300)))
@@ -174,10 +172,8 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
     s, X = la.eig(A)
     condition = float(np.linalg.cond(X, 1))
     if not condition < _WORST_CONDITION:
-        raise ConvergenceError(
-            f"the complex modes lie too near to each other (condition {condition:.1e}); use the newmark method"
-        )
+        raise ConvergenceError(f"complex modes lie too near to each other (condition {condition:.1e}); use newmark")
     Y = la.inv(X)  # left vectors, biorthonormal to X
     kept = s.imag >= 0.0
     weight = np.where(s[kept].imag > 0.0, 2.0, 1.0)
-    return s[kept], X[:b, kept] * weight / unit[:, None], Y[kept][:, b:], condition
+    return s[kept], X[:b, kept] * weight / unit[:, None], Y[kept][:, b:]

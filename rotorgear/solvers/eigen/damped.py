@@ -47,7 +47,7 @@ Pairs = tuple[np.ndarray, np.ndarray, float]
 def prepared(
     M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None
 ) -> InverseState:
-    """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade.
+    """Choose w0 near the lowest frequencies: probe, and move there while the guess is more than a decade away.
 
     Where they lie is the geometric mean of the lowest few |lambda|.
     """
@@ -75,9 +75,7 @@ def prepared(
             off = abs(np.log(lowest))
         w0 *= lowest
     if best is None:
-        raise ConvergenceError(
-            "The lowest frequencies could not be located: inertia, damping and stiffness lie too many decades apart."
-        )
+        raise ConvergenceError("No lowest frequency found: inertia, damping, stiffness are too many decades apart.")
     return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
 
 
@@ -110,8 +108,7 @@ def solve(inverse: InverseState, rows: int | None, below: float | None, dense: b
     size = 2 * quadratic.n
     if size > _LARGEST_DENSE:
         raise ConvergenceError(
-            f"All eigenvalues of {size} states were needed, which is too many: the spectrum is too wide, or too much of it was"
-            " asked for. Ask for fewer modes."
+            f"All eigenvalues of {size} states were needed: the spectrum is too wide, or too much is asked for; ask for less."
         )
     known = np.hstack([inverse.zeros, infinite_states(quadratic)])
     rest = np.linalg.qr(known, mode="complete")[0][:, known.shape[1] :] if known.shape[1] else np.eye(size)
@@ -196,10 +193,8 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
     high = upper[: mu.size - cut]
     if np.abs(direct[high]).min() < size[cut - 1]:
         return mu, X
-    return (
-        np.concatenate([mu[order[:cut]], 1.0 / (direct[high] - inverse.sigma)]),
-        np.hstack([X[:, order[:cut]], Y[:, high]]),
-    )
+    low = order[:cut]
+    return np.concatenate([mu[low], 1.0 / (direct[high] - inverse.sigma)]), np.hstack([X[:, low], Y[:, high]])
 
 
 def _selected(
@@ -324,8 +319,7 @@ def damped_modes(
         outside = np.linalg.norm(elastic - Q @ (Q.T @ elastic), axis=0) > 1e-6 * np.linalg.norm(elastic, axis=0)
         if np.any(np.all(force <= rounding, axis=0) & outside):
             raise AnalysisError(
-                "The stiffness has a rigid-body motion (to its rounding) that was not given: "
-                "pass the rigid modes of the undamped system."
+                "The stiffness has a rigid-body motion (to its rounding) that was not given: pass all rigid modes."
             )
 
         return DampedModes(

@@ -35,15 +35,13 @@ from rotorgear.solvers.sparse.pencil import (
 )
 
 _DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
-_FEW = (
-    100,
-    12,
-)  # it is slower already above 100 unknowns where 12 times the number of modes is less than that of unknowns
+# It is slower already above 100 unknowns where 12 times the number of modes is less than that of unknowns.
+_FEW = (100, 12)
 _SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
 _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
 
 _ATTEMPTS = 6  # each with three times the spare pairs of the one before
-_UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
+_UNSTABLE = 100.0  # multiple of the rounding of K below which a negative eigenvalue is no rounding
 _ENDLESS = 1e100  # rad/s; no limit at all, and its square is still a number
 
 
@@ -191,8 +189,7 @@ def lowest_modes(
             target = max(target, keep)
             spare = 3 * spare
     raise ConvergenceError(
-        f"The {target} lowest modes could not be told from those above them: no gap confirmed by a Sturm count."
-        " Ask for more modes.",
+        f"The {target} lowest modes are not told from those above: no Sturm count confirms a gap. Ask for more modes.",
         modes,
     )
 
@@ -245,16 +242,11 @@ def _gap_above(values: np.ndarray, noise: np.ndarray, keep: int, finite: int) ->
     if values.size == finite:
         values = np.append(values, max(4.0 * values[-1], 1e3 * noise.max()))
         noise = np.append(noise, 0.0)
-    first = max(keep, 1)
-    above = values[first:]
-    under = values[first - 1 : -1]
-    if keep == 0:
-        above = values[:1]
-        under = np.zeros(1)
-        first = 0
+    under = np.concatenate([np.zeros(1), values[:-1]])
     # Below a hundred times the rounding of K values are as good as equal: no shift between them can be trusted.
-    gaps = np.where(above > 1e2 * noise[first:], (above - under) / np.maximum(above, np.finfo(float).tiny), 0.0)
+    gaps = np.where(values > 1e2 * noise, (values - under) / np.maximum(values, np.finfo(float).tiny), 0.0)
+    gaps = gaps[keep:] if keep else gaps[:1]
     if gaps.size == 0 or gaps.max() < _GAP:
         return None
-    best = int(np.argmax(gaps))
-    return float(0.5 * (above[best] + under[best])), first + best
+    best = keep + int(np.argmax(gaps))
+    return float(0.5 * (values[best] + under[best])), best

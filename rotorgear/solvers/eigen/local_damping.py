@@ -92,7 +92,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             found = eigen(small, shift, 0.0, most)
             size = np.abs(found.s)
             wanted = with_near(size, rows, limit)
-            # A motion that does not oscillate among the modes, or none above them to end at, is another solver's business.
+            # With a motion that does not oscillate among the modes, or no mode above them, the general solver is needed.
             if wanted >= len(size) or np.any(np.abs(found.real) <= _COUNT_AT[-1] * size[wanted]):
                 return None
             if size[0] <= _SLOW * problem.frequencies[0]:

@@ -178,9 +178,7 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
         return np.zeros((2 * quadratic.n, 0))
     R = np.linalg.qr(rigid)[0]
     if np.any(np.abs(K @ R) > 1e-6 * norm_1(K)):
-        raise AnalysisError(
-            "A vector given as rigid-body motion is strained: it is not in the null space of the stiffness."
-        )
+        raise AnalysisError("A vector that was given as a rigid-body motion is strained by the stiffness.")
     L = left_null_space(K, M, R)
     U, size, W = la.svd(L.T @ (D @ R))
     # R carries rounding of EPS in every dof, so a drag up to EPS |D| is none, wherever the exact R moves no damper.

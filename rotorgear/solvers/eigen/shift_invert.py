@@ -47,20 +47,17 @@ class ShiftInvert:
     elastic: float = 0.0  # the first eigenvalue above rounding as the probe saw it; 0 when there is none
 
     def __post_init__(self) -> None:
-        # By rows, which those of a symmetric matrix are as they stand: no copy.
+        # Stored by rows, which are the columns of a symmetric matrix: no copy.
         self.mass = sp.csr_array(self.M.T)
         self.stiffness = sp.csr_array(self.K.T)
         self.size_K = magnitudes(self.stiffness)
-        self._start()
-
-    def _start(self) -> None:
         self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, self.mass.__matmul__)
 
     def move(self, sigma: float) -> None:
         """Factor at another shift and start the Krylov basis anew."""
         self.sigma = sigma
         self.factor = factor_symmetric(sp.csc_array(self.K - sigma * self.M))
-        self._start()
+        self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, self.mass.__matmul__)
 
     def apply(self, X: np.ndarray) -> np.ndarray:
         """T X = (K - sigma M)^-1 M X."""
@@ -107,9 +104,7 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
         if not operator.elastic or _USEFUL[0] <= -sigma / operator.elastic <= _USEFUL[1]:
             return operator
         sigma = -0.1 * operator.elastic
-    raise ConvergenceError(
-        "No shift makes K - sigma M positive definite: some motion meets neither stiffness nor inertia."
-    )
+    raise ConvergenceError("No shift makes K - sigma M positive definite: a motion lacks stiffness and inertia.")
 
 
 def _first_elastic(operator: ShiftInvert) -> float:
@@ -122,7 +117,7 @@ def _first_elastic(operator: ShiftInvert) -> float:
         values, Y, residuals = operator.ritz(krylov.size)
         noise = 1e2 * rounding_noise(operator.size_K, krylov.basis @ Y, operator.sigma)
         noise += residuals * (values - operator.sigma)  # an eigenvalue lies within the residual of each Ritz value
-        # What is rigid is mixed as rounding will have it.
+        # Ritz values below the noise are mixtures of rigid modes, with negative values of its size.
         if np.any(values < -10.0 * noise[values <= noise].max(initial=0.0)):
             raise unstable(float(values.min()))
         if np.any(values > noise):
@@ -202,9 +197,7 @@ def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.
         except la.LinAlgError:
             sigma *= 30.0
     else:
-        raise ConvergenceError(
-            "K - sigma M is not positive definite to rounding for any shift; merge very short elements."
-        )
+        raise ConvergenceError("K - sigma M is positive definite for no shift; merge very short elements.")
     mu = mu[::-1]
     V = V[:, ::-1]
     finite = np.arange(mu.size) < np.count_nonzero(mu > mu.size * EPS * mu[0])

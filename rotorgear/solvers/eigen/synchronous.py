@@ -43,34 +43,33 @@ class Affine:
     D1: sp.csc_array
     K0: sp.csc_array
     K1: sp.csc_array
+    K2: sp.csc_array
     low: float
     high: float
-    K2: sp.csc_array | None = None
 
     def at(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """D and K at a speed."""
-        K = self.K0 + speed * self.K1
-        return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(K if self.K2 is None else K + speed**2 * self.K2)
+        K = self.K0 + speed * self.K1 + speed**2 * self.K2
+        return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(K)
 
     @property
     def is_damped(self) -> bool:
         """Whether roots may lie off the imaginary axis: a damping or a circulation."""
-        for skew, even in ((self.D0 + self.D0.T, True), (self.D1 + self.D1.T, True), (self.K0 - self.K0.T, False)):
-            scale = abs(self.K0).max() if not even else 1e-300
-            if skew.nnz and abs(skew).max() > 1e-12 * scale:
-                return True
-        return False
+        damping = (self.D0 + self.D0.T, self.D1 + self.D1.T)
+        circulation = self.K0 - self.K0.T
+        if any(even.nnz and abs(even).max() > 1e-312 for even in damping):
+            return True
+        return bool(circulation.nnz and abs(circulation).max() > 1e-12 * abs(self.K0).max())
 
     def inertia(self, order: float) -> sp.csc_array:
         """p^2 M - i p D_1 - K_2: what grows with s^2."""
-        H = order**2 * self.M - 1j * order * self.D1
-        return sp.csc_array(H if self.K2 is None else H - self.K2)
+        return sp.csc_array(order**2 * self.M - 1j * order * self.D1 - self.K2)
 
     def cut(self, dofs: np.ndarray) -> Affine:
         """The same of some dofs, that no other acts on."""
-        M, D0, D1, K0, K1 = (sp.csc_array(A[:, dofs][dofs]) for A in (self.M, self.D0, self.D1, self.K0, self.K1))
-        K2 = None if self.K2 is None else sp.csc_array(self.K2[:, dofs][dofs])
-        return Affine(M, D0, D1, K0, K1, self.low, self.high, K2)
+        matrices = (self.M, self.D0, self.D1, self.K0, self.K1, self.K2)
+        M, D0, D1, K0, K1, K2 = (sp.csc_array(A[:, dofs][dofs]) for A in matrices)
+        return Affine(M, D0, D1, K0, K1, K2, self.low, self.high)
 
 
 @dataclass(frozen=True)
@@ -96,13 +95,12 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
             # Starts move when they are polished, with damping the further the steeper the matrices grow: some beyond both ends
             # are tried. s near 0 is a rigid motion at no speed.
             beyond = _BEYOND if family.is_damped else 0.0
-            inside = (s.imag > (1.0 - beyond) * family.low - 1e-3 * family.high) & (
-                s.imag < (1.05 + beyond) * family.high
-            )
+            inside = s.imag > (1.0 - beyond) * family.low - 1e-3 * family.high
+            inside &= s.imag < (1.05 + beyond) * family.high
             inside &= np.abs(s.real) < _HEAVY * np.abs(s)
-            near = np.abs(s.imag) > LEAST_SHARE * family.high
+            inside &= np.abs(s.imag) > LEAST_SHARE * family.high
             roots: list[Synchronous] = []
-            for k in np.flatnonzero(inside & near):
+            for k in np.flatnonzero(inside):
                 root = _polished(family, order, complex(s[k]), X[:, k])
                 if root is not None and not any(_same(root, other, family.M) for other in roots):
                     roots.append(root)
@@ -165,9 +163,7 @@ def _largest(
             return mu, X
         count *= 2
     if size > 6000:
-        raise ConvergenceError(
-            f"more than {_MOST} critical speeds lie in the range; ask for a narrower one, or give fmax"
-        )
+        raise ConvergenceError(f"more than {_MOST} critical speeds lie in the range; narrow it, or give fmax")
     return np.linalg.eig(apply(np.eye(size, dtype=complex)))
 
 
@@ -197,9 +193,7 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
         speed -= step
     residual = abs(value.imag - order * speed) / (order * speed)
     if residual > BACK_SUBSTITUTED:
-        raise ConvergenceError(
-            f"a critical speed near {speed * RPM_PER_RAD_S:.6g} rpm keeps a residual of {residual:.1e}"
-        )
+        raise ConvergenceError(f"residual {residual:.1e} at a critical speed near {speed * RPM_PER_RAD_S:.6g} rpm")
     return Synchronous(float(speed), complex(value), v, float(residual))
 
 
@@ -223,14 +217,12 @@ def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> boo
     if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
         return True
     H = family.inertia(order)
-    first = max(family.low, 1e-4 * 0.999 * min([family.high, *(r.speed for r in roots)]))
-    if any(abs(r.speed - end) < 1e-7 * end for r in roots for end in (first, family.high)):
+    ends = (max(family.low, 1e-4 * 0.999 * min([family.high, *(r.speed for r in roots)])), family.high)
+    if any(abs(r.speed - end) < 1e-7 * end for r in roots for end in ends):
         return True  # a root on the very end can't be counted
     signs = [np.sign(np.vdot(r.vector, H @ r.vector).real) for r in roots]
     try:
-        low, high = (
-            factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).negative_count() for W in (first, family.high)
-        )
+        below = [factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).negative_count() for W in ends]
     except ConvergenceError:
         return True  # no factors without row exchanges: nothing to count with
-    return high - low == int(sum(signs))
+    return below[1] - below[0] == int(sum(signs))

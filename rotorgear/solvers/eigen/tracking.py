@@ -51,7 +51,7 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> tuple[np.ndarra
         damping = one.y.conj().T @ (one.pencil.D @ other.q)
         return np.asarray(damping + (one.s[:, None] + other.s) * (one.y.conj().T @ (one.pencil.M @ other.q)))
 
-    # Vectors of twins are anyone's: the MAC of a mode is summed over them, and no twin counts as the second best.
+    # The vectors of twins are arbitrary: the MAC of a mode is summed over its twins, and no twin counts as the second best.
     mac = product(a, b) * product(b, a).T
     twins_a = _twins(a.s, rate_a, length)
     twins_b = _twins(b.s, rate_b, length)
@@ -102,7 +102,7 @@ def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
 
 
 def _twins(s: np.ndarray, rate: np.ndarray, length: float) -> np.ndarray:
-    """(m, m) of 0 and 1: which modes are the same in eigenvalue and derivative, so that their vectors are anyone's."""
+    """(m, m) of 0 and 1: which modes are equal in eigenvalue and derivative, so that any combination of them is a mode."""
     size = np.abs(s)[:, None] + np.abs(s)
     same = np.abs(s[:, None] - s) <= _SAME * size
     return np.asarray((same & (np.abs(rate[:, None] - rate) * abs(length) <= _SAME * size)).astype(float))

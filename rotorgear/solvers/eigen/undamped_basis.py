@@ -11,7 +11,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked_columns, times
+from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, times
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric
 
 
@@ -135,19 +135,14 @@ class NearUndamped:
         return np.where(size > 0.0, size, 1.0)
 
     @cached_property
-    def _mirror(self) -> sp.csc_array:
-        """D^T, sparse (n, n)."""
-        return sp.csc_array(self.D.T)
-
-    @cached_property
     def halves(self) -> tuple[sp.csc_array, sp.csc_array]:
         """(D + D^T) / 2, what takes energy out, and (D - D^T) / 2, what does no work, sparse (n, n)."""
-        return halves(self.D, self._mirror)
+        return halves(self.D)
 
     @cached_property
     def _rows(self) -> sp.csr_array:
         """[M; D; K], sparse (3 n, n)."""
-        return stacked_columns((self.M, self._mirror, self.K))
+        return sp.csr_array(sp.vstack([self.M.T, sp.csr_array(self.D), self.K.T], format="csr"))
 
     def pencil(self, V: np.ndarray) -> Pencil:
         """M, D and K on a basis V (n, r); K through its strains, free of the rounding of the assembled one."""
@@ -183,12 +178,12 @@ class NearUndamped:
         return np.asarray(np.linalg.norm(left * scale[:, None], axis=0) / np.maximum(size, np.finfo(float).tiny))
 
     def moves_rigid_bodies(self) -> bool:
-        """Whether D acts on a rigid-body motion, which then does not stand apart from the other modes."""
+        """Whether D acts on a rigid-body motion, and so couples it to the other modes."""
         if not self.rigid.shape[1]:
             return False
         weight = self.weight[:, None]
         R = self.rigid / np.linalg.norm(self.rigid * weight, axis=0)
-        moved = max(float(np.abs((A @ R) / weight).max()) for A in (self.D, self._mirror))
+        moved = max(float(np.abs((A @ R) / weight).max()) for A in (self.D, self.D.T))
         return moved > _ROUNDING * scaled_norm_1(self.D, 1.0 / self.weight)
 
     def counted_below(self, w: float) -> int | None:

@@ -90,15 +90,16 @@ def around(H: np.ndarray, s: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.n
     return np.linalg.inv(one - H @ z), np.linalg.inv(one - z @ H)
 
 
-def sizes(H: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.ndarray]:
-    """What differences are measured by: between contacts (f,), and of other columns (m,), 0 where they move no contact."""
+def sizes(H: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What differences are measured by: between contacts (f,); other columns that move a contact (o,), and by how much (o,)."""
     at = scale.contacts
     root = scale.root
     inner = H[:, at][:, :, at] * root[at][:, None] * root[at]
     between = np.maximum(np.linalg.norm(inner, ord=2, axis=(1, 2)), 1.0) if at.size else np.ones(len(H))
     moved = np.linalg.norm(root[at][:, None] * H[:, at], axis=1).max(axis=0, initial=0.0)
     most = np.sqrt(np.abs(np.einsum("fii->fi", H)).max(axis=0, initial=0.0))
-    return between, np.where(moved > _NOTHING * most, moved, 0.0)
+    others = np.flatnonzero((root == 0.0) & (moved > _NOTHING * most) & (moved > 0.0))
+    return between, others, moved[others]
 
 
 def difference(H: np.ndarray, other: np.ndarray, scale: Scale) -> float:
@@ -107,13 +108,12 @@ def difference(H: np.ndarray, other: np.ndarray, scale: Scale) -> float:
     Between contacts: relative to |H| or the contacts' own compliance, the larger; of what prescribed forces do at contacts:
     relative to the most that each does over all probes.
     """
-    between, moved = sizes(H, scale)
+    between, others, moved = sizes(H, scale)
     at = scale.contacts
-    root = scale.root
-    apart = root[at][:, None] * (other - H)[:, at]
-    inner = np.linalg.norm(apart[:, :, at] * root[at], ord=2, axis=(1, 2)) / between if at.size else np.zeros(1)
-    others = np.flatnonzero((scale.root == 0.0) & (moved > 0.0))
-    outer = np.linalg.norm(apart[:, :, others], axis=1) / moved[others]
+    root = scale.root[at]
+    apart = root[:, None] * (other - H)[:, at]
+    inner = np.linalg.norm(apart[:, :, at] * root, ord=2, axis=(1, 2)) / between if at.size else np.zeros(1)
+    outer = np.linalg.norm(apart[:, :, others], axis=1) / moved
     return float(max(inner.max(initial=0.0), outer.max(initial=0.0)))
 
 
@@ -257,8 +257,7 @@ def reduced_receptances(among: Candidates, Q: np.ndarray, probes: Probes) -> tup
         dual = np.linalg.solve(Z.transpose(0, 2, 1), np.broadcast_to(B, (probes.count, *B.shape)))
     except np.linalg.LinAlgError:
         raise ConvergenceError(
-            "the model can't be reduced: its dynamic stiffness is singular at a frequency that counts; look for numbers many "
-            "decades apart"
+            "the model can't be reduced: its dynamic stiffness is singular; look for numbers many decades apart"
         ) from None
     return B.T @ y, y, dual
 
@@ -321,13 +320,12 @@ def choose(
 
 def _share(r: np.ndarray, d: np.ndarray, Z_jj: np.ndarray, H: np.ndarray, scale: Scale) -> np.ndarray:
     """Largest relative change (j,) of receptances H by shapes with residuals r, d (f, j, m) and stiffness Z_jj (f, j)."""
-    size, moved = sizes(H, scale)
+    size, others, moved = sizes(H, scale)
     at = scale.contacts
-    root = scale.root[scale.contacts]
+    root = scale.root[at]
     dual = np.linalg.norm(d[:, :, at] * root, axis=2) / Z_jj
     inner = dual * np.linalg.norm(r[:, :, at] * root, axis=2) / size[:, None]
-    others = np.flatnonzero((scale.root == 0.0) & (moved > 0.0))
-    outer = dual * (np.abs(r[:, :, others]) / moved[others]).max(axis=2, initial=0.0)
+    outer = dual * (np.abs(r[:, :, others]) / moved).max(axis=2, initial=0.0)
     return np.asarray(np.maximum(inner, outer).max(axis=0))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TypeVar
 
 import numpy as np
@@ -37,15 +37,16 @@ def magnitudes(A: Compressed) -> Compressed:
 
 def without_zeros(A: sp.csc_array) -> sp.csc_array:
     """A without stored entries that are zero."""
-    kept = A.data != 0.0
-    if kept.all():
+    if np.all(A.data):
         return A
-    ends = np.concatenate([np.zeros(1, dtype=A.indptr.dtype), np.cumsum(kept, dtype=A.indptr.dtype)])
-    return sp.csc_array((A.data[kept], A.indices[kept], ends[A.indptr]), shape=A.shape)
+    shorter = A.copy()
+    shorter.eliminate_zeros()
+    return shorter
 
 
-def halves(A: sp.csc_array, mirror: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:
-    """(A + A^T)/2 and (A - A^T)/2 of A and its `mirror` A^T."""
+def halves(A: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:
+    """(A + A^T)/2 and (A - A^T)/2."""
+    mirror = sp.csc_array(A.T)
     if not (np.array_equal(mirror.indptr, A.indptr) and np.array_equal(mirror.indices, A.indices)):
         return without_zeros(sp.csc_array(0.5 * (A + mirror))), without_zeros(sp.csc_array(0.5 * (A - mirror)))
     even, odd = (
@@ -53,17 +54,6 @@ def halves(A: sp.csc_array, mirror: sp.csc_array) -> tuple[sp.csc_array, sp.csc_
         for values in (0.5 * (A.data + mirror.data), 0.5 * (A.data - mirror.data))
     )
     return without_zeros(even), without_zeros(odd)
-
-
-def stacked_columns(parts: Sequence[sp.csc_array]) -> sp.csr_array:
-    """A^T, B^T ... of matrices of as many rows, below each other and by rows, so that one product serves for all."""
-    ends = [parts[0].indptr]
-    for part in parts[1:]:
-        ends.append(part.indptr[1:] + ends[-1][-1])
-    indices = np.concatenate([part.indices for part in parts])
-    data = np.concatenate([part.data for part in parts])
-    rows = sum(part.shape[1] for part in parts)
-    return sp.csr_array((data, indices, np.concatenate(ends)), shape=(rows, parts[0].shape[0]))
 
 
 def times(A: sp.csc_array | sp.csr_array | np.ndarray, X: np.ndarray) -> np.ndarray:

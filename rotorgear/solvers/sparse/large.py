@@ -25,6 +25,7 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, silent
 from rotorgear.solvers.sparse.factor import symmetric_superlu
+from rotorgear.solvers.sparse.nullspace import Solve
 
 T = TypeVar("T")
 # Shorter work than this is waited for.
@@ -97,36 +98,34 @@ def forecast(unknowns: int, solver: Solver) -> tuple[float, float]:
     return seconds * ratio**time_power, memory * ratio**memory_power
 
 
-class LargeFactor:
-    """A factored symmetric positive definite matrix: `solve(B)` for B (n,) or (n, k)."""
+def _factored(A: Any, solver: Solver, order: np.ndarray | None) -> Solve:
+    """What gives A⁻¹ B for B (n,) or (n, k)."""
+    if solver == "pardiso":
+        from pypardiso import PyPardisoSolver
 
-    def __init__(self, A: Any, solver: Solver, order: np.ndarray | None) -> None:
-        self.solver = solver
-        self._order = order
-        if solver == "pardiso":
-            from pypardiso import PyPardisoSolver
+        upper = sp.csr_matrix(sp.triu(A, format="csr"))
+        pardiso = PyPardisoSolver(mtype=2)
+        pardiso.factorize(upper)
 
-            self._upper = sp.csr_matrix(sp.triu(A, format="csr"))
-            self._pardiso: Any = PyPardisoSolver(mtype=2)
-            self._pardiso.factorize(self._upper)
-        else:
-            permuted = A if order is None else A[order][:, order]
-            del A
-            # Rows of a symmetric matrix are its columns: no copy.
-            columns = sp.csc_array((permuted.data, permuted.indices, permuted.indptr), shape=permuted.shape)
-            del permuted
-            self._lu: Any = symmetric_superlu(columns, "MMD_AT_PLUS_A" if order is None else "NATURAL")
+        def by_pardiso(B: np.ndarray) -> np.ndarray:
+            return np.asarray(pardiso.solve(upper, np.asfortranarray(B))).reshape(B.shape)
 
-    def solve(self, B: np.ndarray) -> np.ndarray:
-        """A⁻¹ B."""
-        if self.solver == "pardiso":
-            x: np.ndarray = np.asarray(self._pardiso.solve(self._upper, np.asfortranarray(B))).reshape(B.shape)
-            return x
-        if self._order is None:
-            return np.asarray(self._lu.solve(np.asfortranarray(B)))
+        return by_pardiso
+    permuted = A if order is None else A[order][:, order]
+    del A
+    # Rows of a symmetric matrix are its columns: no copy.
+    columns = sp.csc_array((permuted.data, permuted.indices, permuted.indptr), shape=permuted.shape)
+    del permuted
+    lu: Any = symmetric_superlu(columns, "MMD_AT_PLUS_A" if order is None else "NATURAL")
+
+    def by_superlu(B: np.ndarray) -> np.ndarray:
+        if order is None:
+            return np.asarray(lu.solve(np.asfortranarray(B)))
         x = np.empty_like(B)
-        x[self._order] = self._lu.solve(np.asfortranarray(B[self._order]))
+        x[order] = lu.solve(np.asfortranarray(B[order]))
         return x
+
+    return by_superlu
 
 
 def factor_positive(
@@ -135,11 +134,11 @@ def factor_positive(
     what: str,
     progress: Progress = silent,
     solver: Solver | None = None,
-) -> LargeFactor:
-    """Factor a symmetric positive definite sparse matrix of `blocks` unknowns a node, which stand together.
+) -> Solve:
+    """Factor a symmetric positive definite sparse matrix A; what is returned gives A⁻¹ B for B (n,) or (n, k).
 
     Args:
-        A: (n, n), any sparse format, with the same pattern for all unknowns of a node.
+        A: (n, n), any sparse format, with the same pattern for all unknowns of a node, which follow each other.
         blocks: unknowns a node.
         what: name of what is factored, for progress and errors.
         progress: called with the forecast before the work starts, then with the share of that time that has passed.
@@ -168,10 +167,10 @@ def factor_positive(
         text += f", {cost}{hint}"
     progress(0.0, text)
 
-    def factored() -> LargeFactor:
-        return LargeFactor(sp.csr_array(A), solver, nested_dissection(A, blocks) if solver == "metis" else None)
+    def work() -> Solve:
+        return _factored(sp.csr_array(A), solver, nested_dissection(A, blocks) if solver == "metis" else None)
 
-    return watched(factored, seconds, lambda share: progress(share, text))
+    return watched(work, seconds, lambda share: progress(share, text))
 
 
 def nested_dissection(A: Any, blocks: int) -> np.ndarray:

@@ -19,7 +19,7 @@ Kelley and Keyes, Convergence analysis of pseudo-transient continuation, SIAM J.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -47,17 +47,12 @@ EVALUATIONS = 3000
 
 @dataclass(frozen=True)
 class LocalEquilibrium:
-    """Local displacements and forces (m,), tangents (m, m) there, and whether they are in equilibrium.
-
-    `steps` counts Newton's iterations, `crept` the steps of the continuation.
-    """
+    """Local displacements and forces (m,), tangents (m, m) there, and whether they are in equilibrium."""
 
     d: np.ndarray
     force: np.ndarray
     tangent: np.ndarray
     converged: bool
-    steps: int = 0
-    crept: int = 0
 
 
 def local_equilibrium(
@@ -103,34 +98,30 @@ def local_equilibrium(
         return bool(worst <= ROUNDING * (terms + (np.abs(A) @ (np.abs(tangent) @ extents))).max(initial=0.0))
 
     try:
-        steps = 0
         for start in (d0,) if near is None else (near, d0):
             found = _newton(start, A, k, counted, residual, small)
-            steps += found.steps
             if found.converged:
-                return replace(found, steps=steps)
+                return found
 
         d = d0
         s = 1.0
-        for crept in range(1, _STEPS + 1):
+        for _ in range(_STEPS):
 
             def damped(d: np.ndarray, F: np.ndarray, last: np.ndarray = d, s: float = s) -> np.ndarray:
                 return np.asarray(residual(d, F) + s * (A @ (k @ (d - last))))
 
             step = _newton(d, A, (1.0 - s) * k, counted, damped, small)
-            steps += step.steps
             if not step.converged:
                 s *= _SHORTER
                 continue
             d = step.d
             if small(d, step.force, step.tangent, residual(d, step.force)):
-                return LocalEquilibrium(d, step.force, step.tangent, True, steps, crept)
+                return step
             s /= _LONGER
-        F, tangent = counted(d0)
-        return LocalEquilibrium(d0, F, tangent, False, steps, _STEPS)
     except StopIteration:
-        F, tangent = laws(d0)
-        return LocalEquilibrium(d0, F, tangent, False)
+        pass
+    F, tangent = laws(d0)
+    return LocalEquilibrium(d0, F, tangent, False)
 
 
 def _newton(
@@ -141,11 +132,11 @@ def _newton(
     F, tangent = laws(d)
     r = residual(d, F)
     stuck = 0
-    for steps in range(_ITERATIONS):
+    for _ in range(_ITERATIONS):
         if not np.all(np.isfinite(r)):
             break
         if small(d, F, tangent, r):
-            return LocalEquilibrium(d, F, tangent, True, steps)
+            return LocalEquilibrium(d, F, tangent, True)
         # Least squares: open contacts leave directions in which nothing changes.
         step = np.linalg.lstsq(np.eye(d.size) + A @ (tangent - k), -r, rcond=1e-14)[0]
         share = 1.0
@@ -162,4 +153,4 @@ def _newton(
         stuck = stuck + 1 if not np.linalg.norm(r) <= (1.0 - 1e-6) * before else 0
         if stuck == _STUCK:
             break
-    return LocalEquilibrium(d, F, tangent, bool(np.all(np.isfinite(r))) and small(d, F, tangent, r), _ITERATIONS)
+    return LocalEquilibrium(d, F, tangent, bool(np.all(np.isfinite(r))) and small(d, F, tangent, r))

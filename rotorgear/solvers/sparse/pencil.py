@@ -36,8 +36,7 @@ class LooseDofError(AnalysisError):
         self.dofs: tuple[int, ...] = tuple(int(dof) for dof in dofs)
         listed = ", ".join(str(dof) for dof in self.dofs[:10])
         super().__init__(
-            f"Degrees of freedom {listed} can move with neither inertia nor stiffness; "
-            "give them one of the two or fix them."
+            f"Degrees of freedom {listed} move with neither inertia nor stiffness; give them one of the two or fix them."
         )
 
 

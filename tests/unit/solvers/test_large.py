@@ -26,9 +26,9 @@ def grid(n: int) -> sp.csr_array:
 def test_every_solver_that_is_installed_solves(solver: Solver) -> None:
     A = grid(12)
     X = np.random.default_rng(1).standard_normal((A.shape[0], 4))
-    factor = factor_positive(A, 3, "test", solver=solver)
-    np.testing.assert_allclose(factor.solve(A @ X), X, atol=1e-10)
-    np.testing.assert_allclose(factor.solve(A @ X[:, 0]), X[:, 0], atol=1e-10)
+    solve = factor_positive(A, 3, "test", solver=solver)
+    np.testing.assert_allclose(solve(A @ X), X, atol=1e-10)
+    np.testing.assert_allclose(solve(A @ X[:, 0]), X[:, 0], atol=1e-10)
 
 
 def test_a_long_factorisation_is_forecast_before_it_starts_and_one_without_memory_is_refused() -> None:

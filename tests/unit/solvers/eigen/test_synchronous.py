@@ -24,7 +24,8 @@ def spinning(internal: float = 3e-4, external: float = 40.0) -> Affine:
         turn[k, k + 1] = -1.0
         turn[k + 1, k] = 1.0
     matrices = [M, internal * K + external * M, G, K, -internal * K @ turn]
-    return Affine(*(sp.csc_array(A) for A in matrices), low=10.0, high=900.0)
+    none = sp.csc_array(matrices[0].shape)
+    return Affine(*(sp.csc_array(A) for A in matrices), none, low=10.0, high=900.0)
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0, 0.5])
