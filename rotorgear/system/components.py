@@ -63,7 +63,7 @@ def groups_with_inertia(
             continue
         names = system.dofs.describe_some(group.tolist(), system.nodes)
         if velocity is not None and velocity[group].nnz:
-            raise AnalysisError(f"dampers but no inertia: {names}; give the body inertia or no dampers")
+            raise AnalysisError(f"dampers but no inertia: {names}; give the body there inertia or no dampers")
         still.append(names)
     return moving, (f"modes of what has stiffness but no inertia: {'; '.join(still)}",) if still else ()
 

@@ -56,4 +56,4 @@ def check_count(model: Model, fmax: float) -> None:
     """
     expected = expected_modes(model, 2.0 * np.pi * fmax)
     if expected > MOST_MODES:
-        raise AnalysisError(f"about {expected:.2g} modes lie below {fmax:g} Hz, above {MOST_MODES}; ask for fewer")
+        raise AnalysisError(f"about {expected:.2g} modes lie below {fmax:g} Hz, more than {MOST_MODES}; ask for fewer")
