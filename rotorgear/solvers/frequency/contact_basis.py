@@ -257,7 +257,7 @@ def reduced_receptances(among: Candidates, Q: np.ndarray, probes: Probes) -> tup
         dual = np.linalg.solve(Z.transpose(0, 2, 1), np.broadcast_to(B, (probes.count, *B.shape)))
     except np.linalg.LinAlgError:
         raise ConvergenceError(
-            "the model can't be reduced: its dynamic stiffness is singular; look for numbers many decades apart"
+            "no reduction: the dynamic stiffness is singular at a frequency that counts; look for numbers decades apart"
         ) from None
     return B.T @ y, y, dual
 
