@@ -202,12 +202,10 @@ def _shaft(layout: Layout, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
     shaft = model.shafts[name]
     ratio = layout.train.ratio(name)
     for rigid, order, elements, dofs in alike(model, nodes, name):
-        matrices = shaft_elements(
-            element_data(model, name, elements),
-            order=order,
-            lumped=shaft.mass_matrix == "lumped",
-            internal_damping=0.0 if rigid else shaft.internal_damping,
-        )
+        data = element_data(model, name, elements)
+        damping = 0.0 if rigid else shaft.internal_damping
+        lumped = shaft.mass_matrix == "lumped"
+        matrices = shaft_elements(data, order=order, lumped=lumped, internal_damping=damping)
         if rigid:  # it has mass, but nothing in it can strain
             matrices = ElementMatrices(mass=matrices.mass, gyroscopic=matrices.gyroscopic)
         motions = () if rigid else strain_motions(order, shaft.shear_deformation)

@@ -78,14 +78,10 @@ def _by_matrices(
 ) -> DampedModes:
     """The damped modes of the assembled matrices, with some undamped ones known; the softest elastic ones count as rigid."""
     frequencies = undamped.frequencies[soft:]
+    scale = float(frequencies[0]) if len(frequencies) else None
+    R = undamped.vectors[:, : undamped.rigid_count + soft]
     return damped_modes(
-        problem.M,
-        problem.D,
-        problem.K,
-        count=count,
-        below=below,
-        rigid_vectors=undamped.vectors[:, : undamped.rigid_count + soft],
-        frequency_scale=float(frequencies[0]) if len(frequencies) else None,
+        problem.M, problem.D, problem.K, count=count, below=below, rigid_vectors=R, frequency_scale=scale
     )
 
 

@@ -69,14 +69,8 @@ class Modes:
 
     def first(self, count: int) -> Modes:
         """The first modes only."""
-        columns = slice(count)
-        return replace(
-            self,
-            eigenvalues=self.eigenvalues[columns],
-            vectors=self.vectors[:, columns],
-            rigid=self.rigid[columns],
-            backward_error=self.backward_error[columns],
-        )
+        s, rigid, errors = (values[:count] for values in (self.eigenvalues, self.rigid, self.backward_error))
+        return replace(self, eigenvalues=s, vectors=self.vectors[:, :count], rigid=rigid, backward_error=errors)
 
 
 def solve(system: System, wanted: Wanted) -> Modes:
