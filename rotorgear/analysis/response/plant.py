@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.common.stations import part_nodes
 from rotorgear.analysis.response.orders import Order
-from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
+from rotorgear.solvers.frequency.harmonic import Dynamics, LowRank
 from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.system import System
@@ -152,7 +152,7 @@ class GroundLoads:
         damped: modes V (n, m) of modal mass 1, and the damping of them, M V with 2 ζ ω; None without any.
     """
 
-    def __init__(self, system: System, damped: tuple[np.ndarray, LowRankDamping] | None) -> None:
+    def __init__(self, system: System, damped: tuple[np.ndarray, LowRank] | None) -> None:
         given = system.model.damping
         self._parts = []
         names: list[str] = []
@@ -176,8 +176,8 @@ class GroundLoads:
         found = [np.zeros((len(w), 0))]
         brake = None
         if self._parts and self._damped is not None:
-            modes, damping = self._damped
-            brake = modes @ (damping.sizes[:, None] * (damping.vectors.T @ q)) * (1j * w)
+            modes, (P, d) = self._damped
+            brake = modes @ (d[:, None] * (P.T @ q)) * (1j * w)
         for own, K, C, M in self._parts:
             u = own @ q
             accelerations = -(w**2) * u
@@ -201,11 +201,11 @@ class Plant:
         beta = system.model.damping.rayleigh_beta
         self.system = system
         self.lines = replace(lines, damping=lines.damping + beta * lines.stiffness)
-        self.low_rank = None
+        self.low_rank: LowRank | None = None
         damped = None
         if damping is not None and damping[2] > 0.0 and damping[1].size:
             modes, w, zeta = damping
-            self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), 2.0 * zeta * w)
+            self.low_rank = np.asarray(system.mass @ modes), 2.0 * zeta * w
             damped = modes, self.low_rank
         self.has_tables = system.has_tables
         self.places = part_nodes(system)

@@ -239,8 +239,8 @@ class _Matrices:
         """All degrees of freedom."""
         D = dynamics.D.toarray()
         if dynamics.low_rank is not None:
-            P = dynamics.low_rank.vectors
-            D = D + (P * dynamics.low_rank.sizes) @ P.T
+            P, d = dynamics.low_rank
+            D = D + (P * d) @ P.T
         return cls(dynamics.M.toarray(), D, dynamics.K.toarray(), B, C)
 
     @classmethod
@@ -248,8 +248,9 @@ class _Matrices:
         """The coordinates of a basis V (n, s): V^T M V and so on."""
         D = V.T @ (dynamics.D @ V)
         if dynamics.low_rank is not None:
-            P = V.T @ dynamics.low_rank.vectors
-            D = D + (P * dynamics.low_rank.sizes) @ P.T
+            P, d = dynamics.low_rank
+            P = V.T @ P
+            D = D + (P * d) @ P.T
         M = V.T @ (dynamics.M @ V)
         return cls(0.5 * (M + M.T), D, V.T @ (dynamics.K @ V), V.T @ B, C @ V)
 

@@ -7,7 +7,7 @@ below the tolerance. Greedy reduced basis: Hesthaven, Rozza and Stamm, Certified
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
@@ -27,12 +27,8 @@ _ASIDE = (0.0, 1e-8, 1e-6, 1e-4)
 _NEW = 1e-8
 
 
-@dataclass(frozen=True)
-class LowRankDamping:
-    """Damping P diag(d) P^T with P (n, m): that of single modes, so it is never assembled."""
-
-    vectors: np.ndarray
-    sizes: np.ndarray
+# P (n, m) and d (m,) of the damping P diag(d) P^T of single modes, which is never assembled.
+LowRank = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -42,12 +38,12 @@ class Dynamics:
     M: sp.csc_array
     D: sp.csc_array
     K: sp.csc_array
-    low_rank: LowRankDamping | None = None
+    low_rank: LowRank | None = None
 
     def cut(self, dofs: np.ndarray) -> Dynamics:
         """Those of some dofs (k,) on which no others act."""
         M, D, K = (sp.csc_array(A[dofs][:, dofs]) for A in (self.M, self.D, self.K))
-        low_rank = None if self.low_rank is None else replace(self.low_rank, vectors=self.low_rank.vectors[dofs])
+        low_rank = None if self.low_rank is None else (self.low_rank[0][dofs], self.low_rank[1])
         return Dynamics(M, D, K, low_rank)
 
     def solve(self, w: float, f: np.ndarray) -> np.ndarray:
@@ -78,8 +74,8 @@ class Dynamics:
             factor = factor_general(self._stiffness(near))
         except ConvergenceError:
             return None
-        P = self.low_rank.vectors
-        d = 1j * near * self.low_rank.sizes
+        P, d = self.low_rank
+        d = 1j * near * d
         spread = factor.solve(P.astype(complex))
         inner = la.lu_factor(np.eye(len(d)) + d[:, None] * (P.T @ spread))
         q = np.zeros_like(f)
@@ -106,8 +102,8 @@ class Dynamics:
         """Z q, (n, p), at one frequency or at one for each column."""
         out = self.K @ q + (self.D @ q) * (1j * w) - (self.M @ q) * (w**2)
         if self.low_rank is not None:
-            P = self.low_rank.vectors
-            out = out + (P @ (self.low_rank.sizes[:, None] * (P.T @ q))) * (1j * w)
+            P, d = self.low_rank
+            out = out + (P @ (d[:, None] * (P.T @ q))) * (1j * w)
         return np.asarray(out)
 
 
@@ -115,8 +111,9 @@ def projected(dynamics: Dynamics, X: np.ndarray) -> Pencil:
     """X^T M X, X^T D X and X^T K X in a real basis X (n, r)."""
     M, D, K = (X.T @ (part @ X) for part in (dynamics.M, dynamics.D, dynamics.K))
     if dynamics.low_rank is not None:
-        seen = dynamics.low_rank.vectors.T @ X
-        D = D + seen.T @ (dynamics.low_rank.sizes[:, None] * seen)
+        P, d = dynamics.low_rank
+        seen = P.T @ X
+        D = D + seen.T @ (d[:, None] * seen)
     return Pencil(M, D, K)
 
 
