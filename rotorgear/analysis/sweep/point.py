@@ -97,6 +97,7 @@ def depends_on_speed(model: Model) -> bool:
         or any(load.power is not None or load.speed_power for load in model.loads.values())
         or any(bearing.table for bearing in model.bearings.values())
         or any(shaft.internal_damping for shaft in model.shafts.values())
+        or any(gear.body.mesh for gear in model.gears.values())  # centrifugal softening
         or model.nonlinear_elements
     )
 
@@ -200,7 +201,6 @@ class PointMaker:
             depends_on_speed(model)
             or any(load.varies for load in model.loads.values())
             or any(bearing.has_film for bearing in model.bearings.values())
-            or any(gear.body.mesh for gear in model.gears.values())
         ):
             return self._at(self._made(model, speed), speed, model.damping.modal_ratio)
         if key not in self._known:

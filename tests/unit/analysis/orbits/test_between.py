@@ -63,3 +63,14 @@ def test_a_load_at_its_mean_still_loads_the_mesh_and_its_ripple_is_gone() -> Non
     quiet = rg.loads(text.replace(f"backlash = {2.0 * HALF_BACKLASH!r}", error).replace("ripple = 1.0", "ripple = 0.0"))
     same = rg.orbits(quiet, {"operation.speed": ends}, step=0.5, method="harmonic balance")
     assert found.first_harmonic[0] == pytest.approx(same.first_harmonic[0], rel=1e-9)
+
+
+def test_the_centrifugal_terms_of_an_elastic_wheel_go_with_the_speed_that_is_followed() -> None:
+    model = rg.load(MODELS / "elastic_wheel.toml")
+    speed = model.operating_speed
+    assert speed
+    family = SystemFamily(model, [range_of(model, "operation.speed", [0.5 * speed, 2.0 * speed])], None, 1)
+    twice = model.with_({"operation.speed": 2.0 * speed})
+    there = SystemFamily(twice, [range_of(twice, "operation.speed", [2.0 * speed, 3.0 * speed])], None, 1)
+    found, wanted = family.system([1.0]).K.toarray(), there.system([0.0]).K.toarray()
+    assert found == pytest.approx(wanted, rel=1e-12, abs=1e-12 * abs(wanted).max())
