@@ -54,7 +54,7 @@ _SIDES = {
 def read_abaqus(path: Path) -> FileMesh:
     """Read a deck; ValueError says what in it can't be read."""
     coordinates: dict[int, list[float]] = {}
-    blocks: list[tuple[str, list[list[int]], list[int]]] = []
+    blocks: list[tuple[str, np.ndarray, np.ndarray]] = []
     node_sets: dict[str, list[int]] = {}
     cell_sets: dict[str, list[int]] = {}
     surfaces: dict[str, list[tuple[str, str]]] = {}
@@ -81,10 +81,10 @@ def read_abaqus(path: Path) -> FileMesh:
             numbers = [int(item) for line in lines for item in line.split(",") if item.strip()]
             if len(numbers) % (count + 1):
                 raise ValueError(f"elements {options.get('TYPE')} with another number of nodes than {count}")
-            rows = [numbers[i : i + count + 1] for i in range(0, len(numbers), count + 1)]
-            blocks.append((kind, [row[1:] for row in rows], [row[0] for row in rows]))
+            table = np.array(numbers, dtype=np.int64).reshape(-1, count + 1)
+            blocks.append((kind, table[:, 1:], table[:, 0]))
             if "ELSET" in options:
-                cell_sets.setdefault(options["ELSET"], []).extend(row[0] for row in rows)
+                cell_sets.setdefault(options["ELSET"], []).extend(table[:, 0].tolist())
         elif keyword == "NSET" and "ELSET" in options:
             nodes_of_elements[options.get("NSET", "")] = options["ELSET"]
         elif keyword in ("NSET", "ELSET"):

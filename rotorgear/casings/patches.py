@@ -134,10 +134,7 @@ def by_cylinder(mesh: SolidMesh, cylinder: Cylinder, address: str) -> Patch:
     else:
         faces = cylinder_faces(mesh, cylinder, address)
         patch = patch_of(mesh, faces, np.unique(faces), address)
-    across = [axis for axis in range(3) if axis != cylinder.axis]
-    point = np.empty(3)
-    point[across] = cylinder.center
-    point[cylinder.axis] = 0.5 * (cylinder.begin + cylinder.end)
+    point = np.insert(cylinder.center, cylinder.axis, 0.5 * (cylinder.begin + cylinder.end))
     return replace(patch, name=address, point=point)
 
 

@@ -135,10 +135,7 @@ def _kind(path: Path, file: Any) -> type[Any]:
     version = file.attrs.get("format_version")
     kind = file.attrs.get("kind")
     if version != FORMAT_VERSION or kind not in kinds():
-        by = file.attrs.get("rotorgear_version", "another version")
-        raise ReadError(
-            path,
-            f"it was written by rotorgear {by} in format {version} ({kind}), and this is rotorgear {VERSION}, which reads "
-            f"format {FORMAT_VERSION}; use the newer one, or run the analysis again",
-        )
+        by = f"rotorgear {file.attrs.get('rotorgear_version', 'of another version')} in format {version} ({kind})"
+        this = f"this is rotorgear {VERSION}, which reads format {FORMAT_VERSION}"
+        raise ReadError(path, f"it was written by {by}, and {this}; use the newer one, or run the analysis again")
     return kinds()[kind]

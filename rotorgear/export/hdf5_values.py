@@ -125,7 +125,7 @@ def get_value(item: Any) -> Any:
         case "lists":
             return tuple(tuple(json.loads(text)) for text in _get_texts(item))
         case "array" | "truth" | "integer" | "number" as kind:
-            return _PLAIN[kind](item[()])
+            return _PLAIN.get(kind, np.asarray)(item[()])
         case "notes":
             return tuple(Note(*row) for row in zip(*(_get_texts(item[key]) for key in _OF_A_NOTE), strict=True))
         case "record":
@@ -137,7 +137,8 @@ def get_value(item: Any) -> Any:
             plain = [column if isinstance(column, tuple) else column.tolist() for column in columns]
             return tuple(cls(**dict(zip(names, row, strict=True))) for row in zip(*plain, strict=True))
         case "numbers" | "arrays" as kind:
-            return dict(zip(_get_texts(item["names"]), map(_PLAIN[kind], item["values"][()]), strict=True))
+            values = map(_PLAIN.get(kind, np.asarray), item["values"][()])
+            return dict(zip(_get_texts(item["names"]), values, strict=True))
         case "mapping":
             keys = [json.loads(text) for text in _get_texts(item["keys"])]
             return dict(zip(keys, _entries(item["values"]), strict=True))
@@ -182,15 +183,8 @@ _TYPES: tuple[tuple[str, Any], ...] = (
     ("number", (float, np.floating)),
 )
 _OF_A_NOTE = ("part", "what", "why", "value")
-# How a number or an array, alone or in a table, comes back from what h5py reads.
-_PLAIN: dict[str, Callable[[Any], Any]] = {
-    "array": np.asarray,
-    "arrays": np.asarray,
-    "truth": bool,
-    "integer": int,
-    "number": float,
-    "numbers": float,
-}
+# How a number, alone or in a table, comes back from what h5py reads; all else is an array.
+_PLAIN: dict[str, Callable[[Any], Any]] = {"truth": bool, "integer": int, "number": float, "numbers": float}
 
 
 def digest_of(file: Any) -> str:

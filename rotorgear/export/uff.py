@@ -103,19 +103,14 @@ def _responses(result: FrequencyResponse, binary: bool) -> list[bytes]:
     zeros = np.zeros(len(spots), dtype=int)
     sets = [nodes_set(datasets.Nodes(np.arange(1, len(spots) + 1), np.array(spots), zeros, zeros + 1))]
     title = result.model.title or "rotorgear"
+    axes = (datasets.FREQUENCY, datasets.DISPLACEMENT, datasets.FORCE)
     for i, reference in enumerate(result.inputs):
         for o, response in enumerate(result.outputs):
-            function = datasets.Function(
-                datasets.FREQUENCY_RESPONSE,
-                freedom[response],
-                freedom[reference],
-                result.frequency_hz,
-                result.receptance[:, o, i],
-                datasets.FREQUENCY,
-                datasets.DISPLACEMENT,
-                datasets.FORCE,
-                names=(f"{response} over {reference}", title, "rotorgear"),
-            )
+            ends = (freedom[response], freedom[reference])
+            names = (f"{response} over {reference}", title, "rotorgear")
+            values = result.receptance[:, o, i]
+            kind = datasets.FREQUENCY_RESPONSE
+            function = datasets.Function(kind, *ends, result.frequency_hz, values, *axes, names=names)
             sets.append(function_set(function, binary=binary))
     return sets
 

@@ -210,10 +210,10 @@ class Structure:
         """The components that the file has of some numbers."""
         return [self.document.components[number] for number in numbers if number in self.document.components]
 
-    def _linked(self, owner: Component, types: tuple[str, ...], role: str, other: str) -> list[Component]:
-        """The components in one role of relations of some types in which a component has another role."""
+    def _linked(self, owner: Component, types: tuple[str, ...], role: str, *others: str) -> list[Component]:
+        """The components in some roles of relations of some types in which a component has another role."""
         relations = [one for one in self.document.relations if one.type in types and owner.id in one.at(role)]
-        return self._known(dict.fromkeys(number for relation in relations for number in relation.at(other)))
+        return self._known(dict.fromkeys(number for relation in relations for number in relation.at(*others)))
 
     def parts_of(self, owner: Component, *types: str) -> list[Component]:
         """The components of some types that a component is put together from, in the order of the file."""
@@ -243,11 +243,7 @@ class Structure:
         """The stages with their two gears; a stage with fewer or more is a problem."""
         found = []
         for stage in self.document.of_type(STAGE):
-            gears: dict[str, None] = {}
-            for relation in self.document.relations:
-                if relation.type in ("stage", "stage_gear_data") and stage.id in relation.at("stage"):
-                    gears |= dict.fromkeys(relation.at("gear_1", "gear_2", "gear"))
-            known = self._known(gears)
+            known = self._linked(stage, ("stage", "stage_gear_data"), "stage", "gear_1", "gear_2", "gear")
             if len(known) == 2 and all(gear.type == GEAR for gear in known):
                 found.append(Pair(stage, (known[0], known[1])))
             else:
