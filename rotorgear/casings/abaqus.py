@@ -33,7 +33,7 @@ _ELEMENTS = {
     **dict.fromkeys(("T2D3", "T3D3", "B22", "B32"), ("line3", 3)),
 }
 _SHELL_SIDES = ("SPOS", "SNEG")
-# What decks put on a body beside its elements; it is not read, and that is said.
+# Keywords of loads and connections that decks hold beside the elements; they are not read, and a note says so.
 _BESIDE = (
     "COUPLING",
     "DISTRIBUTING COUPLING",

@@ -28,9 +28,9 @@ from rotorgear.solvers.sparse.large import factor_positive
 
 Columns = Callable[[np.ndarray], np.ndarray]
 _TOLERANCE = 1e-10
-# More modes no analysis can carry.
+# No analysis can use more modes than this.
 _MOST_MODES = 2000
-# Beyond this share of its unknowns a mesh has no modes of the body any more.
+# Modes beyond this share of the unknowns are modes of the elements, not of the body.
 _MOST_SHARE = 0.25
 
 

@@ -23,7 +23,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import millimetres
 
-# Sizes of a casing that are believed; beyond, the unit is likely wrong.
+# Plausible sizes of a casing in m; outside this range the unit is probably wrong.
 _LEAST_SIZE = 5e-3
 _LARGEST_SIZE = 50.0
 

@@ -26,13 +26,13 @@ from rotorgear.errors import AnalysisError
 
 _SURFACE = ("surface_points", "surface_triangles", "surface_basis")
 _KNOWN = ("stiffness", "mass", "seats", "positions", "damping", "rigid", "weight", *_SURFACE)
-# A rigid motion of the seats with more strain energy than this share of its parts is held by something.
+# A body in which a rigid motion of the seats has more strain energy than this share of the single terms is held to the ground.
 _STRAINED = 1e-8
 _UNKNOWN = (float("nan"), np.full(3, np.nan), np.full((3, 3), np.nan))
 # Largest difference of a matrix from its transpose, relative to its largest entry, that rounding explains.
 _SYMMETRIC = 1e-8
-# An eigenvalue below zero by more than this share of the largest is no rounding, of single precision either.
-_PUSHES = 1e-5
+# An eigenvalue that is negative by more than this share of the largest is not caused by rounding, even in single precision.
+_NEGATIVE = 1e-5
 
 
 def read_matrices(
@@ -80,9 +80,9 @@ def read_matrices(
         squares = la.eigvalsh(stiffness, mass)
     except la.LinAlgError:
         raise AnalysisError(f"{address}: the mass matrix in '{path.name}' is not positive definite") from None
-    if squares[0] < -_PUSHES * np.abs(squares).max():
+    if squares[0] < -_NEGATIVE * np.abs(squares).max():
         raise AnalysisError(
-            f"{address}: the stiffness in '{path.name}' pushes some motion on instead of holding it (an eigenvalue is negative)"
+            f"{address}: the stiffness in '{path.name}' has a negative eigenvalue: it drives a motion instead of resisting it"
         )
     damping = modal_damping(mass, stiffness, damping_ratio)
     if "damping" in arrays:

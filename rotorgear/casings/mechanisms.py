@@ -18,7 +18,7 @@ from rotorgear.casings.solid_mesh import SolidMesh
 from rotorgear.errors import AnalysisError
 
 _MOTIONS = tuple(f"{motion} {axis}" for motion in ("displacement along", "rotation about") for axis in "xyz")
-# So many parts without common faces are no body any more.
+# With more parts than this without common faces, the mesh is no single body.
 _MOST_PARTS = 200
 # Squares of relative motions below this share of the largest are rounding of the file's coordinates.
 _ROUNDING = 1e-12
@@ -117,7 +117,7 @@ def _relative_motions(joined: Joined, part_of: np.ndarray, held: np.ndarray, spr
     nodes = len(mesh.points)
     R = _scaled_motions(mesh.points).reshape(nodes, 3, 6)
     k = mesh.cells.shape[1]
-    # Every part that each node belongs to, once.
+    # Pairs of a node and a part that it belongs to, each pair once.
     node, part = np.unique(np.column_stack([mesh.cells.ravel(), np.repeat(part_of, k)]), axis=0).T
     first = np.concatenate([[True], node[1:] != node[:-1]])
 

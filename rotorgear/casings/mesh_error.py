@@ -34,7 +34,7 @@ _DEGREE = {4: 6, 8: 8}
 _CHUNK = 1000
 _ENOUGH = 1e-2  # of the estimate itself
 _MOST_STEPS = 60
-# The slowest decay of energies over the order that there is in an elastic body: beside the tip of a crack.
+# The slowest decay of energies over the order in an elastic body, which is that beside the tip of a crack.
 _CRACK = 2.0
 # Values (q,) and gradient (3, q) of a function on the reference cell.
 _Factor = tuple[np.ndarray, np.ndarray]

@@ -27,9 +27,9 @@ _ELEMENTS = {
     "CQUAD8": {8: "quad8", 4: "quad"},
 }
 _SOLIDS = ("CTETRA", "CHEXA", "CPENTA", "CPYRAM")
-# Beams and shells that are not computed, whatever they stand on: without them the body would be softer than it is meant.
+# Beams and shells are not computed, and are refused wherever they are: without them the body would be too soft.
 _STRUCTURE = ("CBAR", "CBEAM", "CBEND", "CROD", "CONROD", "CTUBE", "CTRIAR", "CQUADR", "CSHEAR")
-# What decks put on a body beside its elements; it is not read, and that is said.
+# Cards of loads and connections that decks hold beside the elements; they are not read, and a note says so.
 _BESIDE = ("RBE1", "RBE2", "RBE3", "RBAR", "RROD", "MPC", "CONM1", "CONM2", "CBUSH", "CELAS1", "CELAS2")
 # Nastran counts the upright edges of a hexahedron before those of its top.
 _HEXA = [*range(12), *range(16, 20), *range(12, 16)]
@@ -80,7 +80,7 @@ def read_nastran(path: Path) -> FileMesh:
             sets[f"property_{number}"] = set_of(cells[-1:])
     numbers = np.array(list(points))
     for name, ranges in node_sets.items():
-        # A set of the case control may be one of elements: only nodes that are there count.
+        # A set of the case control may be a set of elements: numbers that no node has are passed over.
         member = np.isin(numbers, [first for first, last in ranges if first == last])
         for first, last in ranges:
             if first < last:

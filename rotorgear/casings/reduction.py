@@ -97,7 +97,7 @@ def rigid_residual(fe: FiniteElementBody) -> tuple[float, float]:
 USUAL = 20
 # Residual shapes whose mass is less than this share of the largest follow from the others.
 _DEPENDENT = 1e-10
-# A residual shape smaller than this share of what it is the rest of is no more than the rounding of the modes.
+# A residual shape smaller than this share of the whole static shape is only rounding of the modes.
 _FOLLOWED = 1e-8
 # Right-hand sides that are solved at a time: many share the reading of the factor, few need less memory.
 _COLUMNS = 16
@@ -157,7 +157,7 @@ def reduce(
     K_internal = _stiffness(fe, internal, springs, flexibility)
     squares, turn = la.eigh(K_internal, symmetric(internal.T @ fe.matrices.times_mass(internal)))
     internal = internal @ turn
-    # As theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal.
+    # Static shapes and internal shapes share no strain energy, and the internal block is diagonal; rounding is dropped.
     K = la.block_diag(_stiffness(fe, static, springs, flexibility), np.diag(squares))
     basis = np.hstack([static, internal])
     del fixed, residual, mass_fixed, mass_static, static, internal

@@ -43,16 +43,15 @@ def split(mesh: SolidMesh) -> SolidMesh:
     columns = [corners]
     places = [points]
     count = len(points)
-    of_sets: dict[str, np.ndarray] = {}
+    members: dict[str, list[np.ndarray]] = {}
     faces_of_sets: dict[str, list[np.ndarray]] = {}
     outer = boundary_faces(vertices, whole)
     smaller = np.array(TRIANGLES if shape.corners == 4 else _QUADS)
     for name, one in mesh.sets.items():
         # Nodes of the file's faces count, and not those in the middle of bricks' faces.
         faces = outer[one.faces_among(outer[:, : shape.face_nodes.shape[1]], len(shape.faces[0]))]
-        of_sets[name] = np.isin(np.arange(len(points)), np.concatenate([one.nodes, faces.ravel()]))
+        members[name] = [np.isin(np.arange(len(points)), np.concatenate([one.nodes, faces.ravel()]))]
         faces_of_sets[name] = [faces[:, smaller].reshape(-1, smaller.shape[1])] if one.faces else []
-    members = {name: [flags] for name, flags in of_sets.items()}
     entities: list[np.ndarray] = [np.array(shape.edges)]
     if shape.kind == "hexahedron27":
         entities += [np.array(shape.faces), np.arange(8)[None, :]]
@@ -63,8 +62,8 @@ def split(mesh: SolidMesh) -> SolidMesh:
         cell, entity = np.divmod(first, len(between))
         reference = whole.nodes[np.take_along_axis(local[cell], between[entity], axis=1)].mean(axis=1)
         places.append(_mapped(mesh, shape, cell // 8, reference))
-        for name, flags in of_sets.items():
-            members[name].append(flags[names].all(axis=1))
+        for flags in members.values():
+            flags.append(flags[0][names].all(axis=1))
         count += len(names)
     sets = {
         name: NamedSet(np.flatnonzero(np.concatenate(flags)), faces_of_sets[name]) for name, flags in members.items()

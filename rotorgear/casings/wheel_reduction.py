@@ -87,9 +87,9 @@ def spin_integrals(mesh: SolidMesh, material: Elastic, stretched: np.ndarray) ->
     return [sp.csr_array(sp.coo_array((part.ravel(), (rows, columns)), shape=size)) for part in (transport, stiff)]
 
 
-# Two modes nearer than this (relative) may be a pair.
+# Two modes whose frequencies are nearer than this (relative) may be a pair.
 _PAIR = 5e-3
-# A pair turns into each other by n; what other modes turn into each other by rounding is far below.
+# Λ of a pair is n; of two modes that are no pair it is rounding, far below this.
 _TURNS = 0.3
 # How far a body may be from one of revolution (relative): in its moments of inertia, and in the frequencies of its modes when it
 # is taken for one.
@@ -126,7 +126,7 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     progress(0.4, f"{name}: modes on the bore")
     of_mass = partial(fe.mass_times, space=space)
     squares, modes, left = modes_up_to(system.solve, of_mass, len(space.dofs), modes_to, USUAL, name)
-    # No pair is torn apart; `left` is the frequency of the first mode that is not kept.
+    # A pair is kept or left as a whole; `left` is the frequency of the first mode that is not kept.
     hz = np.sqrt(squares) / (2.0 * np.pi)
     kept = len(hz)
     while kept and left < (1.0 + _PAIR) * hz[kept - 1]:
@@ -247,7 +247,7 @@ def _waves(fe: FiniteElementBody, rim: _Rim, E: np.ndarray, rates: np.ndarray, t
     single: list[int] = []
 
     def add(columns: list[np.ndarray], first: int, n: int) -> None:
-        # Of the mean stiffness of a pair.
+        # The frequency of a pair is that of its mean stiffness.
         rate = float(np.sqrt(np.mean([rates**2 @ column**2 for column in columns])))
         members = np.flatnonzero(np.abs(np.array(columns)).max(axis=0) > 0.1)
         shift = float(np.abs(rate / rates[members] - 1.0).max())
@@ -265,7 +265,7 @@ def _waves(fe: FiniteElementBody, rim: _Rim, E: np.ndarray, rates: np.ndarray, t
                 add([f.real, f.imag], start, max(1, rim.largest(E @ f)))
         still = parts[:, np.abs(values) <= _TURNS]
         if still.shape[1]:
-            # Real shapes without waves keep their own frequencies: modes again, of the span.
+            # Shapes without waves are made modes again within their span, so that each keeps its own frequency.
             real = la.orth(np.hstack([still.real, still.imag]), rcond=1e-6)
             if start + 1 == stop:
                 single.append(start)
@@ -275,7 +275,7 @@ def _waves(fe: FiniteElementBody, rim: _Rim, E: np.ndarray, rates: np.ndarray, t
                     alone[start:stop] = column
                     add([alone], start, 0)
         start = stop
-    # Of a body with N equal parts the two waves of N/2 and N nodal diameters have frequencies apart.
+    # In a body with N equal parts the two waves of N/2 and of N nodal diameters have different frequencies.
     while single:
         k = single.pop(0)
         partner = max(single, key=lambda j: abs(turned[k, j]), default=None)

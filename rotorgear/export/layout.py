@@ -130,8 +130,8 @@ _OVERLAP = 0.85
 
 def display_axes(model: Model) -> dict[str, Axis]:
     """Axis (x, y) in m of every shaft for display, shaft -> (x, y)."""
-    # Given positions stand. From them on neighbours are placed one by one; what nothing leads to begins a group of its own, to
-    # the right of all.
+    # Given positions are kept. Their neighbours are placed one by one; a shaft that no neighbour leads to begins a group of its
+    # own, to the right of all others.
     axes: dict[str, Axis] = {name: shaft.position for name, shaft in model.shafts.items() if shaft.position is not None}
     envelopes = {}
     for name, part in model.shafts.items():

@@ -19,7 +19,7 @@ from rotorgear.results.optimise import OptimiseResult, value_words
 from rotorgear.results.rexs_import import RexsImport
 from rotorgear.results.update import UpdateResult
 
-# Every part of a plain gearbox stands in it once.
+# The model that has every part of a plain gearbox once.
 DEFAULT = "helical_pair"
 
 
@@ -57,7 +57,7 @@ def new(path: str | Path, source: str | None = None, force: bool = False) -> lis
 
 
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-# Digits that a written number keeps; more would pretend.
+# Digits of a written number; more would claim an accuracy that it has not.
 _DIGITS = 6
 # Of a Fourier series only the mean is a size; amplitudes are shares of it.
 _MEAN = "mean"
@@ -169,7 +169,7 @@ def write_optimised_model(result: OptimiseResult, source: str | Path, path: str 
     """
     moved = [row for row in result.numbers if row.after != row.before]
     factors = {row.address: row.after / row.before for row in moved if row.before}
-    # 0, "start" and "end" have no factor that leads anywhere: there the new place is written.
+    # No factor changes 0, "start" or "end": there the new place itself is written.
     texts = {row.address: f"{1e3 * row.after:.7g} mm" for row in moved if row.unit == "m"}
     remarks = {row.address: f"optimised, was {value_words(row, row.before)}" for row in moved}
     return _write(path, scaled_text(Path(source).read_text(encoding="utf-8"), factors, remarks, texts))

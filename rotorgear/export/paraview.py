@@ -79,7 +79,7 @@ def save_mesh(mesh: Any, path: Path) -> None:
     writer.SetCompressorTypeToZLib()
     writer.SetCompressionLevel(2)
     shown = writer.GetGlobalWarningDisplay()
-    writer.GlobalWarningDisplayOff()  # what goes wrong is said once, in a sentence
+    writer.GlobalWarningDisplayOff()  # the exception below says what is wrong
     try:
         written = writer.Write() and not writer.GetErrorCode()
     finally:

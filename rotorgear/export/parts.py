@@ -59,7 +59,7 @@ FINE = Detail(segments=64, slices=32, flank_points=3, arc_points=8, twist_step=m
 
 
 @dataclass(frozen=True)
-class Piece:
+class PartSurface:
     """One surface of a part: the part's address, what kind it is, the name of its shaft."""
 
     part: str
@@ -69,7 +69,7 @@ class Piece:
     attachment: Attachment
 
 
-def shaft_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def shaft_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield each shaft as a body of revolution with its steps, cones and bores, and stripes along it."""
     for name, shaft in model.shafts.items():
         if not shaft.sections:
@@ -82,7 +82,7 @@ def shaft_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[P
             ("stripe", join([_stripe(outer, 2.0 * math.pi * k / _STRIPES) for k in range(_STRIPES)])),
         ):
             placed = surface.moved((x, y, 0.0))
-            yield Piece(f"shafts.{name}", kind, name, placed, skeleton.along(name, placed.points))
+            yield PartSurface(f"shafts.{name}", kind, name, placed, skeleton.along(name, placed.points))
 
 
 def _outline(shaft: Shaft, step: float, bore: bool) -> np.ndarray:
@@ -113,7 +113,7 @@ def _stripe(outer: np.ndarray, angle: float) -> Surface:
     return make_surface(np.vstack(edges), [np.column_stack([low[:-1], high[:-1], high[1:], low[1:]])])
 
 
-def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield the helices of each gear with their teeth, and the web and hub of one that has them."""
     phases = tooth_phases(model, skeleton.axes)
     for gear in model.layout.gears:
@@ -125,13 +125,15 @@ def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Pi
             if wheel is None or wheel.surface is None:
                 attachment = skeleton.rigid(*place, placed.points)
             else:
-                # Its teeth ride on its rim.
+                # The teeth move with the rim.
                 body = body_name(gear.name)
                 attachment = skeleton.on_casing(body, placed.points)
                 shown = make_surface(wheel.surface.points, [], [wheel.surface.triangles])
                 shown = shown.moved((*skeleton.axes[gear.shaft], place.z))
-                yield Piece(f"gears.{gear.name}", "gear", gear.shaft, shown, skeleton.on_casing(body, shown.points))
-            yield Piece(f"gears.{gear.name}", "gear", gear.shaft, placed, attachment)
+                yield PartSurface(
+                    f"gears.{gear.name}", "gear", gear.shaft, shown, skeleton.on_casing(body, shown.points)
+                )
+            yield PartSurface(f"gears.{gear.name}", "gear", gear.shaft, placed, attachment)
 
 
 def _helix(model: Model, name: str, plane: float, rate: float, phase: float, detail: Detail) -> Surface:
@@ -169,7 +171,7 @@ def _hole(model: Model, shaft: str, low: float, high: float, bore: float | None,
     return min(radius, _LARGEST_HOLE * outer)
 
 
-def disk_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def disk_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield each disk as a cylinder with four grooves, by which its rotation is seen."""
     for name, disk in model.disks.items():
         size = disk_size(model, name)
@@ -178,16 +180,16 @@ def disk_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Pi
         surface = twisted_prism(angles, radii, np.array([size.low, size.high]), np.zeros(2), hole)
         placed = surface.moved((*skeleton.axes[disk.shaft], 0.0))
         attachment = skeleton.rigid(*model.layout.place(f"disks.{name}"), placed.points)
-        yield Piece(f"disks.{name}", "disk", disk.shaft, placed, attachment)
+        yield PartSurface(f"disks.{name}", "disk", disk.shaft, placed, attachment)
 
 
-def point_mass_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def point_mass_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield each point mass as a ball."""
     for name, point in model.point_masses.items():
         z = model.layout.place(f"point_masses.{name}").z
         placed = ball(ball_radius(model, name), detail.segments).moved((*skeleton.axes[point.shaft], z))
         attachment = skeleton.rigid(point.shaft, z, placed.points)
-        yield Piece(f"point_masses.{name}", "point mass", point.shaft, placed, attachment)
+        yield PartSurface(f"point_masses.{name}", "point mass", point.shaft, placed, attachment)
 
 
 # Sizes relative to the shaft's radius there: outer radius and half width of a bearing's ring, height and half width of its foot.
@@ -205,7 +207,7 @@ _FLANGE_WIDTH = 0.35
 _SLEEVE = 1.15
 
 
-def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def bearing_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield each bearing as a ring between shaft and housing, and a foot between housing and ground."""
     for name, bearing in model.bearings.items():
         z = model.layout.place(f"bearings.{name}").z
@@ -228,19 +230,19 @@ def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
             others = [skeleton.on_pedestal(name, surface.points) if bearing.pedestal else ground, ground]
             which = np.concatenate([beside_axis < 0.5 * (radius + housing), [0, 2, 2] * 2]).astype(int)
         choices = [others[0], skeleton.rigid(bearing.shaft, z, surface.points), *others[1:]]
-        yield Piece(f"bearings.{name}", "bearing", bearing.shaft, surface, _select(choices, which))
+        yield PartSurface(f"bearings.{name}", "bearing", bearing.shaft, surface, _select(choices, which))
 
 
-def casing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def casing_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield the surface of each casing that has one; it belongs to no shaft."""
     for name in model.casings:
         surface = model.layout.casing(name).surface
         if surface is not None:
             placed = make_surface(surface.points, [], [surface.triangles])
-            yield Piece(f"casings.{name}", "casing", "", placed, skeleton.on_casing(name, placed.points))
+            yield PartSurface(f"casings.{name}", "casing", "", placed, skeleton.on_casing(name, placed.points))
 
 
-def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def support_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield each support as the sign for the ground below the shaft."""
     for name, support in model.supports.items():
         z = model.layout.place(f"supports.{name}").z
@@ -251,10 +253,10 @@ def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
         surface = surface.moved((*skeleton.axes[support.shaft], 0.0))
         carried = skeleton.rigid(support.shaft, z, surface.points)
         attachment = _select([carried, skeleton.on_ground(surface.points)], np.array([0, 1, 1] * 2))
-        yield Piece(f"supports.{name}", "support", support.shaft, surface, attachment)
+        yield PartSurface(f"supports.{name}", "support", support.shaft, surface, attachment)
 
 
-def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def coupling_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield the two flanges of each coupling and what joins them."""
     for name, coupling in model.couplings.items():
         ends = ((coupling.from_shaft, coupling.from_at), (coupling.to_shaft, coupling.to_at))
@@ -268,7 +270,7 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
             flange = hollow_cylinder(_FLANGE * radius, hole, low, high, detail.segments)
             flange = flange.moved((*skeleton.axes[shaft], 0.0))
             carried = skeleton.rigid(shaft, z, flange.points)
-            yield Piece(f"couplings.{name}", "coupling", shaft, flange, carried)
+            yield PartSurface(f"couplings.{name}", "coupling", shaft, flange, carried)
         # Between them a sleeve where they face each other, or a bar to a shaft that is shown beside the first.
         shafts = coupling.from_shaft, coupling.to_shaft
         z1, z2 = (place.z for place in model.layout.places(f"couplings.{name}"))
@@ -285,20 +287,20 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
             surface = beam(start, end, 0.3 * radius)
             to_second = np.arange(8) >= 4
         by_ends = [skeleton.rigid(s, z, surface.points) for s, z in zip(shafts, (z1, z2), strict=True)]
-        yield Piece(f"couplings.{name}", "coupling", shafts[0], surface, _select(by_ends, to_second.astype(int)))
+        yield PartSurface(f"couplings.{name}", "coupling", shafts[0], surface, _select(by_ends, to_second.astype(int)))
 
 
-def pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+def part_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield the surfaces of all parts of a model."""
     for of_kind in (
-        shaft_pieces,
-        gear_pieces,
-        disk_pieces,
-        point_mass_pieces,
-        bearing_pieces,
-        support_pieces,
-        coupling_pieces,
-        casing_pieces,
+        shaft_surfaces,
+        gear_surfaces,
+        disk_surfaces,
+        point_mass_surfaces,
+        bearing_surfaces,
+        support_surfaces,
+        coupling_surfaces,
+        casing_surfaces,
     ):
         yield from of_kind(model, skeleton, detail)
 

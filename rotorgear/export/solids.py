@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.export.attachment import Attachment, Skeleton, join_attachments
 from rotorgear.export.layout import display_axes
-from rotorgear.export.parts import FINE, LIGHT, Detail, pieces
+from rotorgear.export.parts import FINE, LIGHT, Detail, part_surfaces
 from rotorgear.export.surface import join
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable
@@ -83,12 +83,12 @@ def _largest(vectors: np.ndarray) -> float:
 def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Solids:
     """Return the surfaces of all parts of a model with the nodes of one of its results."""
     skeleton = Skeleton(model, nodes, display_axes(model))
-    found = list(pieces(model, skeleton, detail))
-    surface = join([piece.surface for piece in found])
-    part_names = tuple(dict.fromkeys(piece.part for piece in found))
+    parts = list(part_surfaces(model, skeleton, detail))
+    surface = join([part.surface for part in parts])
+    part_names = tuple(dict.fromkeys(part.part for part in parts))
     shaft_names = tuple(model.shafts)
-    # Cells are the quadrangles of all pieces, then their triangles.
-    counts = [len(piece.surface.quads) for piece in found] + [len(piece.surface.triangles) for piece in found]
+    # Cells are the quadrangles of all parts, then their triangles.
+    counts = [len(part.surface.quads) for part in parts] + [len(part.surface.triangles) for part in parts]
 
     def by_cell(numbers: list[int]) -> np.ndarray:
         return np.repeat(np.array(numbers * 2, dtype=np.int16), counts)
@@ -97,13 +97,13 @@ def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Soli
         points=surface.points,
         quads=surface.quads,
         triangles=surface.triangles,
-        part=by_cell([part_names.index(piece.part) for piece in found]),
-        kind=by_cell([KINDS.index(piece.kind) for piece in found]),
-        shaft=by_cell([shaft_names.index(piece.shaft) if piece.shaft else -1 for piece in found]),
+        part=by_cell([part_names.index(part.part) for part in parts]),
+        kind=by_cell([KINDS.index(part.kind) for part in parts]),
+        shaft=by_cell([shaft_names.index(part.shaft) if part.shaft else -1 for part in parts]),
         part_names=part_names,
         kind_names=KINDS,
         shaft_names=shaft_names,
-        attachment=join_attachments([piece.attachment for piece in found]),
+        attachment=join_attachments([part.attachment for part in parts]),
         node_positions=skeleton.positions(),
     )
 

@@ -38,8 +38,8 @@ class ChunkStream:
         """
         if self.path.is_dir():
             raise WriteError(self.path, "it is a folder; give the name of a file")
-        # Settings as digests: enough to tell another run, whatever their size. What the chunks were computed with stands in
-        # words: histories whose halves come from two programs would belong to neither.
+        # Digests of the settings are enough to recognise another run. Versions of programs are written in full: a history whose
+        # halves come from two versions belongs to neither.
         run = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
         mark = {"program": versions(), "run": run}
         note = self.folder / "settings.json"

@@ -119,20 +119,14 @@ def _order_functions(result: ResponseResult, binary: bool) -> list[bytes]:
     if not result.points:
         raise AnalysisError("order functions are those of named points, and the model has none: give it [points]")
     sets = _geometry(result.nodes)
+    x = result.speeds * RPM_PER_RAD_S
     for k, name in enumerate(result.points):
         node, direction = point_node(result.model, result.nodes, name)
         for at, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True)):
-            function = datasets.Function(
-                datasets.ORDER_FUNCTION,
-                (node + 1, direction + 1),
-                (0, 0),
-                result.speeds * RPM_PER_RAD_S,
-                result.acceleration[at, :, k],
-                datasets.RPM,
-                datasets.ACCELERATION,
-                z=float(ratio),
-                names=(f"{name}, {order}", result.model.title or "rotorgear", "rotorgear"),
-                z_type=datasets.ORDER,
-            )
+            y = result.acceleration[at, :, k]
+            names = (f"{name}, {order}", result.model.title or "rotorgear", "rotorgear")
+            # Over rpm, with the number of the order on the third axis.
+            axes = (datasets.RPM, datasets.ACCELERATION, 0, float(ratio), names, datasets.ORDER)
+            function = datasets.Function(datasets.ORDER_FUNCTION, (node + 1, direction + 1), (0, 0), x, y, *axes)
             sets.append(function_set(function, binary=binary))
     return sets

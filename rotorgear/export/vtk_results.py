@@ -68,7 +68,7 @@ def write_deflections(
                 }
                 shapes = {"displacement*": scaled, "displacement*_m": scaled / scale}
                 save_shape(plain, scratch / f"{name}.vtp", shapes, facts)
-                # What refers to others comes last.
+                # The collection, which refers to the others, comes last.
                 names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, FRAMES, scratch, name)]
         written = publish(scratch, Path(directory), names)
     progress(1.0, "done")

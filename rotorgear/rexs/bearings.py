@@ -90,16 +90,16 @@ def estimated(kind: str, size: Size, static_rating: float | None, contact_angle:
     return radial, axial, words
 
 
-# A stiffness outside these means rigid (1e20, 1e23) or for none (0): in N/m, and in N m/rad.
+# A stiffness outside these bounds, in N/m and in N m/rad, is a placeholder for rigid (1e20, 1e23) or for free (0).
 _STIFFNESS = (1e4, 1e11)
 _TILT = (1.0, 1e9)
-# So does a power of ten from here on, in the unit of the file: nobody computes or measures exactly that.
+# A power of ten from here on, in the unit of the file, is a placeholder too: no computation or measurement gives exactly that.
 _ROUND = 1e10
 # Two statements of one place differ by no more, in m.
 _ONE_PLACE = 1e-5
-# A bore that differs more from the shaft on which it sits is not that of the bearing.
+# A bore that differs from the diameter of its shaft by more than this share is not the bore of the bearing.
 _FITS = 0.35
-# Of a bearing of which nothing is known but that it is one, N/m.
+# Radial stiffness in N/m of a bearing of which neither kind nor size is known.
 _UNKNOWN = 2e8
 # Outer diameter over bore where the shaft's diameter is all that is known.
 _SERIES_2 = 1.48
@@ -236,7 +236,7 @@ def _takes_axial(part: Component, designation: str, structure: Structure) -> boo
     for word in map(str.lower, words):
         if word in (*_FREE_WORDS, *_HELD_WORDS):
             return word in _HELD_WORDS
-    # Nothing said: what the kind of bearing does. Cylindrical rollers N and NU and needles move freely along the shaft.
+    # Where the file says nothing, the kind decides: cylindrical rollers N and NU and needles move freely along the shaft.
     return _kind(part, designation, structure) == "ball" or "tapered" in account.text(part, "bearing_type")
 
 
@@ -259,7 +259,7 @@ def _kind(part: Component, designation: str, structure: Structure) -> str:
 def _guess(
     part: Component, seat: tuple[ShaftPart, float], designation: str, structure: Structure
 ) -> tuple[float, float, str]:
-    """Radial and axial stiffness in N/m and how they were come by."""
+    """Estimated radial and axial stiffness in N/m, and the words that say from what."""
     account = structure.account
     kind = _kind(part, designation or part.name, structure)
     by_designation = size_of_designation(designation or part.name)

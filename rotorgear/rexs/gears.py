@@ -19,9 +19,10 @@ _HELIX = ("helix_angle_reference_diameter", "helix_angle_at_reference_diameter",
 # Heights over the module that a tooth can have; 1 and 1.25 are ISO 53's. Placeholders lie far outside.
 _ADDENDUM = (0.3, 2.5)
 _DEDENDUM = (0.6, 2.5)
-# Axes may be off what teeth and shifts give by a share of the module, as the model file allows; shifts are mended beyond it.
+# The model file allows this difference, over the module, between the shafts' distance and that of teeth and shifts; a larger one
+# is corrected in a shift.
 _FIT = 0.045
-# A profile shift may be mended by so much; more is no rounding but another gear.
+# The largest correction of a profile shift; a larger difference is no rounding, but belongs to another gear.
 _MENDED = 0.3
 # Below this an angle is zero.
 _SPUR = 1e-9

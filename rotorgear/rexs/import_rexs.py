@@ -165,7 +165,7 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     names = Names()
     masses = document.of_type(MASS)
     mass_list = [table for part in masses for table in mass_tables(part, names, shafts, structure)]
-    # Bearings, those between two shafts among them, and couplings, by number.
+    # Bearings (also those between two shafts) and couplings, by number.
     bearings: dict[str, Table] = {}
     couplings: dict[str, Table] = {}
     names = Names()

@@ -198,7 +198,7 @@ def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, acco
     moment = rotation @ [0.0, *across]
     if not np.any(force) and not np.any(moment):
         return None
-    # What the turning of axes leaves of a zero is none.
+    # Components that are rounding of the rotation of axes are zero.
     force, moment = (np.where(np.abs(v) < _ROUNDING * np.abs(v).max(), 0.0, v) for v in (force, moment))
     table = shaft.table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load), z)
     for key, kind, (along, x, y) in (("force", "force", force), ("moment", "torque", moment)):

@@ -23,11 +23,11 @@ _HEADER_LINES = 11
 _MOST_HEADER_LINES = 40
 # The line that closes binary data; some programs write a line end before it, which the format doesn't have.
 _CLOSES = re.compile(rb"[\r\n]{0,2} {0,4}-1 *(?:[\r\n]|\Z)")
-# What programs write before or after the sets; nothing is lost with it.
+# Characters that programs write before or after the sets, and that carry no data.
 _BLANK = "\x00\x1a \t\r\n"
 # Columns may touch (-1.0E+00-1.0E+00), exponents may have a D, three digits, or no letter at all (0.1-100).
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,3}|[+-]\d{3}(?!\d*\.))?")
-# Nothing that is measured is larger, in any unit; what is comes from columns that have run together.
+# No measured value is larger in any unit; a larger number comes from columns that have run together.
 _LARGEST = 1e100
 _LONGEST_WHOLE = 1e10
 

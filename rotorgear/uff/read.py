@@ -270,7 +270,7 @@ def _units(block: Block) -> datasets.Units:
     given = (float(factors[0]), float(factors[1]))
     known = _CODES.get(int(code))
     if known and not np.allclose(given, known, rtol=0.01):
-        # One of the two is wrong, and nobody here can tell which: a thousand times is not to be guessed.
+        # One of the two is wrong, and which one cannot be known here: a factor of a thousand is not guessed.
         meant = f"the factors {known[0]:g} and {known[1]:g} that units code {code} means"
         remedy = "correct one of the two, or make it 9 (the user's own)"
         raise block.problem(2, f"{meant}; {remedy}", f"{given[0]:g} and {given[1]:g}")
