@@ -55,7 +55,7 @@ def keep(settings: CasingSettings, body: ReducedBody) -> None:
 
 
 def key_of(settings: CasingSettings, modes_to: float | None) -> str:
-    """All that a body depends on, as a text: files count by their contents."""
+    """A text that tells all inputs of a body; files enter with their contents."""
     files = tuple((part, hashlib.sha256(path.read_bytes()).hexdigest()) for part, path in settings.files)
     return f"{fingerprint(*_MAKERS)} {files} {modes_to!r} {replace(settings, files=())!r}"
 

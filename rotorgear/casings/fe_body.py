@@ -49,7 +49,7 @@ class FreeSpace:
 
 @dataclass(frozen=True)
 class FiniteElementBody:
-    """A casing's mesh with its matrices, and its places.
+    """A casing's mesh with its matrices, its seats and what holds it.
 
     Attributes:
         settings: of the model file.
@@ -73,7 +73,7 @@ class FiniteElementBody:
 
     @property
     def dofs(self) -> int:
-        """Three of each node."""
+        """Number of displacements, three of each node."""
         return 3 * len(self.mesh.points)
 
     @cached_property
@@ -226,7 +226,7 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
 
 
 def _split(mesh: SolidMesh, settings: CasingSettings) -> SolidMesh:
-    """The mesh split as often as asked for; bores are found before, on the corners that the file has."""
+    """The mesh split as often as the settings say; bores are found before that, on the corners of the file."""
     sets = dict(mesh.sets)
     for name, place in settings.seats:
         if not isinstance(place, str):
@@ -241,7 +241,7 @@ def _split(mesh: SolidMesh, settings: CasingSettings) -> SolidMesh:
 
 
 def _one_body(joined: Joined, settings: CasingSettings) -> None:
-    """All elements hang together, through nodes or joins."""
+    """Refuse a mesh whose elements do not all hang together, through nodes or joins."""
     mesh = joined.mesh
     labels = mesh.parts()
     if labels.max() == 0:
@@ -263,7 +263,7 @@ def _one_body(joined: Joined, settings: CasingSettings) -> None:
 
 
 def _apart(body: FiniteElementBody) -> None:
-    """No node is in two seats, or in a seat and held; no mount is on held nodes alone."""
+    """Refuse nodes that are in two seats, or in a seat and held, and mounts on held nodes alone."""
     settings = body.settings
     seats = body.seats
     held = body.held

@@ -29,7 +29,7 @@ class NamedSet:
         return NamedSet(nodes[nodes >= 0], [face[(face >= 0).all(axis=1)] for face in faces])
 
     def faces_among(self, faces: np.ndarray, corners: int) -> np.ndarray:
-        """Which (f,) of faces (f, m), with their corners first, the set has: by its faces, or by its nodes where it has none."""
+        """Which (f,) of faces (f, m), corners first, belong to the set: by its faces, or by its nodes where it has no faces."""
         if self.faces:
             own = {tuple(row) for listed in self.faces for row in np.sort(listed[:, :corners], axis=1).tolist()}
             return np.array([tuple(row) in own for row in np.sort(faces[:, :corners], axis=1).tolist()], dtype=bool)
@@ -41,7 +41,7 @@ class NamedSet:
 
 @dataclass
 class FileMesh:
-    """What a reader found.
+    """The contents of a mesh file.
 
     Attributes:
         points: (p, 3) in the unit of the file.
@@ -57,7 +57,7 @@ class FileMesh:
 
 
 def not_read(cards: list[str]) -> list[str]:
-    """The note on what a deck puts on a body beside its elements; none where there is nothing."""
+    """The note on cards of a deck that are not read; no note where there are none."""
     if not cards:
         return []
     return [f"Not read from the deck: {', '.join(cards)}; seats, mounts, joins and masses stand in the model file."]

@@ -25,7 +25,7 @@ _ROUNDING = 1e-12
 
 
 def no_mechanism(settings: CasingSettings, mesh: SolidMesh, held: np.ndarray, springs: np.ndarray) -> None:
-    """What holds a body leaves it no rigid motion; nothing at all may hold it.
+    """Refuse a body that is held, but not against all rigid motions; a body that nothing holds is sound.
 
     Args:
         settings: of the model file.
@@ -67,13 +67,13 @@ def _scaled_motions(points: np.ndarray) -> np.ndarray:
 
 
 def _on_springs(springs: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """How far motions (3p, k) stretch the springs of mounts, (m, k); only which are held counts, not how stiffly."""
+    """Stretch (m, k) of the springs of mounts by motions (3p, k), scaled to unit length: stiffnesses do not count."""
     stretched = springs.T @ motions
     return np.asarray(stretched / np.linalg.norm(stretched, axis=1)[:, None].clip(min=1e-300))
 
 
 def no_hinges(settings: CasingSettings, joined: Joined, held: np.ndarray, springs: np.ndarray) -> None:
-    """Parts that share edges or nodes only do not move against each other: by several of these, by joins, or by what holds them.
+    """Refuse parts that share edges or nodes only and can turn about them without strain.
 
     Args:
         settings: of the model file.
@@ -98,7 +98,7 @@ def no_hinges(settings: CasingSettings, joined: Joined, held: np.ndarray, spring
 
 
 def _parts_by_faces(mesh: SolidMesh) -> tuple[int, np.ndarray]:
-    """How many parts there are whose elements hang together by faces, and the part (e,) of each element."""
+    """Number of parts whose elements are connected by faces, and the part (e,) of each element."""
     shape = mesh.element
     faces = np.sort(mesh.cells[:, np.array(shape.faces)].reshape(-1, len(shape.faces[0])), axis=1)
     order = np.lexsort(faces.T)
@@ -111,7 +111,7 @@ def _parts_by_faces(mesh: SolidMesh) -> tuple[int, np.ndarray]:
 
 
 def _relative_motions(joined: Joined, part_of: np.ndarray, held: np.ndarray, springs: np.ndarray) -> np.ndarray:
-    """G (6c, 6c): squares of what rigid motions of c parts do to what joins them and holds them."""
+    """G (6c, 6c): quadratic form of the stretch of joints, springs and held nodes by rigid motions of c parts."""
     mesh = joined.mesh
     count = int(part_of.max()) + 1
     nodes = len(mesh.points)

@@ -69,7 +69,7 @@ def read_mesh(path: Path, address: str) -> FileMesh:
 
 
 def _by_meshio(path: Path) -> FileMesh:
-    """A file by meshio: what it prints and how it ends is caught."""
+    """Read a file by meshio; its output and its exit of the process are caught."""
     try:
         import meshio
     except ImportError:
@@ -132,7 +132,7 @@ def _sets(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSe
 
 
 def _members(data: list[np.ndarray], name: str) -> Iterator[tuple[str, list[np.ndarray]]]:
-    """Yield each set that data (by block) mark, with who is in it."""
+    """Yield each set that whole numbers (by block) mark, and its members in each block."""
     if ":" in name or name in _TAGS or any(values.ndim != 1 or values.dtype.kind not in "iub" for values in data):
         return
     data = [values.astype(np.int64) for values in data]

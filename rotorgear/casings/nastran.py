@@ -131,7 +131,7 @@ def _listed(fields: list[str]) -> Iterator[tuple[int, int]]:
 
 
 def _fields(line: str) -> list[str]:
-    """Name and up to eight (large: four) fields of a line, without what marks a continuation."""
+    """Name and up to eight (large: four) fields of a line, without the mark of a continuation."""
     if "," in line:
         return [text.strip().rstrip("*") for text in line.split(",")][:9]
     width = 16 if "*" in line[:8] else 8

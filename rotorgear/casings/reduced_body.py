@@ -156,7 +156,7 @@ class ReducedBody:
         return rigid_coordinates(self.size, self.seat_points)
 
     def seat(self, name: str) -> slice:
-        """Where the six motions x y z rx ry rz of a seat stand among the coordinates."""
+        """The places of the six motions x y z rx ry rz of a seat among the coordinates."""
         first = 6 * self.seats.index(name)
         return slice(first, first + 6)
 

@@ -138,7 +138,7 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
 
 
 def _only_kind(found: FileMesh, address: str) -> str:
-    """The one kind of solids in a file."""
+    """The kind of solids in a file; others beside it are refused."""
     kinds = [kind for kind in SOLIDS if kind in found.cells]
     others = [kind for kind in found.cells if kind not in SOLIDS and kind.startswith(SOLID_BEGINNINGS)]
     if len(kinds) == 1 and not others:
@@ -200,7 +200,7 @@ def _right_handed(points: np.ndarray, cells: np.ndarray, shape: Element, address
 
 
 def _apart(cells: np.ndarray, shape: Element, address: str) -> None:
-    """Two elements on a face see it from its two sides; else they lie in one another."""
+    """Refuse elements that lie in one another: two elements of one face are on its two sides."""
     faces = cells[:, np.array(shape.faces)].reshape(-1, len(shape.faces[0]))
     first = np.argmin(faces, axis=1)
     turned = np.take_along_axis(faces, (first[:, None] + np.arange(faces.shape[1])) % faces.shape[1], axis=1)
@@ -242,7 +242,7 @@ def jacobians(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarr
 
 
 def _unfolded(mesh: SolidMesh, address: str) -> SolidMesh:
-    """The mesh with all Jacobians positive: mid-nodes of folded elements are put on straight edges, as often as it takes."""
+    """The mesh with all Jacobians positive: mid-nodes of folded elements are moved onto straight edges."""
     shape = mesh.element
     points = mesh.points
     reference = _corner_volumes(points, mesh.cells, shape)

@@ -15,7 +15,7 @@ _FALSE = ("false", "0", "no")
 
 @dataclass
 class Account:
-    """Collects over the whole import, so that one report has it all."""
+    """Assumptions, problems and warnings of the whole import, for one report."""
 
     assumptions: list[Assumption] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
@@ -86,7 +86,7 @@ class Account:
         return None
 
     def truth(self, component: Component, name: str) -> bool | None:
-        """A truth; None where it is not said."""
+        """A truth value; None where the file has none."""
         text = self.text(component, name).lower()
         return True if text in _TRUE else False if text in _FALSE else None
 

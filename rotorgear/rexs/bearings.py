@@ -214,7 +214,7 @@ def _between(header: str, remark: str, first: tuple[ShaftPart, float], second: t
 
 
 def _given(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:
-    """A stiffness that the file gives; None where it gives none, or one that means rigid or free."""
+    """A stiffness of the file; None where there is none, or a placeholder for rigid or free."""
     value = account.number(part, names, kind)
     bounds = _STIFFNESS if kind == "stiffness" else _TILT
     if value is None or not bounds[0] <= value <= bounds[1]:
@@ -280,7 +280,7 @@ def _guess(
 
 
 def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> Table | None:
-    """Table of a coupling between two coaxial shafts; None where it has not two, and where it is open."""
+    """Table of a coupling between two coaxial shafts; None where it joins no two shafts, or is open."""
     account = structure.account
     inner, outer = _sides(part, shafts, structure)
     if inner is None or outer is None:

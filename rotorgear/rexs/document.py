@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Value:
-    """A value as the file has it: text, number, truth or a list of them, and the text of its unit."""
+    """A value as the file has it: text, number, truth value or a list of them, and the text of its unit."""
 
     raw: object
     unit: str = ""

@@ -26,7 +26,7 @@ _CODES = {"float32": "f", "float64": "d", "int32": "i", "int64": "q"}
 
 
 class _UnreadableError(Exception):
-    """Why a file is no REXS."""
+    """The reason why a file is no REXS file."""
 
 
 def read_document(path: str | Path) -> Document:
@@ -100,7 +100,7 @@ def _from_xml(data: bytes) -> Document:
 
 
 def _by_id(components: Iterable[Component]) -> dict[str, Component]:
-    """Components by their id, which no two may share: relations would mean one or the other."""
+    """Components by their id; two components of one id are refused, because relations would be ambiguous."""
     found: dict[str, Component] = {}
     for one in components:
         other = found.setdefault(one.id, one)

@@ -77,7 +77,7 @@ class ShaftPart:
         return Table(header, remark, [("shaft", text(self.name), ""), ("at", quantity(z, "length"), "")])
 
     def place(self, component: Component, z: float, account: Account) -> float:
-        """A z that lies on the shaft; outside by no more than rounding it is drawn in, else a problem."""
+        """A z on the shaft: one that is outside by rounding is moved to the end, any other is a problem."""
         low, high = self.ends
         inside = min(max(z, low), high)
         if abs(inside - z) > _SAME_PLACE:
@@ -88,7 +88,7 @@ class ShaftPart:
 
 
 def read_sections(shaft: Component, structure: Structure) -> tuple[Section, ...]:
-    """The sections of a shaft by rising u, without gaps; a gap is filled with the section before it, and told."""
+    """The sections of a shaft by rising u, without gaps; a gap is filled with the section before it, with a remark."""
     account = structure.account
     given: list[Section] = []
     u = 0.0
@@ -142,7 +142,7 @@ def read_sections(shaft: Component, structure: Structure) -> tuple[Section, ...]
 
 
 def shaft_axes(structure: Structure, pairs: list[Pair]) -> dict[str, Axis]:
-    """Axes of all shafts by number, in the frame of the model; it becomes that of the shafts where these run otherwise.
+    """Axes of all shafts by number, in the frame of the model; the frame takes the direction of the shafts where theirs differs.
 
     Shafts that the file does not place follow from the centre distance and the angle of the stages: the second gear is
     at v = a sin(phi), w = a cos(phi) from the first, phi = rotating_angle_around_neg_u_axis counted from w.

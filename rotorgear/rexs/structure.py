@@ -149,7 +149,7 @@ def refuse_other_kinds(document: Document, source: str) -> None:
 
 
 class Structure:
-    """Frames and relations of the components of a document, asked for by what they mean.
+    """Frames and relations of the components of a document, by their meaning.
 
     `model` is the frame of the model in the space of the file, by default that of the gear unit.
 
@@ -207,7 +207,7 @@ class Structure:
         return ""
 
     def _known(self, numbers: Iterable[str]) -> list[Component]:
-        """The components that the file has of some numbers."""
+        """The components of some numbers, without numbers that the file lacks."""
         return [self.document.components[number] for number in numbers if number in self.document.components]
 
     def _linked(self, owner: Component, types: tuple[str, ...], role: str, *others: str) -> list[Component]:
@@ -251,7 +251,7 @@ class Structure:
         return found
 
     def note_left_out(self, taken: set[str]) -> None:
-        """Name the parts of the file that the model has not."""
+        """Note the parts of the file that are not in the model."""
         kinds = Counter(part.type for part in self.document.components.values() if part.id not in taken)
         for kind, count in kinds.items():
             if kind not in _SILENT and not any(word in kind for word in _DATA_WORDS):

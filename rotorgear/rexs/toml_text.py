@@ -73,7 +73,7 @@ class Table:
 
 
 def comment_line(words: str) -> str:
-    """Words as a comment takes them: control characters may not."""
+    """Words for a comment, with blanks in place of control characters, which TOML forbids."""
     return "".join(letter if letter.isprintable() else " " for letter in words)
 
 
@@ -84,7 +84,7 @@ class Names:
         self._taken: set[str] = set()
 
     def of(self, wanted: str, kind: str, component_id: str) -> str:
-        """A name as near as can be to that of the component."""
+        """A free name, as near as possible to that of the component."""
         plain = unicodedata.normalize("NFKD", wanted.replace("ß", "ss")).encode("ascii", "ignore").decode()
         name = re.sub(r"[^0-9A-Za-z]+", "_", plain).strip("_").lower()[:40] or f"{kind}_{component_id}"
         if name in self._taken:

@@ -52,7 +52,7 @@ _FORCES = (datasets.REACTION, datasets.FORCE)
 
 
 def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Function, list[str]]:
-    """Return a function in SI, and sentences on what had to be guessed.
+    """Return a function in SI, and sentences on assumptions.
 
     Raises:
         ModelError: a header that makes no sense, fewer values than it says, numbers that are not finite.
@@ -152,7 +152,7 @@ def _parted(
 def _from_bytes(
     block: Block, count: int, kind: int, even: bool
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | NDArray[np.complex128], list[str]]:
-    """The same from binary data, with sentences on what had to be guessed."""
+    """The same from binary data, with sentences on assumptions."""
     data = block.data or b""
     order, form, *_ = binary_fields(block.identifier)
     if form in _OTHER_FLOATS:
@@ -189,7 +189,7 @@ def _from_bytes(
 
 
 def _sane(values: NDArray[np.float64]) -> float:
-    """Share of numbers of a size that something measured may have."""
+    """Share of numbers that have the size of a measured quantity."""
     with np.errstate(invalid="ignore", over="ignore"):
         size = np.abs(values)
         return float(np.mean((size == 0.0) | ((size > _LEAST) & (size < _MOST))))
