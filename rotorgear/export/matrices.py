@@ -9,7 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.request import check_request, speed_in_si
-from rotorgear.analysis.response.state_space import frf_system
+from rotorgear.analysis.response.mesh import meshed
+from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.export.files import reason_of, replacing
 from rotorgear.model.model import Model
@@ -107,7 +108,7 @@ def write_matrices(
         raise AnalysisError("matrices need fmax (--fmax), the frequency in Hz that the mesh serves, or elements")
     if fmax is not None and not 0.0 < fmax < float("inf"):
         raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
-    system, _ = frf_system(model, turns, fmax or 1.0, elements)
+    system = meshed(model, about_mean(model, [turns or None], turns), turns, fmax or 1.0, elements)
     found = system.matrices(turns)
     parts = {
         "mass": system.mass,

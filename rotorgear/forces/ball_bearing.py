@@ -21,6 +21,7 @@ ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology 111 (1989) 142.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -34,6 +35,7 @@ from rotorgear.forces.rolling import (
     CAGE_SPEED,
     TURN,
     RollingElements,
+    contact_ellipses,
     point_contact,
     point_pressure,
     rows_of,
@@ -53,11 +55,9 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     distance = p[DISTANCE]
     radial = p[RADIAL]
     arm = p[ARM]
-    for i in range(5):
-        F[i] = 0.0
-    for i in range(25):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
+    F[:] = 0.0
+    Kd[:] = 0.0
+    Kv[:] = 0.0
     stored = 0.0
     turned = 0.0
     loaded = 0.0
@@ -101,10 +101,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         du = -d[0] * n + d[1] * c - along * (d[3] * c + d[4] * n)
         dw = arm * (d[3] * c + d[4] * n)
         turned += Q * (cosine * du + sine * dw) * s[CAGE_SPEED]
-    energy[0] = stored
-    energy[1] = turned
-    energy[2] = 0.0
-    energy[3] = loaded
+    energy[:] = stored, turned, 0.0, loaded
 
 
 @dataclass(frozen=True)
@@ -118,14 +115,11 @@ class BallBearing(RollingElements):
     pitch_diameter: float = parameter("m", "pitch diameter D_pw", above=0.0)
     inner_groove: float = parameter("", "groove radius of the inner ring over D_w", 0.52, above=0.5)
     outer_groove: float = parameter("", "groove radius of the outer ring over D_w", 0.53, above=0.5)
-    clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
     contact_angle: float = parameter(
         "rad", "free contact angle of an angular contact bearing; its sign is that of the axial load it takes", 0.0
     )
     youngs_modulus: float = parameter("Pa", "of balls and rings", 210e9, above=0.0)
     poisson_ratio: float = parameter("", "of balls and rings", 0.3, above=-1.0, below=0.5)
-    order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
-    phase: float = parameter("rad", "angle of a ball at angle 0", 0.0)
     contact: float = parameter(
         "N/m^1.5",
         "c_p, load over deflection^(3/2) of a ball between both raceways; 0: by Hertz from the geometry",
@@ -134,9 +128,6 @@ class BallBearing(RollingElements):
     )
     preload: float = parameter(
         "m", "displacement along z by which the rings are pressed together when the shaft is at 0; with a sign", 0.0
-    )
-    reference: tuple[float, ...] = parameter(
-        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * 5
     )
     arrangement: str = parameter(
         "", "rows and the sides that they press to", "single", choices=("single", "O", "X", "tandem", "four-point")
@@ -165,20 +156,18 @@ class BallBearing(RollingElements):
     @property
     def contact_constant(self) -> float:
         """c_p in N/m^1.5, as given or by Hertz."""
-        return self.contact or point_contact(*self._contacts)
+        return self.contact or point_contact(self._ellipses, self._modulus)
 
     @property
-    def _contacts(self) -> tuple[float, ...]:
-        """What Hertz's formulas ask of the geometry."""
-        return (
-            self.ball_diameter,
-            self.pitch_diameter,
-            self.inner_groove * self.ball_diameter,
-            self.outer_groove * self.ball_diameter,
-            self.contact_angle,
-            self.youngs_modulus,
-            self.poisson_ratio,
-        )
+    def _ellipses(self) -> Iterator[tuple[float, float]]:
+        D = self.ball_diameter
+        grooves = self.inner_groove * D, self.outer_groove * D
+        return contact_ellipses(D, self.pitch_diameter, *grooves, self.contact_angle)
+
+    @property
+    def _modulus(self) -> float:
+        """E'."""
+        return self.youngs_modulus / (1.0 - self.poisson_ratio**2)
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
@@ -221,7 +210,7 @@ class BallBearing(RollingElements):
         along = side * axial + d[2] + arm * tilt
         delta = np.hypot(across, along) - A
         load = self.contact_constant * np.maximum(delta, 0.0) ** 1.5
-        inner, outer = point_pressure(load, *self._contacts)
+        inner, outer = point_pressure(load, self._ellipses, self._modulus)
         return RollingLoads(row, phi, np.where(delta > 0.0, np.arctan2(along, across), 0.0), load, delta, inner, outer)
 
     @classmethod

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import Any
 
 # Outer diameter in mm over the bore code, by the series of diameters: 0 light, 2 medium, 3 heavy (ISO 15; makers' catalogues).
@@ -46,55 +45,40 @@ _FORM = re.compile(
 )
 
 
-@dataclass(frozen=True)
-class InnerGeometry:
-    """What a designation says: keys of `rolling` in SI and radians, and where they come from; `estimated` if from the outside."""
+def inner_geometry(designation: str) -> tuple[dict[str, Any], str]:
+    """What rolls in a bearing such as 6205, 7218 B, QJ 212, NJ209 or 30209, and where that is published.
 
-    keys: dict[str, Any]
-    source: str
-    estimated: bool
-
-
-def inner_geometry(designation: str) -> InnerGeometry | None:
-    """What rolls in a bearing such as 6205, 7218 B, QJ 212, NJ209 or 30209; None for a designation that is not in the tables."""
+    Returns:
+        Keys of `rolling` in SI and radians, none for a designation that is not in the tables, and the source; "" of an estimate.
+    """
     found = _FORM.match(designation.strip().upper())
-    if found is None:
-        return None
-    series = found["series"].replace(" ", "")
-    number = int(found["code"])
-    outers = _OUTER.get(series[-1], ())
-    if number >= len(outers):
-        return None
+    series = found["series"].replace(" ", "") if found else ""
+    number = int(found["code"]) if found else 0
+    outers = _OUTER.get(series[-1:], ())
+    known_tapered = series in _TAPERED_ANGLES and number >= 3
+    if found is None or number >= len(outers) or (series[0] == "3" and not known_tapered):
+        return {}, ""
+    name = series + found["code"]
     bore = _BORES.get(found["code"], 5.0 * number)
     outer = float(outers[number])
-    kind = {"6": "ball", "7": "ball", "Q": "four-point", "N": "roller", "3": "tapered"}[series[0]]
-    if kind == "tapered" and (number < 3 or series not in _TAPERED_ANGLES):
-        return None
-    share, filled, slender = _SHARES["angular" if series[0] == "7" else kind]
-    known = _KNOWN.get(series + found["code"])
-    if known is not None:
-        count, element, pitch, source = known
-    else:
-        element = share * (outer - bore)
-        pitch = 0.5 * (outer + bore)
-        count = round(filled * math.pi * pitch / element)
-        source = f"estimated from {bore:g} x {outer:g} mm"
-    keys: dict[str, Any] = {
-        "kind": kind,
-        "elements": count,
-        "element_diameter": 1e-3 * element,
-        "pitch_diameter": 1e-3 * pitch,
-    }
+    kind, shape, angle = {
+        "6": ("ball", "ball", None),
+        "7": ("ball", "angular", _ANGLES.get(found["suffix"], 40.0)),
+        "Q": ("four-point", "four-point", _FOUR_POINT_ANGLE),
+        "N": ("roller", "roller", None),
+        "3": ("tapered", "tapered", _TAPERED_ANGLES.get(series)),
+    }[series[0]]
+    share, filled, slender = _SHARES[shape]
+    element = share * (outer - bore)
+    pitch = 0.5 * (outer + bore)
+    estimate = (round(filled * math.pi * pitch / element), element, pitch, "")
+    count, element, pitch, source = _KNOWN.get(name, estimate)
+    sizes = {"element_diameter": 1e-3 * element, "pitch_diameter": 1e-3 * pitch}
     if slender is not None:
-        keys["length"] = 1e-3 * (12.0 if series + found["code"] == "NJ209" else slender * element)
-    angle = {
-        "7": _ANGLES.get(found["suffix"], 40.0),
-        "Q": _FOUR_POINT_ANGLE,
-        "3": _TAPERED_ANGLES.get(series, 0.0),
-    }.get(series[0])
+        sizes["length"] = 1e-3 * (12.0 if name == "NJ209" else slender * element)
     if angle is not None:
-        keys["contact_angle"] = math.radians(angle)
-    return InnerGeometry(keys, source, known is None)
+        sizes["contact_angle"] = math.radians(angle)
+    return {"kind": kind, "elements": count, **sizes}, source
 
 
 CLASSES = ("C2", "CN", "C3", "C4", "C5")

@@ -3,7 +3,7 @@
     (A p)_k = a_k p_k - b_k p_(k-1) - b_(k+1) p_(k+1) - c_k p_(k-columns) - c_(k+columns) p_(k+columns)
 
 is the discrete -div(h^3 grad p): a on the diagonal, b towards the node before in the same row, c towards that in the row before,
-0 where there is none. Cavitation of Swift and Stieber, p >= 0, A p >= push, p (A p - push) = 0, is a linear complementarity
+0 where there is none. Cavitation of Swift and Stieber, p >= 0, A p >= source, p (A p - source) = 0, is a linear complementarity
 problem, solved exactly by changes of the set of nodes that carry, from that of the problem with one unknown a row on: it ends as
 any guess does, after a few factorisations in place of up to twenty. Murty, Linear Complementarity (1988).
 """
@@ -66,7 +66,7 @@ def applied(a, b, c, columns, x, out):  # type: ignore[no-untyped-def]
 
 @compiled(entry=False)
 def assemble(a, b, c, columns, free, begin, A):  # type: ignore[no-untyped-def]
-    """Fill A (n, columns + 1) from the row `begin` on; nodes that do not carry stand alone."""
+    """Fill A (n, columns + 1) from the row `begin` on; the row of a node that does not carry is that of the identity."""
     for k in range(begin, a.size):
         A[k] = 0.0
         if not free[k]:
@@ -80,7 +80,7 @@ def assemble(a, b, c, columns, free, begin, A):  # type: ignore[no-untyped-def]
 
 
 @compiled(entry=False)
-def complementary(a, b, c, columns, push, A, free, p):  # type: ignore[no-untyped-def]
+def complementary(a, b, c, columns, source, A, free, p):  # type: ignore[no-untyped-def]
     """Fill the factors A (n, columns + 1) and p (n,), and change the guess `free` (n,) until it is right."""
     n = a.size
     left = np.zeros(n)
@@ -89,12 +89,12 @@ def complementary(a, b, c, columns, push, A, free, p):  # type: ignore[no-untype
         assemble(a, b, c, columns, free, begin, A)
         factor(A, free, begin, columns)
         for k in range(n):
-            p[k] = push[k] if free[k] else 0.0
+            p[k] = source[k] if free[k] else 0.0
         solve(A, n, columns, p)
         applied(a, b, c, columns, p, left)
         begin = n
         for k in range(n):
-            if (free[k] and p[k] < 0.0) or (not free[k] and left[k] < push[k]):
+            if (free[k] and p[k] < 0.0) or (not free[k] and left[k] < source[k]):
                 free[k] = not free[k]
                 begin = min(begin, k)
         if begin == n:
@@ -102,7 +102,7 @@ def complementary(a, b, c, columns, push, A, free, p):  # type: ignore[no-untype
 
 
 @compiled(entry=False)
-def rows_that_carry(a, b, c, columns, push, free):  # type: ignore[no-untyped-def]
+def rows_that_carry(a, b, c, columns, source, free):  # type: ignore[no-untyped-def]
     """Guess which nodes are free to carry: the rows that do where all have one profile, that of a middle row alone."""
     rows = a.size // columns
     middle = rows // 2 * columns
@@ -116,28 +116,28 @@ def rows_that_carry(a, b, c, columns, push, free):  # type: ignore[no-untyped-de
     solve(A, columns, 1, profile)
     row_a = np.zeros(rows)
     row_c = np.zeros(rows)
-    row_push = np.zeros(rows)
+    row_source = np.zeros(rows)
     for i in range(rows):
         for j in range(columns):
             k = i * columns + j
             row_a[i] += profile[j] * (a[k] * profile[j] - 2.0 * b[k] * profile[j - 1])
             row_c[i] += profile[j] ** 2 * c[k]
-            row_push[i] += profile[j] * push[k]
+            row_source[i] += profile[j] * source[k]
     row_free = np.ones(rows, dtype=np.bool_)
-    complementary(row_a, np.zeros(rows), row_c, 1, row_push, np.zeros((rows, 2)), row_free, np.zeros(rows))
+    complementary(row_a, np.zeros(rows), row_c, 1, row_source, np.zeros((rows, 2)), row_free, np.zeros(rows))
     for k in range(a.size):
         free[k] = row_free[k // columns]
 
 
 @compiled(entry=False)
-def carried(a, b, c, columns, push, cut, A, free, p):  # type: ignore[no-untyped-def]
+def carried(a, b, c, columns, source, cut, A, free, p):  # type: ignore[no-untyped-def]
     """Fill the factors A (n, columns + 1), which nodes are free to carry, and p (n,); `cut`: all are, and p has any sign."""
     free[:] = True
     if cut:
         assemble(a, b, c, columns, free, 0, A)
         factor(A, free, 0, columns)
-        p[:] = push
+        p[:] = source
         solve(A, a.size, columns, p)
     else:
-        rows_that_carry(a, b, c, columns, push, free)
-        complementary(a, b, c, columns, push, A, free, p)
+        rows_that_carry(a, b, c, columns, source, free)
+        complementary(a, b, c, columns, source, A, free, p)

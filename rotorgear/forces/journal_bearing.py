@@ -22,19 +22,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, parameter
-from rotorgear.forces.shell import add_wall, place_in_shell
-from rotorgear.solvers.time.compiled import force_function, schedule_function
+from rotorgear.forces.shell import CLEARANCE, LENGTH, RADIUS, SPEED, VISCOSITY, WALL, add_wall, place_in_shell, schedule
+from rotorgear.solvers.time.compiled import force_function
 
-VISCOSITY, RADIUS, LENGTH, CLEARANCE, ORDER, CONTACT, WALL = range(7)  # of the parameters
-SPEED = 0  # of the state
 # Gauss points over the half circle: A to 1e-9 up to an eccentricity of 0.95.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
-
-
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Speed of the journal."""
-    s[SPEED] = p[ORDER] * speed
 
 
 @force_function
@@ -45,10 +37,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     ux = v[0] + half * d[1]
     uy = v[1] - half * d[0]
     squeeze = np.hypot(ux, uy)
-    place = np.zeros(5)
-    touches = place_in_shell(d, p[CONTACT] * c, place)
-    x = place[0]
-    y = place[1]
+    place = place_in_shell(d, p)
     size = p[VISCOSITY] * p[RADIUS] * p[LENGTH] ** 3
     middle = np.arctan2(uy, ux)
     axx = 0.0
@@ -63,7 +52,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             angle = middle + side * np.pi + 0.5 * np.pi * _NODES[i]
             nx = np.cos(angle)
             ny = np.sin(angle)
-            h = c - x * nx - y * ny
+            h = c - place.x * nx - place.y * ny
             weight = size * 0.5 * np.pi * _WEIGHTS[i] / h**3 * (0.5 if squeeze == 0.0 else 1.0)
             axx += weight * nx * nx
             axy += weight * nx * ny
@@ -86,7 +75,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     Kv[3] = ayy
     energy[1] = half * (film[0] * d[1] - film[1] * d[0])
     energy[2] = film[0] * ux + film[1] * uy
-    energy[3] = 1.0 if touches else 0.0
+    energy[3] = place.touches
 
 
 @dataclass(frozen=True)

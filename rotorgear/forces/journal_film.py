@@ -15,9 +15,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_pressure import AROUND, FIRST, force, pad_film, schedule
+from rotorgear.forces.journal_pressure import AROUND, FIRST, force, pad_film
 from rotorgear.forces.law import parameter, refuse
-from rotorgear.forces.oil_film import TURN, JournalOil, power_loss, side_flow
+from rotorgear.forces.oil_film import TURN, JournalOil
+from rotorgear.forces.shell import schedule
 
 
 @dataclass(frozen=True)
@@ -71,54 +72,22 @@ class JournalFilm(JournalOil):
 
     def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> FilmField:
         """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
-        t, z, pressure = self.pressure(d, speed=speed)
-        p = self.settled(d).parameters()
-        c_pad = self.pad_clearance
-        omega = self.order * speed
-        across = int(p[AROUND]) - 1
-        dz = 0.5 * self.length / self.along
-        gap = np.zeros(t.size)
-        flow = 0.0
-        loss = 0.0
-        for pad in range(self.lobes):
-            rows = slice(pad * across, (pad + 1) * across)
-            _, extent, least = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
-            h = c_pad - d[0] * np.cos(t[rows]) - d[1] * np.sin(t[rows]) - self.preload * c_pad * np.cos(t[rows] - least)
-            step = self.radius * extent / int(p[AROUND])
-            gap[rows] = h
-            flow += side_flow(h, pressure[rows], dz, step, self.viscosity)
-            loss += power_loss(h, pressure[rows], dz, step, self.viscosity, self.radius * omega)
-        return FilmField(t, gap, pressure, flow, loss, z)
+        return self.field_at(d, (0.0, 0.0), speed)
 
-    def pressure(self, d: Any, v: Any = (0.0, 0.0), *, speed: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Angles (t,) in rad, places z (j,) in m from the middle, and the pressure (t, j) in Pa over half the length."""
+    def field_at(self, d: Any, v: Any, speed: float) -> FilmField:
+        """The film at a speed of the reference with the journal at displacements d and velocities v (2,)."""
         p = self.settled(d).parameters()
         around = int(p[AROUND])
-        along = self.along
-        angles = []
-        found = []
-        for pad in range(self.lobes):
-            start, extent, least = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
-            field = np.zeros((around - 1, along))
-            pad_film(
-                p,
-                self.order * speed,
-                d[0],
-                d[1],
-                v[0],
-                v[1],
-                start,
-                extent,
-                least,
-                np.zeros(2),
-                np.zeros(4),
-                np.zeros(4),
-                field,
-            )
-            angles.append(start + extent * np.arange(1, around) / around)
-            found.append(field)
-        z = 0.5 * self.length * (np.arange(along) + 0.5) / along
-        return np.concatenate(angles), z, np.concatenate(found)
+        c_pad = self.pad_clearance
+        pads = []
+        for start, extent, least in p[FIRST:].reshape(-1, 3):
+            pressure = np.zeros((around - 1, self.along))
+            none = (np.zeros(2), np.zeros(4), np.zeros(4))
+            pad_film(p, self.order * speed, d[0], d[1], v[0], v[1], start, extent, least, *none, pressure)
+            t = start + extent * np.arange(1, around) / around
+            h = c_pad - d[0] * np.cos(t) - d[1] * np.sin(t) - self.preload * c_pad * np.cos(t - least)
+            pads.append((t, h, pressure, extent))
+        return self.film_field(pads, speed)
 
     @classmethod
     def examples(cls) -> tuple[JournalFilm, ...]:

@@ -19,20 +19,11 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.forces.film_grid import applied, carried, solve
-from rotorgear.forces.shell import add_wall, place_in_shell
-from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
+from rotorgear.forces.shell import CLEARANCE, LENGTH, MORE, RADIUS, SPEED, VISCOSITY, WALL, add_wall, place_in_shell
+from rotorgear.solvers.time.compiled import compiled, force_function
 
-# Of the parameters; then start, extent, place of the least gap of each pad.
-VISCOSITY, RADIUS, LENGTH, CLEARANCE, ORDER, CONTACT, WALL, PRELOAD, AROUND, ALONG, CUT, FOLLOWS, PADS, FIRST = range(
-    14
-)
-SPEED = 0  # of the state
-
-
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Speed of the journal."""
-    s[SPEED] = p[ORDER] * speed
+# Of the parameters behind those of every journal bearing; then start, extent, place of the least gap of each pad.
+PRELOAD, AROUND, ALONG, CUT, FOLLOWS, PADS, FIRST = range(MORE, MORE + 7)
 
 
 @compiled(entry=False)
@@ -61,29 +52,27 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
     per_t = 1.0 / (p[RADIUS] * dt) ** 2
     per_z = 1.0 / dz**2
     c_pad = p[CLEARANCE] / (1.0 - p[PRELOAD])
-    cosine = np.zeros(around + 1)
-    sine = np.zeros(around + 1)
+    # n = (cos, sin) and the gap, at the nodes and between them.
     h = np.zeros(around + 1)
+    normal = np.zeros((2, around + 1))
     middle = np.zeros(around)
-    middle_c = np.zeros(around)
-    middle_s = np.zeros(around)
+    middle_normal = np.zeros((2, around))
     for i in range(around + 1):
         t = start + i * dt
-        cosine[i] = np.cos(t)
-        sine[i] = np.sin(t)
-        h[i] = c_pad - x * cosine[i] - y * sine[i] - p[PRELOAD] * c_pad * np.cos(t - least)
-        if i < around:
-            t += 0.5 * dt
-            middle_c[i] = np.cos(t)
-            middle_s[i] = np.sin(t)
-            middle[i] = c_pad - x * middle_c[i] - y * middle_s[i] - p[PRELOAD] * c_pad * np.cos(t - least)
-    push = np.zeros(n)
+        normal[0, i] = np.cos(t)
+        normal[1, i] = np.sin(t)
+        h[i] = c_pad - x * normal[0, i] - y * normal[1, i] - p[PRELOAD] * c_pad * np.cos(t - least)
+    for i in range(around):
+        t = start + i * dt + 0.5 * dt
+        middle_normal[0, i] = np.cos(t)
+        middle_normal[1, i] = np.sin(t)
+        middle[i] = c_pad - x * middle_normal[0, i] - y * middle_normal[1, i] - p[PRELOAD] * c_pad * np.cos(t - least)
+    source = np.zeros(n)
     wedge = 6.0 * p[VISCOSITY] * omega / dt
     squeeze = 12.0 * p[VISCOSITY]
-    for i in range(around - 1):
-        value = squeeze * (vx * cosine[i + 1] + vy * sine[i + 1]) - wedge * (middle[i + 1] - middle[i])
-        for j in range(along):
-            push[i * along + j] = value
+    for k in range(n):
+        i = k // along
+        source[k] = squeeze * (vx * normal[0, i + 1] + vy * normal[1, i + 1]) - wedge * (middle[i + 1] - middle[i])
     free = np.ones(n, dtype=np.bool_)
     A = np.zeros((n, along + 1))
     q = np.zeros(n)
@@ -91,49 +80,42 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
     beside = np.zeros(n)
     behind = np.zeros(n)
     stencil(h**3, middle**3, around, along, per_t, per_z, diagonal, beside, behind)
-    carried(diagonal, beside, behind, along, push, p[CUT] > 0.0, A, free, q)
+    carried(diagonal, beside, behind, along, source, p[CUT] > 0.0, A, free, q)
     area = 2.0 * p[RADIUS] * dt * dz
-    weight_c = np.zeros(n)
-    weight_s = np.zeros(n)
-    for i in range(around - 1):
-        for j in range(along):
-            k = i * along + j
-            carries = free[k] and (q[k] > 0.0 or p[CUT] == 0.0)
-            weight_c[k] = area * cosine[i + 1] if carries else 0.0
-            weight_s[k] = area * sine[i + 1] if carries else 0.0
-            pressure[i, j] = q[k] if carries else 0.0
-    F[0] += np.sum(weight_c * q)
-    F[1] += np.sum(weight_s * q)
+    weight = np.zeros((2, n))
+    for k in range(n):
+        if free[k] and (q[k] > 0.0 or p[CUT] == 0.0):
+            weight[:, k] = area * normal[:, k // along + 1]
+            pressure[k // along, k % along] = q[k]
+        else:
+            pressure[k // along, k % along] = 0.0
     left = np.zeros(n)
     change = np.zeros(n)
-    for which in range(2):
-        c = cosine if which == 0 else sine
-        mc = middle_c if which == 0 else middle_s
+    for m in range(2):
+        F[m] += np.sum(weight[m] * q)
+        c = normal[m]
+        mc = middle_normal[m]
         stencil(-3.0 * h**2 * c, -3.0 * middle**2 * mc, around, along, per_t, per_z, diagonal, beside, behind)
         applied(diagonal, beside, behind, along, q, left)
-        for i in range(around - 1):
-            for j in range(along):
-                k = i * along + j
-                change[k] = wedge * (mc[i + 1] - mc[i]) - left[k] if free[k] else 0.0
+        for k in range(n):
+            i = k // along
+            change[k] = wedge * (mc[i + 1] - mc[i]) - left[k] if free[k] else 0.0
         solve(A, n, along, change)
-        Kd[which] += np.sum(weight_c * change)
-        Kd[2 + which] += np.sum(weight_s * change)
-        for i in range(around - 1):
-            for j in range(along):
-                k = i * along + j
-                change[k] = squeeze * c[i + 1] if free[k] else 0.0
+        for o in range(2):
+            Kd[2 * o + m] += np.sum(weight[o] * change)
+        for k in range(n):
+            change[k] = squeeze * c[k // along + 1] if free[k] else 0.0
         solve(A, n, along, change)
-        Kv[which] += np.sum(weight_c * change)
-        Kv[2 + which] += np.sum(weight_s * change)
+        for o in range(2):
+            Kv[2 * o + m] += np.sum(weight[o] * change)
 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Force of the journal on the film and the shell, along x and y."""
-    place = np.zeros(5)
-    touches = place_in_shell(d, p[CONTACT] * p[CLEARANCE], place)
-    x = place[0]
-    y = place[1]
+    place = place_in_shell(d, p)
+    x = place.x
+    y = place.y
     omega = s[SPEED]
     film = np.zeros(2)
     k = np.zeros(4)
@@ -159,4 +141,4 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     turning = 0.5 * omega * (film[0] * y - film[1] * x)
     energy[1] = turning
     energy[2] = film[0] * v[0] + film[1] * v[1] + turning
-    energy[3] = 1.0 if touches else 0.0
+    energy[3] = place.touches

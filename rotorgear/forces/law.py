@@ -259,9 +259,7 @@ class ForceLaw(ABC):
             return Linearised(value.force, value.in_displacement, value.in_velocity)
         d, v = (np.broadcast_to(np.asarray(x, float), (angles.size, k)) for x in (d, v))
         values = still.evaluate_many(d, v, angle=angles, speed=speed)
-        return Linearised(
-            values.force.mean(axis=0), values.in_displacement.mean(axis=0), values.in_velocity.mean(axis=0)
-        )
+        return Linearised(*(x.mean(axis=0) for x in (values.force, values.in_displacement, values.in_velocity)))
 
     def settled(self, d: Any) -> ForceLaw:
         """The law as it stays for small motions about displacements d (k,): an inlet that statics place stays there then."""
@@ -378,8 +376,8 @@ class ForceLaw(ABC):
         Kv = np.zeros(k * k)
         energy = np.zeros(4)
         force(p, state, d, v, F, Kd, Kv, energy)
-        stored, power_in, dissipated, contact = map(float, energy)
-        return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), stored, power_in, dissipated, int(contact))
+        *powers, contact = map(float, energy)
+        return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), *powers, int(contact))
 
     def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValue:
         """`evaluate` at r instants in one compiled loop: d and v (r, k); time, angle and speed (r,) or the same for all."""
@@ -394,25 +392,14 @@ class ForceLaw(ABC):
         time, angle, speed = (np.array(np.broadcast_to(np.asarray(x, float), r)) for x in (time, angle, speed))
         p = np.ascontiguousarray(self.parameters(), dtype=float)
         answer = Answer(np.zeros((r, k)), np.zeros((r, k * k)), np.zeros((r, k * k)), np.zeros((r, 4)))
+        instants = Instants(angle, speed, time, d, v)
         # As tuples of two, so that numba takes the functions by pointer and keeps the loop on disk, whatever the law.
-        evaluate_instants(
-            (schedule, no_schedule),
-            (force, no_force),
-            p,
-            np.zeros(self.state_size()),
-            Instants(angle, speed, time, d, v),
-            answer,
-        )
-        stored, power_in, dissipated, contact = answer.energy.T
-        return LawValue(
-            answer.F,
-            answer.Kd.reshape(r, k, k),
-            answer.Kv.reshape(r, k, k),
-            stored,
-            power_in,
-            dissipated,
-            contact.astype(np.int64),
-        )
+        laws = (schedule, no_schedule), (force, no_force)
+        evaluate_instants(*laws, p, np.zeros(self.state_size()), instants, answer)
+        Kd = answer.Kd.reshape(r, k, k)
+        Kv = answer.Kv.reshape(r, k, k)
+        *powers, contact = answer.energy.T
+        return LawValue(answer.F, Kd, Kv, *powers, contact.astype(np.int64))
 
 
 # Places of a rolling element in its pitch over which a linearisation averages.

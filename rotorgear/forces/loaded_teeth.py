@@ -3,7 +3,7 @@
     x = d - e(p) - delta_0(u),     F = F(x, u) + c k_t(x, u)/k x',     k_t = dF/dx,     F = 0 for x <= 0
 
 with p and u as in `loaded_map.py`. The map comes as approaches delta(F_j; u_i) under loads F_j from 0, all flanks, modifications,
-pitch errors and corners inside (Ozguven and Houser, J. Sound Vib. 125 (1988) 71). It is turned over into forces at even steps
+pitch errors and corners inside (Ozguven and Houser, J. Sound Vib. 125 (1988) 71). It is inverted: forces at even steps
 of x, linear between these, and smooth between positions: F rises with x, and a position has the given approach under each load.
 Above the largest load it goes on along its tangent. The contact pushes only: teeth part by themselves. Coast flanks on the same
 line are a map F_coast(-d).
@@ -42,7 +42,7 @@ from rotorgear.forces.loaded_map import (
     STEPS,
     STEPS_OF_A_TILT,
     TANGENT,
-    LoadedMap,
+    inverted,
 )
 from rotorgear.forces.mesh_contact import DAMPINGS, pairs
 from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
@@ -55,25 +55,9 @@ _HARMONICS = 10
 _TURN = 2.0 * np.pi
 # Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map; COAST is where the
 # parameters of the coast flanks begin, or 0; LENGTH the numbers in a row.
-(
-    SPACING,
-    PER_K,
-    C,
-    MODE,
-    PER_DEPTH,
-    ORDER,
-    PHASE,
-    PATH_PHASE,
-    FORWARD,
-    PERIODS,
-    ROWS,
-    HARMONICS,
-    E_MEAN,
-    COAST,
-    LENGTH,
-    SERIES,
-) = range(16)
-# Behind the rows of flanks that tilt stand the place z_e, the number of tilts, and these.
+PER_K, C, MODE, PER_DEPTH, ORDER, PHASE, PATH_PHASE, FORWARD, PERIODS, E_MEAN = range(10)
+SPACING, ROWS, LENGTH, HARMONICS, COAST, SERIES = range(10, 16)
+# The rows of flanks that tilt are followed by the place z_e, the number of tilts, and these.
 PLACE, TILTS, FIRST_TILT = range(3)
 # Places of the state: e + delta_0 and its rate, then for each of the four rows about the position where it begins, its weight,
 # and the rate of that.
@@ -380,34 +364,25 @@ class LoadedTeeth(ForceLaw):
         return FLANK_STATE * (1 if self.coast is None else 2)
 
     @property
-    def loaded_map(self) -> LoadedMap:
-        """What is turned over."""
-        if self.tilt.size:
-            return LoadedMap(self.load, self.approach, self.moment)
-        return LoadedMap(self.load, self.approach[None], None)
+    def rows(self) -> np.ndarray:
+        """The inverted map, read-only, as `inverted` has it."""
+        return self._inverted[1]
+
+    @property
+    def _inverted(self) -> tuple[float, np.ndarray]:
+        return inverted(self.load, self.approach if self.tilt.size else self.approach[None], self.moment)
 
     @cached_property
     def _parameters(self) -> np.ndarray:
         # Kept: statics over a cycle evaluate one law a thousand times, and the whole map is copied into them.
+        spacing, rows = self._inverted
         series = pairs(self.error_cos, self.error_sin)
-        rows = self.loaded_map.rows
-        head = np.zeros(SERIES)
-        head[SPACING] = self.loaded_map.spacing
-        head[PER_K] = self.damping / self.stiffness
-        head[C] = self.damping
-        head[MODE] = DAMPINGS[self.contact_damping]
-        head[PER_DEPTH] = 1.0 / self.reference
-        head[ORDER] = self.order
-        head[PHASE] = self.phase
-        head[PATH_PHASE] = self.path_phase
-        head[FORWARD] = self.forward
-        head[PERIODS] = self.periods
-        head[ROWS], head[LENGTH] = rows.shape
-        head[HARMONICS] = len(series) // 2
-        head[E_MEAN] = self.error_mean
         face = [self.place, len(self.tilt), *self.tilt] if self.tilt.size else []
         coast = np.zeros(0) if self.coast is None else self.coast.parameters()
-        head[COAST] = coast.size and SERIES + len(series) + rows.size + len(face)
+        behind = SERIES + len(series) + rows.size + len(face) if coast.size else 0
+        head = [self.damping / self.stiffness, self.damping, DAMPINGS[self.contact_damping], 1.0 / self.reference]
+        head += [self.order, self.phase, self.path_phase, self.forward, self.periods, self.error_mean]
+        head += [spacing, *rows.shape, len(series) // 2, behind]
         return np.concatenate([head, series, rows.ravel(), face, coast])
 
     def parameters(self) -> np.ndarray:
@@ -518,11 +493,11 @@ class LoadedTeeth(ForceLaw):
                 teeth.load,
                 teeth.approach,
                 3e8,
-                order=3.0,
                 forward=-1,
                 periods=2,
-                error_mean=1e-6,
+                order=3.0,
                 error_sin=(0.0, 1e-6),
+                error_mean=1e-6,
             ),
             face,
             replace(face, contact_damping="adhesive"),

@@ -14,7 +14,8 @@ k(p) = k [1 + sum a_n cos(n p) + b_n sin(n p)], or piecewise linear in p; e(p) a
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, pi, sin
+from itertools import chain, zip_longest
+from math import pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -38,24 +39,8 @@ _TURN = 2.0 * pi
 # Nearer than this share of a cycle to the start of a piece is on it.
 _ON_JUMP = 1e-9
 # Places of the parameters, which tables follow: cosine and sine of each harmonic of k, then of e, then the pieces of k.
-(
-    K,
-    C,
-    BACKLASH,
-    GAP,
-    MODE,
-    PER_DEPTH,
-    ORDER,
-    PHASE,
-    HARMONICS_K,
-    HARMONICS_E,
-    PIECES,
-    E_MEAN,
-    PUSH,
-    PUSH_SHARE,
-    PUSH_PHASE,
-    TABLES,
-) = range(16)
+K, C, BACKLASH, GAP, MODE, PER_DEPTH, ORDER, PHASE = range(8)
+E_MEAN, PUSH, PUSH_SHARE, PUSH_PHASE, HARMONICS_K, HARMONICS_E, PIECES, TABLES = range(8, 16)
 # Places of the state: k, its rate, e, its rate, impact.
 K_NOW, K_RATE, E_NOW, E_RATE, PUSH_NOW = range(5)
 # A piece of k: its start as a share of the mesh cycle, its first and its last value.
@@ -186,27 +171,14 @@ class MeshContact(ForceLaw):
         return 5
 
     def parameters(self) -> np.ndarray:
-        """Return head and tables in a row."""
+        """Return what is one number, then the tables, of which the numbers of entries come before them."""
         k = pairs(self.stiffness_cos, self.stiffness_sin)
         e = pairs(self.error_cos, self.error_sin)
-        head = [
-            self.stiffness,
-            self.damping,
-            self._clearance,
-            GAPS[self.gap],
-            DAMPINGS[self.contact_damping],
-            1.0 / self.ramp,
-            self.order,
-            self.phase,
-            len(k) // 2,
-            len(e) // 2,
-            len(self.pieces),
-            self.error_mean,
-            self.impact,
-            self.impact_share,
-            self.impact_phase,
-        ]
-        return np.array([*head, *k, *e, *(x for piece in self.pieces for x in piece)], dtype=float)
+        words = [GAPS[self.gap], DAMPINGS[self.contact_damping]]
+        head = [self.stiffness, self.damping, self._clearance, *words, 1.0 / self.ramp, self.order, self.phase]
+        head += [self.error_mean, self.impact, self.impact_share, self.impact_phase]
+        counts = [len(k) // 2, len(e) // 2, len(self.pieces)]
+        return np.array([*head, *counts, *k, *e, *(x for piece in self.pieces for x in piece)], dtype=float)
 
     def closed_stiffness(self) -> np.ndarray:
         """The mean stiffness, as with teeth that never part."""
@@ -246,16 +218,10 @@ class MeshContact(ForceLaw):
 
     def mean(self) -> MeshContact:
         """Return the contact without anything that varies in time."""
-        return replace(
-            self,
-            stiffness_cos=(),
-            stiffness_sin=(),
-            pieces=(),
-            error_cos=(),
-            error_sin=(),
-            impact=0.0,
-            stiffness=self._mean_stiffness(),
+        varying: dict[str, Any] = dict.fromkeys(
+            ("stiffness_cos", "stiffness_sin", "pieces", "error_cos", "error_sin"), ()
         )
+        return replace(self, **varying, impact=0.0, stiffness=self._mean_stiffness())
 
     def repeats(self) -> tuple[Repeats, ...]:
         """The mesh cycle, with the harmonics that are tabulated, and at least 3 where teeth part."""
@@ -280,18 +246,9 @@ class MeshContact(ForceLaw):
 
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """The contact, in whole vector registers."""
-        return (
-            Column(
-                GAPS[self.gap],
-                DAMPINGS[self.contact_damping],
-                self._mean_stiffness(),
-                self.damping,
-                self._clearance,
-                self.ramp,
-                self.impact,
-                counted=True,
-            ),
-        )
+        kinds = (GAPS[self.gap], DAMPINGS[self.contact_damping])
+        sizes = (self._mean_stiffness(), self.damping, self._clearance, self.ramp, self.impact)
+        return (Column(*kinds, *sizes, counted=True),)
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
         """k over its mean, e, its slope over the sweep's time, and the impact over its peak."""
@@ -332,12 +289,4 @@ class MeshContact(ForceLaw):
 
 def pairs(cosines: tuple[float, ...], sines: tuple[float, ...]) -> list[float]:
     """a_1, b_1, a_2, b_2 ... with zeros for what is missing."""
-    count = max(len(cosines), len(sines))
-    padded = [(*series, *([0.0] * (count - len(series)))) for series in (cosines, sines)]
-    return [float(x) for pair in zip(*padded, strict=True) for x in pair]
-
-
-def harmonics(amplitudes: tuple[float, ...], phases: tuple[float, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Cosine and sine parts of sum A_n cos(n p + psi_n)."""
-    turned = [(a, phases[n] if n < len(phases) else 0.0) for n, a in enumerate(amplitudes)]
-    return tuple(a * cos(psi) for a, psi in turned), tuple(-a * sin(psi) for a, psi in turned)
+    return [float(x) for x in chain.from_iterable(zip_longest(cosines, sines, fillvalue=0.0))]

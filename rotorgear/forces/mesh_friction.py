@@ -27,23 +27,9 @@ _SLICES = 9
 _STATE = 5
 _normal_schedule = mesh_contact.schedule
 _normal_force = mesh_contact.force
-
-
-# Places of the parameters, after which those of the contact follow.
-(
-    BASE_PITCH,
-    PATH_START,
-    PATH_END,
-    OVERLAP,
-    SLICES,
-    COEFFICIENT,
-    VISCOSITY,
-    LINE_LOAD,
-    CLOSING,
-    ROLLING,
-    SMOOTH,
-    CONTACT,
-) = range(12)
+# Places of the parameters: what moves, what resists, and where those of the contact begin.
+BASE_PITCH, PATH_START, PATH_END, CLOSING = range(4)
+COEFFICIENT, OVERLAP, VISCOSITY, LINE_LOAD, ROLLING, SMOOTH, SLICES, CONTACT = range(4, 12)
 # Places of the state after that of the contact: W, the number of places of contact, and for each of those xi and mu.
 W, COUNT, PLACES = range(_STATE, _STATE + 3)
 # Places of contact at once in a slice, and the first and the second part of each.
@@ -90,20 +76,15 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Friction across the line of action and its moment; another law applies the normal force itself."""
-    for i in range(3):
-        F[i] = 0.0
-    for i in range(9):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
+    F[:] = 0.0
+    Kd[:] = 0.0
+    Kv[:] = 0.0
     n = np.zeros(1)
     kd = np.zeros(1)
     kv = np.zeros(1)
     e = np.zeros(4)
     _normal_force(p[CONTACT:], s[:_STATE], d[:1], v[:1], n, kd, kv, e)
-    energy[0] = 0.0
-    energy[1] = 0.0
-    energy[2] = 0.0
-    energy[3] = e[3]
+    energy[:] = 0.0, 0.0, 0.0, e[3]
     if s[COUNT] == 0.0:
         return
     N = abs(n[0])
@@ -178,21 +159,9 @@ class MeshFriction(ForceLaw):
         return PLACES + PLACE * MOST * self.slices
 
     def parameters(self) -> np.ndarray:
-        """Own parameters in a head, then those of the contact."""
-        head = [
-            self.base_pitch,
-            self.start,
-            self.end,
-            self.overlap,
-            self.slices,
-            self.coefficient,
-            self.viscosity,
-            self.line_load,
-            self.closing,
-            self.rolling,
-            self.smooth,
-        ]
-        return np.concatenate([head, self.contact.parameters()])
+        """The fields in the order of their declaration, the number of slices, then the parameters of the contact."""
+        own = [getattr(self, name) for name in self.declared() if name != "contact"]
+        return np.concatenate([own, [self.slices], self.contact.parameters()])
 
     def mean(self) -> MeshFriction:
         """Nothing remains: over a mesh cycle approach and recess cancel nearly."""

@@ -27,7 +27,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from scipy.optimize import brentq
 
-from rotorgear.forces.inside import OilField
+from rotorgear.forces.inside import FilmField, OilField
 from rotorgear.forces.law import ForceLaw, parameter, refuse
 from rotorgear.quantity import ZERO_CELSIUS
 
@@ -239,6 +239,20 @@ class JournalOil(OilFilm):
         cut = float(self.cavitation == "half_sommerfeld")
         each = [value for pad in pads for value in pad]
         return np.array([*own, self.preload, around, self.along, cut, float(follows), len(pads), *each])
+
+    def film_field(self, pads: list[tuple[np.ndarray, np.ndarray, np.ndarray, float]], speed: float) -> FilmField:
+        """The film at a speed of the reference, from angles (t,), gap (t,), pressure (t, j) and extent in rad of each pad."""
+        dz = 0.5 * self.length / self.along
+        velocity = self.radius * (self.order * speed)
+        flow = 0.0
+        loss = 0.0
+        for t, h, pressure, extent in pads:
+            step = self.radius * extent / (t.size + 1)
+            flow += side_flow(h, pressure, dz, step, self.viscosity)
+            loss += power_loss(h, pressure, dz, step, self.viscosity, velocity)
+        angles, gaps, pressures, _ = zip(*pads, strict=True)
+        z = 0.5 * self.length * (np.arange(self.along) + 0.5) / self.along
+        return FilmField(np.concatenate(angles), np.concatenate(gaps), np.concatenate(pressures), flow, loss, z)
 
     def beyond(self, d: Any, speed: float) -> str:
         """Heat, turbulence by Taylor's number, and an eccentricity near the shell."""

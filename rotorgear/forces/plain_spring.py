@@ -25,10 +25,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     F[0] = k * x + k3 * x**3 + c * v[0]
     Kd[0] = (k + 3.0 * k3 * x * x) if side != 0.0 else 0.0
     Kv[0] = c
-    energy[0] = 0.5 * k * x * x + 0.25 * k3 * x**4
-    energy[1] = 0.0
-    energy[2] = c * v[0] ** 2
-    energy[3] = side
+    energy[:] = 0.5 * k * x * x + 0.25 * k3 * x**4, 0.0, c * v[0] ** 2, side
 
 
 @dataclass(frozen=True)

@@ -57,33 +57,27 @@ def law_of(name: str) -> type[ForceLaw]:
     return shipped
 
 
-def register(name: str, law: type[ForceLaw]) -> None:
-    """Make a law of your own known by a name; registered again, the later one counts, as in a notebook that is run twice.
-
-    Raises:
-        AnalysisError: the name is one of the package's, is no word, or the class is no force law.
-    """
-    if name in _SHIPPED:
-        raise AnalysisError(f"'{name}' is a force law of the package: choose another name for {law.__name__}")
-    if not name.isidentifier():
-        raise AnalysisError(f"'{name}' is no name for a force law: expected letters, digits and underscores")
-    if not (isinstance(law, type) and issubclass(law, ForceLaw)):
-        raise AnalysisError(f"{name}: a force law is a class derived from rotorgear.ForceLaw, got {law!r}")
-    _REGISTERED[name] = law
-
-
 def register_law(name: str) -> Callable[[Law], Law]:
-    """Register the class below, as a decorator.
+    """Register the class below, as a decorator; registered again, the later one counts, as in a notebook that is run twice.
 
     Args:
         name: by which a model file names the law.
 
     Returns:
         The decorator; it gives the class back as it is.
+
+    Raises:
+        AnalysisError: the name is one of the package's, is no word, or the class is no force law.
     """
 
-    def registered(cls: Law) -> Law:
-        register(name, cls)
-        return cls
+    def registered(law: Law) -> Law:
+        if name in _SHIPPED:
+            raise AnalysisError(f"'{name}' is a force law of the package: choose another name for {law.__name__}")
+        if not name.isidentifier():
+            raise AnalysisError(f"'{name}' is no name for a force law: expected letters, digits and underscores")
+        if not (isinstance(law, type) and issubclass(law, ForceLaw)):
+            raise AnalysisError(f"{name}: a force law is a class derived from rotorgear.ForceLaw, got {law!r}")
+        _REGISTERED[name] = law
+        return law
 
     return registered

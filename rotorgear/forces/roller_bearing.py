@@ -26,11 +26,9 @@ ROLLERS, CONTACT, PLAY = range(2, 5)
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Forces along x and y of the inner ring on the rollers."""
     count = int(p[ROLLERS])
-    F[0] = 0.0
-    F[1] = 0.0
-    for i in range(4):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
+    F[:] = 0.0
+    Kd[:] = 0.0
+    Kv[:] = 0.0
     stored = 0.0
     turned = 0.0
     loaded = 0.0
@@ -53,10 +51,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         Kd[3] += slope * n * n
         stored += 9.0 / 19.0 * Q * delta
         turned += Q * (d[1] * c - d[0] * n) * s[CAGE_SPEED]
-    energy[0] = stored
-    energy[1] = turned
-    energy[2] = 0.0
-    energy[3] = loaded
+    energy[:] = stored, turned, 0.0, loaded
 
 
 @dataclass(frozen=True)
@@ -68,10 +63,6 @@ class RollerBearing(RollingElements):
 
     rollers: int = parameter("", "number of rollers Z", least=3)
     length: float = parameter("m", "effective length L of a roller", above=0.0)
-    clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
-    order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
-    phase: float = parameter("rad", "angle of a roller at angle 0", 0.0)
-    reference: tuple[float, float] = parameter("N/m", "linear stiffness along x and y to expand about", (0.0, 0.0))
     roller_diameter: float = parameter("m", "diameter of a roller, for its pressures; 0: not told", 0.0, least=0.0)
     pitch_diameter: float = parameter("m", "pitch diameter, for the pressures; 0: not told", 0.0, least=0.0)
 

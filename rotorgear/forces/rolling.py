@@ -19,79 +19,54 @@ most, in X arrangement (face to face) inside; in tandem both take the same push.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from rotorgear.forces.law import ForceLaw, Repeats
+from rotorgear.forces.law import ForceLaw, Repeats, parameter
 from rotorgear.solvers.time.compiled import schedule_function
 
 # 35948 N/mm^(8/9+10/9) in SI: lengths and deflections in m.
 LINE_CONTACT = 35948.0 * 1e3 ** (8.0 / 9.0) * 1e3 ** (10.0 / 9.0)
+# E' of steel in Pa.
+_STEEL = 210e9 / (1.0 - 0.3**2)
 
 
-def point_contact(
-    ball_diameter: float,
-    pitch_diameter: float,
-    inner_radius: float,
-    outer_radius: float,
-    contact_angle: float,
-    youngs_modulus: float = 210e9,
-    poisson_ratio: float = 0.3,
-) -> float:
-    """Return c_p in N/m^1.5 of a ball between both raceways; all lengths in m, the groove radii of inner and outer ring."""
+def point_contact(ellipses: Iterable[tuple[float, float]], modulus: float) -> float:
+    """Return c_p in N/m^1.5 of a ball between both raceways, from `contact_ellipses` and E' in Pa."""
     total = 0.0
-    for sum_rho, chi in _rings(ball_diameter, pitch_diameter, inner_radius, outer_radius, contact_angle):
+    for sum_rho, chi in ellipses:
         m = 1.0 - 1.0 / chi**2
         total += ellipk(m) * (sum_rho / (chi**2 * ellipe(m))) ** (1.0 / 3.0)
-    stiff = youngs_modulus / (1.0 - poisson_ratio**2)
-    return float(np.pi / np.sqrt(4.5) * stiff * total**-1.5)
+    return float(np.pi / np.sqrt(4.5) * modulus * total**-1.5)
 
 
-def point_pressure(
-    load: np.ndarray,
-    ball_diameter: float,
-    pitch_diameter: float,
-    inner_radius: float,
-    outer_radius: float,
-    contact_angle: float,
-    youngs_modulus: float = 210e9,
-    poisson_ratio: float = 0.3,
-) -> tuple[np.ndarray, np.ndarray]:
+def point_pressure(load: np.ndarray, ellipses: Iterable[tuple[float, float]], modulus: float) -> list[np.ndarray]:
     """Return the largest pressures in Pa at the inner and the outer ring under loads in N; the rest as for `point_contact`."""
-    stiff = youngs_modulus / (1.0 - poisson_ratio**2)
     found = []
-    for sum_rho, chi in _rings(ball_diameter, pitch_diameter, inner_radius, outer_radius, contact_angle):
-        b = np.cbrt(2.0 * ellipe(1.0 - 1.0 / chi**2) / (np.pi * chi) * 3.0 * np.asarray(load) / (sum_rho * stiff))
+    for sum_rho, chi in ellipses:
+        b = np.cbrt(2.0 * ellipe(1.0 - 1.0 / chi**2) / (np.pi * chi) * 3.0 * load / (sum_rho * modulus))
         area = np.pi * chi * b**2
-        found.append(np.divide(1.5 * np.asarray(load), area, out=np.zeros_like(area), where=area > 0.0))
-    return found[0], found[1]
+        found.append(np.divide(1.5 * load, area, out=np.zeros_like(area), where=area > 0.0))
+    return found
 
 
-def line_pressure(
-    load: np.ndarray,
-    length: float,
-    roller_diameter: float,
-    gamma: float,
-    youngs_modulus: float = 210e9,
-    poisson_ratio: float = 0.3,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the largest pressures in Pa of a roller at the inner and the outer ring; gamma = D_w cos(alpha)/D_pw."""
-    stiff = youngs_modulus / (1.0 - poisson_ratio**2)
-    inner, outer = (
-        np.sqrt(np.asarray(load) * 2.0 / roller_diameter / (1.0 - side * gamma) * stiff / (2.0 * np.pi * length))
+def line_pressure(load: np.ndarray, length: float, roller_diameter: float, gamma: float) -> list[np.ndarray]:
+    """Return the largest pressures in Pa of a steel roller at the inner and the outer ring; gamma = D_w cos(alpha)/D_pw."""
+    return [
+        np.sqrt(load * 2.0 / roller_diameter / (1.0 - side * gamma) * _STEEL / (2.0 * np.pi * length))
         for side in (1.0, -1.0)
-    )
-    return inner, outer
+    ]
 
 
-def _rings(
+def contact_ellipses(
     ball_diameter: float, pitch_diameter: float, inner_radius: float, outer_radius: float, contact_angle: float
 ) -> Iterator[tuple[float, float]]:
-    """Yield the sum of curvatures in 1/m and the ratio of the axes of the contact ellipse at the inner and the outer ring."""
+    """Yield sum_rho in 1/m and chi of the contacts with the inner and the outer ring; groove radii and diameters in m."""
     gamma = ball_diameter * np.cos(contact_angle) / pitch_diameter
     for groove, along in ((inner_radius, gamma / (1.0 - gamma)), (outer_radius, -gamma / (1.0 + gamma))):
         total = 2.0 + along - 0.5 * ball_diameter / groove
@@ -138,16 +113,21 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     s[CAGE_SPEED] = p[ORDER] * speed
 
 
+@dataclass(frozen=True)
 class RollingElements(ForceLaw):
-    """A bearing with five relative displacements, whose elements turn with the cage. Subclasses declare these parameters."""
+    """A bearing with five relative displacements, whose elements turn with the cage."""
 
     conserves: ClassVar[bool] = True
     uses_velocity: ClassVar[bool] = False
     components: ClassVar[int] = 5
 
-    order: float
-    phase: float
-    reference: tuple[float, ...]
+    _: KW_ONLY
+    clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
+    order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
+    phase: float = parameter("rad", "angle of a rolling element at angle 0", 0.0)
+    reference: tuple[float, ...] = parameter(
+        "N/m, N m/rad", "linear stiffness to expand about, along each displacement", (0.0,) * 5
+    )
 
     @property
     @abstractmethod
@@ -160,7 +140,7 @@ class RollingElements(ForceLaw):
 
     def reference_stiffness(self) -> np.ndarray:
         """The linear stiffness that is given with the bearing."""
-        return np.diag(self.reference)
+        return np.diag(self.reference[: self.components])
 
     def repeats(self) -> tuple[Repeats, ...]:
         """The cage, which repeats with nothing else."""

@@ -45,16 +45,12 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Prescribed force, whatever d and v are."""
-    energy[0] = 0.0
-    energy[1] = 0.0
-    energy[2] = 0.0
-    energy[3] = 0.0
+    Kd[:] = 0.0
+    Kv[:] = 0.0
+    energy[:] = 0.0
     for i in range(F.size):
         F[i] = -s[i]
         energy[1] += s[i] * v[i]
-    for i in range(Kd.size):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
 
 
 @dataclass(frozen=True)

@@ -31,24 +31,19 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
         at = p[ORDER] * angle
         at -= _TURN * np.floor(at / _TURN)
     values = FIRST + count
-    if at < p[FIRST] or at >= p[FIRST + count - 1]:
+    first = p[FIRST]
+    last = p[values - 1]
+    if at < first or at >= last:
+        ends = p[values + count - 1]
         if p[OVER_ANGLE] > 0.0:  # between the last place and the first one of the next turn
-            gap = p[FIRST] + _TURN - p[FIRST + count - 1]
-            late = at - p[FIRST + count - 1] if at >= p[FIRST] else at + _TURN - p[FIRST + count - 1]
-            s[0] = p[values + count - 1] + (p[values] - p[values + count - 1]) * late / gap
+            late = at - last if at >= first else at + _TURN - last
+            s[0] = ends + (p[values] - ends) * late / (first + _TURN - last)
         else:
-            s[0] = p[values] if at < p[FIRST] else p[values + count - 1]
+            s[0] = p[values] if at < first else ends
         return
-    low = 0
-    high = count - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        if p[FIRST + middle] <= at:
-            low = middle
-        else:
-            high = middle
-    share = (at - p[FIRST + low]) / (p[FIRST + high] - p[FIRST + low])
-    s[0] = p[values + low] + (p[values + high] - p[values + low]) * share
+    low = np.searchsorted(p[FIRST:values], at, side="right") - 1
+    share = (at - p[FIRST + low]) / (p[FIRST + low + 1] - p[FIRST + low])
+    s[0] = p[values + low] + (p[values + low + 1] - p[values + low]) * share
 
 
 @dataclass(frozen=True)

@@ -42,11 +42,9 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Forces along x, y, z and moments about x, y of the inner ring on the rollers."""
     count = int(p[ROLLERS])
     slices = int(p[SLICES])
-    for i in range(5):
-        F[i] = 0.0
-    for i in range(25):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
+    F[:] = 0.0
+    Kd[:] = 0.0
+    Kv[:] = 0.0
     stored = 0.0
     turned = 0.0
     loaded = 0.0
@@ -82,10 +80,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             stored += 9.0 / 19.0 * Q * delta
             turn = p[COSINE] * (d[1] * c - d[0] * n) + arm * (d[3] * c + d[4] * n)
             turned += Q * turn * s[CAGE_SPEED]
-    energy[0] = stored
-    energy[1] = turned
-    energy[2] = 0.0
-    energy[3] = loaded
+    energy[:] = stored, turned, 0.0, loaded
 
 
 @dataclass(frozen=True)
@@ -103,14 +98,8 @@ class TaperedBearing(RollingElements):
         "angle a of the outer raceway with the shaft; of one row its sign is that of the axial load it takes",
         0.0,
     )
-    clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
     preload: float = parameter("m", "axial displacement by which each row is pressed together", 0.0, least=0.0)
     slices: int = parameter("", "slices of a roller", 21, least=1, most=200)
-    order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
-    phase: float = parameter("rad", "angle of a roller at angle 0", 0.0)
-    reference: tuple[float, ...] = parameter(
-        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * 5
-    )
     arrangement: str = parameter(
         "", "rows and the sides that they press to", "single", choices=("single", "O", "X", "tandem")
     )

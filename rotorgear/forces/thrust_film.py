@@ -13,6 +13,7 @@ Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961), chs. 3 and 4.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -21,7 +22,7 @@ import numpy as np
 from rotorgear.forces.inside import OilField
 from rotorgear.forces.law import Linearised, parameter, refuse
 from rotorgear.forces.oil_film import TURN, OilFilm
-from rotorgear.forces.thrust_pressure import FIRST, PADS, balanced_pad, force, gap_at, schedule, sector_film
+from rotorgear.forces.thrust_pressure import FIRST, balanced_pad, force, gaps_at, schedule, sector_film
 
 _TAYLOR = 1000.0  # Reynolds' number rho omega r h / mu up to which films of thrust bearings are laminar
 
@@ -116,14 +117,10 @@ class ThrustFilm(OilFilm):
             f"{self.heat_left_out}, turbulence, and oil carried over from pad to pad",
         )
 
-    def _each_pad(
-        self, d: Any, speed: float
-    ) -> list[tuple[float, float, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    def _each_pad(self, d: Any, speed: float) -> Iterator[tuple[Any, ...]]:
         """Of each pad its start, side, q, G, K and C, and pressure, with the collar at rest at displacements d (5,)."""
         p = self.parameters()
-        found = []
-        for pad in range(int(p[PADS])):
-            middle, side = p[FIRST + 2 * pad : FIRST + 2 * pad + 2]
+        for middle, side in p[FIRST:].reshape(-1, 2):
             q = np.array([*(side * np.asarray(d, float)[2:]), 0.0])
             G = np.zeros(4)
             K = np.zeros((4, 4))
@@ -134,8 +131,7 @@ class ThrustFilm(OilFilm):
                 balanced_pad(p, self.order * speed, start, q, np.zeros(4), G, K, C, pressure, np.zeros((3, 2)))
             else:
                 sector_film(p, self.order * speed, start, q, np.zeros(4), 0, 3, G, K, C, pressure)
-            found.append((start, float(side), q, G, K, C, pressure))
-        return found
+            yield start, side, q, G, K, C, pressure
 
     def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0, points: int | None = None) -> Linearised:
         """Force and tangents; of the settled bearing those of motions at the whirl ratio, pads following."""
@@ -152,27 +148,19 @@ class ThrustFilm(OilFilm):
             Z[2:, 2:] += z[:3, :3] - (np.outer(z[:3, 3], z[3, :3]) / z[3, 3] if turns else 0.0)
         return Linearised(total, Z.real.copy(), Z.imag / omega)
 
-    def gaps(self, d: Any, speed: float) -> list[tuple[float, np.ndarray, np.ndarray]]:
-        """Of each pad its side, angles (t,) and gaps (t, j) at the nodes, edges among them."""
+    def _films(self, d: Any, speed: float) -> Iterator[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
+        """Of each pad its side, angles (t,), gaps (t, j) and pressures (t, j) at the nodes, edges among them."""
         p = self.parameters()
         r = np.linspace(self.inner_radius, self.outer_radius, self.across + 1)
-        here = np.zeros(2)
-        found = []
-        for start, side, q, *_ in self._each_pad(d, speed):
+        for start, side, q, *_, inner in self._each_pad(d, speed):
             t = start + self.arc * np.arange(self.around + 1) / self.around
-            h = np.zeros((t.size, r.size))
-            for i, angle in enumerate(t):
-                for j, radius in enumerate(r):
-                    gap_at(p, self.order * speed, start, angle, radius, q, here)
-                    h[i, j] = here[0]
-            found.append((side, t, h))
-        return found
+            yield side, t, gaps_at(p, self.order * speed, start, t, r, q)[0], np.pad(inner, 1)
 
     def beyond(self, d: Any, speed: float) -> str:
         """Heat, a gap that is too thin for the model, or a turbulent film."""
         if hot := self.too_hot():
             return hot
-        smallest = min(float(h.min()) for _, _, h in self.gaps(d, speed))
+        smallest = min(float(h.min()) for _, _, h, _ in self._films(d, speed))
         if smallest <= self.least * self.clearance:
             return (
                 f"the collar comes to {1e6 * smallest:.3g} um of its pads, where the film is too thin for this model (at least "
@@ -197,20 +185,18 @@ class ThrustFilm(OilFilm):
         nodes = []
         flow = 0.0
         loss = 0.0
-        for (side, t, h), (*_, inner) in zip(self.gaps(d, speed), self._each_pad(d, speed), strict=True):
-            pressure = np.pad(inner, 1)
+        for side, t, h, pressure in self._films(d, speed):
             # Slopes at both edges by a parabola through the edge and two nodes.
             low = (4.0 * pressure[:, 1] - pressure[:, 2]) / (2.0 * dr)
             high = (4.0 * pressure[:, -2] - pressure[:, -3]) / (2.0 * dr)
-            flow += (
-                dt * float(np.sum(r[0] * h[:, 0] ** 3 * low + r[-1] * h[:, -1] ** 3 * high)) / (12.0 * self.viscosity)
-            )
+            leaves = r[0] * h[:, 0] ** 3 * low + r[-1] * h[:, -1] ** 3 * high
+            flow += dt * float(np.sum(leaves)) / (12.0 * self.viscosity)
             shear = self.viscosity * omega * r / h + 0.5 * h * np.gradient(pressure, dt, axis=0) / r
             moment = trapezoid(trapezoid(shear * r * r, dx=dr, axis=1), dx=dt)
-            loss += float(omega * moment)
+            loss += omega * moment
             nodes.append((np.full(t.size, side), t, h, pressure))
         sides, angles, gaps, fields = (np.concatenate(each) for each in zip(*nodes, strict=True))
-        return ThrustField(angles, gaps, fields, flow, loss, sides, r)
+        return ThrustField(angles, gaps, fields, flow, float(loss), sides, r)
 
     @classmethod
     def examples(cls) -> tuple[ThrustFilm, ...]:

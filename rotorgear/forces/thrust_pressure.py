@@ -20,22 +20,7 @@ from rotorgear.forces.film_grid import applied, carried, solve
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
 # Of the parameters, then middle and side of each pad; and of the state.
-(
-    VISCOSITY,
-    INNER,
-    OUTER,
-    CLEARANCE,
-    ORDER,
-    ARC,
-    TAPER,
-    SHARE,
-    PIVOT,
-    LEAST,
-    AROUND,
-    ACROSS,
-    PADS,
-    FIRST,
-) = range(14)
+VISCOSITY, INNER, OUTER, CLEARANCE, ORDER, ARC, TAPER, SHARE, PIVOT, LEAST, AROUND, ACROSS, PADS, FIRST = range(14)
 SPEED = 0
 _ITERATIONS = 60
 _LEVEL = 1e-12
@@ -48,9 +33,9 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     s[SPEED] = p[ORDER] * speed
 
 
-@compiled
-def gap_at(p, omega, start, t, r, q, out):  # type: ignore[no-untyped-def]
-    """Fill out with the gap at an angle and a radius, and its change with what closes it; q (4,)."""
+@compiled(entry=False)
+def gap_at(p, omega, start, t, r, q):  # type: ignore[no-untyped-def]
+    """The gap at an angle and a radius, and its change with what closes it; q (4,)."""
     h = p[CLEARANCE]
     if p[PIVOT] < 0.0:
         u = (t - start) / p[ARC]
@@ -62,16 +47,23 @@ def gap_at(p, omega, start, t, r, q, out):  # type: ignore[no-untyped-def]
     h -= q[0] + r * (np.sin(t) * q[1] - np.cos(t) * q[2]) + r * np.sin(t - pivot) * q[3]
     least = p[LEAST] * p[CLEARANCE]
     if h >= least:
-        out[0] = h
-        out[1] = 1.0
-    else:
-        exponent = h / least - 1.0
-        if exponent > _DEEPEST_EXPONENT:
-            out[0] = least * np.exp(exponent)
-            out[1] = out[0] / least
-        else:
-            out[0] = least * np.exp(_DEEPEST_EXPONENT)
-            out[1] = 0.0
+        return h, 1.0
+    exponent = h / least - 1.0
+    if exponent > _DEEPEST_EXPONENT:
+        thin = least * np.exp(exponent)
+        return thin, thin / least
+    return least * np.exp(_DEEPEST_EXPONENT), 0.0
+
+
+@compiled
+def gaps_at(p, omega, start, t, r, q):  # type: ignore[no-untyped-def]
+    """The same at angles (t,) and radii (j,): gaps and changes, (t, j) each."""
+    h = np.zeros((t.size, r.size))
+    closes = np.zeros((t.size, r.size))
+    for i in range(t.size):
+        for j in range(r.size):
+            h[i, j], closes[i, j] = gap_at(p, omega, start, t[i], r[j], q)
+    return h, closes
 
 
 @compiled(entry=False)
@@ -117,36 +109,23 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
     dr = (p[OUTER] - p[INNER]) / across
     pivot = start + abs(p[PIVOT]) * p[ARC]
     r = p[INNER] + dr * np.arange(1, across)
-    here = np.zeros(2)
-    theta_h = np.zeros((rows + 1, columns))
-    theta_c = np.zeros((rows + 1, columns))
-    radial_h = np.zeros((rows, columns + 1))
-    radial_c = np.zeros((rows, columns + 1))
-    closes = np.zeros((rows, columns))
-    for i in range(rows + 1):
-        for j in range(columns):
-            gap_at(p, omega, start, start + (i + 0.5) * dt, r[j], q, here)
-            theta_h[i, j] = here[0]
-            theta_c[i, j] = here[1]
-            if i < rows:
-                gap_at(p, omega, start, start + (i + 1.0) * dt, r[j], q, here)
-                closes[i, j] = here[1]
-        if i < rows:
-            for j in range(columns + 1):
-                gap_at(p, omega, start, start + (i + 1.0) * dt, p[INNER] + (j + 0.5) * dr, q, here)
-                radial_h[i, j] = here[0]
-                radial_c[i, j] = here[1]
+    # At the nodes, and half-way to the next along the arc and along the radius.
+    t = start + np.arange(1.0, around) * dt
+    middle_t = start + (np.arange(around) + 0.5) * dt
+    middle_r = p[INNER] + (np.arange(across) + 0.5) * dr
+    theta_h, theta_c = gaps_at(p, omega, start, middle_t, r, q)
+    radial_h, radial_c = gaps_at(p, omega, start, t, middle_r, q)
+    _, closes = gaps_at(p, omega, start, t, r, q)
     wedge = 6.0 * p[VISCOSITY] * omega / dt
     squeeze = 12.0 * p[VISCOSITY]
-    push = np.zeros(n)
-    for i in range(rows):
-        for j in range(columns):
-            speed = 0.0
-            for m in range(fields):
-                speed += v[m] * field_at(m, start + (i + 1.0) * dt, r[j], pivot)
-            push[i * columns + j] = r[j] * (
-                squeeze * closes[i, j] * speed - wedge * (theta_h[i + 1, j] - theta_h[i, j])
-            )
+    source = np.zeros(n)
+    for k in range(n):
+        i = k // columns
+        j = k % columns
+        speed = 0.0
+        for m in range(fields):
+            speed += v[m] * field_at(m, t[i], r[j], pivot)
+        source[k] = r[j] * (squeeze * closes[i, j] * speed - wedge * (theta_h[i + 1, j] - theta_h[i, j]))
     theta_3 = theta_h**3
     radial_3 = radial_h**3
     # Half a cell at each rim has no node: with this flow to the rim the sum over the nodes is that of a parabola, which oil has
@@ -162,15 +141,14 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
     beside = np.zeros(n)
     behind = np.zeros(n)
     stencil(theta_3, radial_3, r, dr, dt, diagonal, beside, behind)
-    carried(diagonal, beside, behind, columns, push, False, A, free, x)
+    carried(diagonal, beside, behind, columns, source, False, A, free, x)
     weight = np.zeros((4, n))
-    for i in range(rows):
-        for j in range(columns):
-            k = i * columns + j
-            pressure[i, j] = x[k] if free[k] else 0.0
-            if free[k]:
-                for m in range(fields):
-                    weight[m, k] = field_at(m, start + (i + 1.0) * dt, r[j], pivot) * r[j] * dr * dt
+    for k in range(n):
+        i = k // columns
+        j = k % columns
+        pressure[i, j] = x[k] if free[k] else 0.0
+        for m in range(fields if free[k] else 0):
+            weight[m, k] = field_at(m, t[i], r[j], pivot) * r[j] * dr * dt
     change = np.zeros(n)
     phi_t = np.zeros((rows + 1, columns))
     phi_r = np.zeros((rows, columns + 1))
@@ -179,26 +157,26 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
     for m in range(first, fields):
         for i in range(rows + 1):
             for j in range(columns):
-                phi_t[i, j] = theta_c[i, j] * field_at(m, start + (i + 0.5) * dt, r[j], pivot)
+                phi_t[i, j] = theta_c[i, j] * field_at(m, middle_t[i], r[j], pivot)
         for i in range(rows):
             for j in range(columns + 1):
-                phi_r[i, j] = radial_c[i, j] * field_at(m, start + (i + 1.0) * dt, p[INNER] + (j + 0.5) * dr, pivot)
-            phi_r[i, 0] *= rim
-            phi_r[i, columns] *= rim
+                phi_r[i, j] = radial_c[i, j] * field_at(m, t[i], middle_r[j], pivot)
+        phi_r[:, 0] *= rim
+        phi_r[:, columns] *= rim
         stencil(-3.0 * theta_h**2 * phi_t, -3.0 * radial_h**2 * phi_r, r, dr, dt, diagonal, beside, behind)
         applied(diagonal, beside, behind, columns, x, left)
-        for i in range(rows):
-            for j in range(columns):
-                k = i * columns + j
-                change[k] = r[j] * wedge * (phi_t[i + 1, j] - phi_t[i, j]) - left[k] if free[k] else 0.0
+        for k in range(n):
+            i = k // columns
+            j = k % columns
+            change[k] = r[j] * wedge * (phi_t[i + 1, j] - phi_t[i, j]) - left[k] if free[k] else 0.0
         solve(A, n, columns, change)
         for o in range(fields):
             K[o, m] = np.sum(weight[o] * change)
-        for i in range(rows):
-            for j in range(columns):
-                k = i * columns + j
-                phi = closes[i, j] * field_at(m, start + (i + 1.0) * dt, r[j], pivot)
-                change[k] = squeeze * r[j] * phi if free[k] else 0.0
+        for k in range(n):
+            i = k // columns
+            j = k % columns
+            phi = closes[i, j] * field_at(m, t[i], r[j], pivot)
+            change[k] = squeeze * r[j] * phi if free[k] else 0.0
         solve(A, n, columns, change)
         for o in range(fields):
             C[o, m] = np.sum(weight[o] * change)

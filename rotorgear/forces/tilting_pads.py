@@ -5,7 +5,7 @@ That is what the journal does when it moves along e_t, so that the film of a pad
 
     h = c_p - xi cos(t - q) - eta sin(t - q) - m c_p cos(t - q),   xi = d . e_r,   eta = d . e_t - R tilt
 
-and the moment about the pivot is R F_t: pads stand where F_t(xi, eta) = 0, and push the journal along e_r alone. Small motions
+and the moment about the pivot is R F_t: pads rest where F_t(xi, eta) = 0, and push the journal along e_r alone. Small motions
 exp(i w t) of a pad without inertia keep F_t = 0, so with Z = K + i w C in xi, eta (Lund, ASLE Trans. 7 (1964) 408)
 
     Z_red = Z_rr - Z_rt Z_tr / Z_tt,   K = sum Re Z_red e_r e_r^T,   C = sum Im Z_red / w e_r e_r^T
@@ -15,28 +15,17 @@ at w = `whirl_ratio` times the speed of the journal; 1: synchronous. The film of
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_pressure import (
-    ALONG,
-    AROUND,
-    CLEARANCE,
-    CONTACT,
-    FIRST,
-    PADS,
-    PRELOAD,
-    SPEED,
-    WALL,
-    pad_film,
-    schedule,
-)
+from rotorgear.forces.journal_pressure import ALONG, AROUND, FIRST, PADS, PRELOAD, pad_film
 from rotorgear.forces.law import Linearised, parameter, refuse
-from rotorgear.forces.oil_film import TURN, JournalOil, power_loss, side_flow
-from rotorgear.forces.shell import add_wall, place_in_shell
+from rotorgear.forces.oil_film import TURN, JournalOil
+from rotorgear.forces.shell import CLEARANCE, SPEED, WALL, add_wall, place_in_shell, schedule
 from rotorgear.solvers.time.compiled import compiled, force_function
 
 _ITERATIONS = 60
@@ -102,8 +91,7 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Force of the journal on its pads and the shell; pads follow its place, and squeeze no oil as they turn."""
-    place = np.zeros(5)
-    touches = place_in_shell(d, p[CONTACT] * p[CLEARANCE], place)
+    place = place_in_shell(d, p)
     omega = s[SPEED]
     film = np.zeros(2)
     k = np.zeros(4)
@@ -117,7 +105,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         at = FIRST + 3 * pad
         c = np.cos(p[at + 2])
         n = np.sin(p[at + 2])
-        xi = place[0] * c + place[1] * n
+        xi = place.x * c + place.y * n
         v_xi = v[0] * c + v[1] * n
         tilted(p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], pad_F, pad_K, pad_C, pressure, slope)
         if pad_F[0] <= 0.0:
@@ -134,10 +122,8 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         Kv[1] += damp * c * n
         Kv[2] += damp * c * n
         Kv[3] += damp * n * n
-    energy[0] = add_wall(d, place, p[WALL], film, k, F, Kd)
-    energy[1] = 0.0
-    energy[2] = film[0] * v[0] + film[1] * v[1]
-    energy[3] = 1.0 if touches else 0.0
+    stored = add_wall(d, place, p[WALL], film, k, F, Kd)
+    energy[:] = stored, 0.0, film[0] * v[0] + film[1] * v[1], place.touches
 
 
 @dataclass(frozen=True)
@@ -187,20 +173,18 @@ class TiltingPads(JournalOil):
             f"{self.heat_left_out}, turbulence and tilt of the journal in its film",
         )
 
-    def _each_pad(self, d: Any, speed: float) -> list[tuple[np.ndarray, ...]]:
-        """Of each pad e_r (2,), force (2,), K and C (2, 2) in (e_r, e_t), eta, and pressure."""
+    def _each_pad(self, d: np.ndarray, speed: float) -> Iterator[tuple[Any, ...]]:
+        """Of each pad start and pivot in rad, e_r (2,), force (2,), K and C (2, 2) in (e_r, e_t), eta, and pressure."""
         p = self.parameters()
-        found: list[tuple[np.ndarray, ...]] = []
-        for pad in range(self.pads):
-            start, extent, q = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
+        for start, extent, q in p[FIRST:].reshape(-1, 3):
             e_r = np.array([np.cos(q), np.sin(q)])
             F = np.zeros(2)
-            K = np.zeros(4)
-            C = np.zeros(4)
+            K = np.zeros((2, 2))
+            C = np.zeros((2, 2))
             pressure = np.zeros((int(p[AROUND]) - 1, self.along))
-            eta = tilted(p, self.order * speed, float(e_r @ d), 0.0, start, extent, q, F, K, C, pressure, np.zeros(2))
-            found.append((e_r, F, K.reshape(2, 2), C.reshape(2, 2), np.array(eta), pressure))
-        return found
+            answer = (F, K.reshape(4), C.reshape(4), pressure, np.zeros(2))
+            eta = tilted(p, self.order * speed, float(e_r @ d), 0.0, start, extent, q, *answer)
+            yield start, q, e_r, F, K, C, eta, pressure
 
     def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0, points: int | None = None) -> Linearised:
         """Force and tangents; of the settled bearing those of motions at the whirl ratio, pads following."""
@@ -210,7 +194,7 @@ class TiltingPads(JournalOil):
             return super().linearised(d, v, speed=speed, points=points)
         total = np.zeros(2)
         Z = np.zeros((2, 2), dtype=complex)
-        for e_r, F, K, C, _, _ in self._each_pad(d, speed):
+        for _, _, e_r, F, K, C, _, _ in self._each_pad(d, speed):
             if F[0] <= 0.0:
                 continue
             z = K + 1j * omega * C
@@ -221,24 +205,14 @@ class TiltingPads(JournalOil):
 
     def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> FilmField:
         """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
-        p = self.parameters()
-        around = int(p[AROUND])
         c_pad = self.pad_clearance
-        step = self.radius * self.arc / around
-        dz = 0.5 * self.length / self.along
-        nodes = []
-        flow = 0.0
-        loss = 0.0
-        for pad, (e_r, _, _, _, eta, pressure) in enumerate(self._each_pad(np.asarray(d, float), speed)):
-            start, extent, q = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
-            t = start + extent * np.arange(1, around) / around
-            h = c_pad - (float(e_r @ d) + self.preload * c_pad) * np.cos(t - q) - float(eta) * np.sin(t - q)
-            nodes.append((t, h, pressure))
-            flow += side_flow(h, pressure, dz, step, self.viscosity)
-            loss += power_loss(h, pressure, dz, step, self.viscosity, self.radius * self.order * speed)
-        z = 0.5 * self.length * (np.arange(self.along) + 0.5) / self.along
-        angles, gaps, fields = (np.concatenate(each) for each in zip(*nodes, strict=True))
-        return FilmField(angles, gaps, fields, flow, loss, z)
+        pads = []
+        for start, q, e_r, *_, eta, pressure in self._each_pad(np.asarray(d, float), speed):
+            around = len(pressure) + 1
+            t = start + self.arc * np.arange(1, around) / around
+            h = c_pad - (float(e_r @ d) + self.preload * c_pad) * np.cos(t - q) - eta * np.sin(t - q)
+            pads.append((t, h, pressure, self.arc))
+        return self.film_field(pads, speed)
 
     @classmethod
     def examples(cls) -> tuple[TiltingPads, ...]:

@@ -51,10 +51,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             slope = -s[TORQUE_NOW] * power * relative ** (power - 1.0) / p[REFERENCE]
             Kv[0] += slope if w > 0.0 else -slope
     F[0] = -torque + p[VISCOUS] * v[0]
-    energy[0] = 0.0
-    energy[1] = torque * v[0]
-    energy[2] = p[VISCOUS] * v[0] * v[0]
-    energy[3] = 0.0
+    energy[:] = 0.0, torque * v[0], p[VISCOUS] * v[0] * v[0], 0.0
 
 
 @dataclass(frozen=True)

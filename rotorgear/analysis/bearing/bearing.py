@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -20,8 +20,8 @@ from rotorgear.analysis.bearing.state import (
     by_its_law,
     carried,
     change_of_tangents,
-    equilibrium_of,
     law_at,
+    laws_of,
     on_grid,
     relative,
 )
@@ -29,12 +29,13 @@ from rotorgear.analysis.campbell.speeds import system_for_speeds
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
 from rotorgear.analysis.modal.modal import ModalRequest, modal
-from rotorgear.analysis.static.solve import Equilibrated, LawState
+from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.static.state_at import state_at
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.inside import OilField, RollingLoads
-from rotorgear.forces.law import CYCLE_POINTS
+from rotorgear.forces.law import CYCLE_POINTS, ForceLaw
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.bearing import BearingSheet, BearingSpeed
@@ -103,7 +104,7 @@ def bearing(
     if not given and address in films:
         raise AnalysisError(f"{address}: a film carries where its journal turns; give a speed")
     progress(0.0, "equilibrium of the gearbox")
-    state = law_at(equilibrium_of(own, given), address)
+    state = law_at(laws_of(own, given), address)
     law = state.part.law
     started = time.process_time()
     here = carried(state, law, given)
@@ -118,19 +119,19 @@ def bearing(
         [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
     )
     # Each equilibrium is looked for from the one before; a speed without one is a warning.
-    found: dict[float, Equilibrated] = {}
+    found: dict[float, Sequence[LawState]] = {}
     notes = []
     near: Sequence[LawState] = ()
     rows = []
     for number, at in enumerate(dict.fromkeys(sorted(asked, key=abs))):
-        progress(0.3 + 0.2 * number / len(asked), f"{at * RPM_PER_RAD_S:.6g} rpm")
+        rpm = f"{at * RPM_PER_RAD_S:.6g} rpm"
+        progress(0.3 + 0.2 * number / len(asked), rpm)
         try:
-            found[at] = equilibrium_of(own, at, near)
+            near = found[at] = laws_of(own, at, near)
         except AnalysisError as missing:
-            notes.append(f"{at * RPM_PER_RAD_S:.6g} rpm is left out: {missing}")
+            notes.append(Note("", f"{rpm} is left out", str(missing)))
             continue
-        near = found[at].laws
-        there = law_at(found[at], address)
+        there = law_at(near, address)
         mass, whirl = rigid_threshold(there.stiffness[:2, :2], there.damping[:2, :2], ratio * at)
         rows.append(
             BearingSpeed(
@@ -148,22 +149,21 @@ def bearing(
     threshold = None
     if stability and found:
         progress(0.5, "stability")
-        laws = [equilibrium.laws for equilibrium in found.values()]
         # One mesh serves the modes at both ends of the range.
         ends = (min(found, key=abs), max(found, key=abs))
         system = system_for_speeds(own, ends, ModalRequest(modes=_MODES))
-        least = [_least_decrement(own, system, speed, near)[0] for speed, near in zip(found, laws, strict=True)]
+        least = [_least_decrement(own, system, at, near)[0] for at, near in found.items()]
         rows = [replace(row, log_decrement=one) for row, one in zip(rows, least, strict=True)]
         progress(0.85, "threshold")
         # Speeds rise in size: the first pair between which the least decrement falls through zero, at its own equilibria.
-        for (low, begin, _), (high, end, near) in pairwise(zip(found, least, laws, strict=True)):
+        for (low, begin), (high, end) in pairwise(zip(found, least, strict=True)):
             if begin is not None and end is not None and begin > 0.0 >= end:
 
-                def decrement(speed: float, near: Sequence[LawState] = near) -> float:
+                def decrement(speed: float, near: Sequence[LawState] = found[high]) -> float:
                     return _least_decrement(own, system, speed, near)[0] or 0.0
 
                 whirling = float(brentq(decrement, low, high, xtol=_THRESHOLD * abs(high)))
-                threshold = whirling, _least_decrement(own, system, whirling, near)[1]
+                threshold = whirling, _least_decrement(own, system, whirling, found[high])[1]
                 break
     # What the sheet says of the inside, under its name there.
     told: dict[str, Any] = {}
@@ -179,9 +179,7 @@ def bearing(
         law=law.title,
         speed=given,
         shaft_speed=ratio * given,
-        geometry={
-            item.name: getattr(law, item.name) for item in fields(law) if not isinstance(getattr(law, item.name), tuple)
-        },
+        geometry={name: value for name in law.declared() if not isinstance(value := getattr(law, name), tuple)},
         bearing_load=state.force,
         bearing_displacement=here.d,
         bearing_stiffness=here.stiffness,
@@ -220,15 +218,14 @@ def rigid_threshold(K: np.ndarray, C: np.ndarray, speed: float) -> tuple[float |
     return float(k / square), float(np.sqrt(square) / abs(speed))
 
 
-def _left_out(model: Model, address: str, law: object, inside: object) -> list[str]:
+def _left_out(model: Model, address: str, law: ForceLaw, inside: object) -> list[Note]:
     table, _, name = address.partition(".")
-    notes = [f"{address}: {text}" for text in law.left_out()]  # type: ignore[attr-defined]
+    notes = [Note(address, text) for text in law.left_out()]
     if table == "bearings" and model.bearings[name].stiffness is not None:
-        notes.append(f"{address}: the stiffness given beside its rolling elements, which carry here")
+        notes.append(Note(address, "the stiffness given beside its rolling elements, which carry here"))
     if isinstance(inside, OilField):
-        notes.append(
-            "oil in streamers where the film has broken: friction is that of a film that is whole, the most it can be"
-        )
+        why = "friction is that of a film that is whole, the most it can be"
+        notes.append(Note("", "oil in streamers where the film has broken", why))
     if isinstance(inside, RollingLoads):
-        notes.append(f"{address}: centrifugal force of its rolling elements, and friction")
+        notes.append(Note(address, "centrifugal force of its rolling elements, and friction"))
     return notes

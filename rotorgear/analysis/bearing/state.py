@@ -11,7 +11,7 @@ import numpy as np
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.film_heat import in_heat_balance
-from rotorgear.analysis.static.solve import Equilibrated, LawState, equilibrate
+from rotorgear.analysis.static.solve import LawState, equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
@@ -59,19 +59,19 @@ def by_its_law(model: Model, address: str) -> Model:
     return model.with_({f"{address}.stiffness": None})
 
 
-def equilibrium_of(model: Model, speed: float, near: Sequence[LawState] = ()) -> Equilibrated:
-    """The equilibrium of the whole gearbox at a speed of the input shaft in rad/s, looked for from a known one.
+def laws_of(model: Model, speed: float, near: Sequence[LawState] = ()) -> tuple[LawState, ...]:
+    """The laws in the equilibrium of the whole gearbox at a speed of the input shaft in rad/s, looked for from a known one.
 
     Raises:
         AnalysisError: there is no equilibrium.
     """
     system = flow_system(model, direction=direction_of(speed), kind="static")
-    return over_cycle(equilibrate(system, speed, near=near), speed)[0]
+    return over_cycle(equilibrate(system, speed, near=near), speed)[0].laws
 
 
-def law_at(equilibrium: Equilibrated, address: str) -> LawState:
-    """A bearing in an equilibrium."""
-    return next(law for law in equilibrium.laws if law.part.part == address)
+def law_at(laws: Sequence[LawState], address: str) -> LawState:
+    """The one of a bearing among the laws of an equilibrium."""
+    return next(law for law in laws if law.part.part == address)
 
 
 def carried(state: LawState, law: ForceLaw, speed: float, points: int = CYCLE_POINTS) -> LawState:
@@ -88,14 +88,7 @@ def carried(state: LawState, law: ForceLaw, speed: float, points: int = CYCLE_PO
 
     (own,), d = in_heat_balance([law], speed, settled)
     tangent = own.settled(d).linearised(d, speed=speed, points=points)
-    return replace(
-        state,
-        part=replace(state.part, law=own),
-        d=d,
-        force=tangent.force,
-        stiffness=tangent.stiffness,
-        damping=tangent.damping,
-    )
+    return LawState(replace(state.part, law=own), d, tangent.force, tangent.stiffness, tangent.damping)
 
 
 def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, points: int) -> np.ndarray:

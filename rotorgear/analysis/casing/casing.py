@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.constrained import ElasticBody
+from rotorgear.analysis.common.recorded import Clock
+from rotorgear.analysis.common.request import quantity
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce, rigid_residual
@@ -17,7 +18,7 @@ from rotorgear.memory import largest_memory
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
+from rotorgear.quantity import did_you_mean
 from rotorgear.results.casing import CasingRow, CasingSeat, CasingSurvey
 
 _MOST_MODES = 200
@@ -29,7 +30,7 @@ def casing(
     *,
     modes: int = 10,
     fmax: float | str | None = None,
-    progress: Progress | None = None,
+    progress: Progress = silent,
 ) -> CasingSurvey:
     """Read, check and reduce the casings of a model, and find the modes of their whole meshes.
 
@@ -47,17 +48,13 @@ def casing(
     Raises:
         AnalysisError: no casing of that name, or what is wrong with its mesh. MissingExtraError: meshio or scikit-fem is missing.
     """
-    tell = progress or silent
     started = time.perf_counter()
     if not 1 <= modes <= _MOST_MODES:
         raise AnalysisError(f"modes: got {modes}, expected a number from 1 to {_MOST_MODES}")
-    try:
-        highest = None if fmax is None else parse_quantity(fmax, "frequency")
-    except QuantityError as error:
-        raise AnalysisError(f"fmax: got '{fmax}', expected {error}") from None
+    highest = None if fmax is None else quantity(fmax, "frequency", "fmax")
     names = casing_names(model, name)
     rows = {
-        one: _row(model, one, modes, highest, part_of(tell, number / len(names), (number + 1) / len(names)))
+        one: _row(model, one, modes, highest, part_of(progress, number / len(names), (number + 1) / len(names)))
         for number, one in enumerate(names)
     }
     return CasingSurvey(
@@ -86,37 +83,32 @@ def casing_names(model: Model, name: str | None) -> list[str]:
 
 
 def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress) -> CasingRow:
-    seconds: dict[str, float] = {}
-
-    def clocked(step: str, since: float) -> None:
-        seconds[step] = time.perf_counter() - since
-
     settings = casing_settings(model, name)
-    since = time.perf_counter()
+    clock = Clock()
     fe = finite_element_body(settings, part_of(tell, 0.0, 0.15))
-    clocked("reading and assembly", since)
-    since = time.perf_counter()
+    clock.lap("reading and assembly")
     body, factor = reduce(fe, settings.modes_to or (BEYOND * fmax if fmax else None), part_of(tell, 0.15, 0.55))[:2]
-    clocked("reduction", since)
-    since = time.perf_counter()
+    clock.lap("reduction")
     count = min(count, len(fe.mesh.points))
     # The factor of the reduction serves again where it is that of the body without rigid seats.
-    mean = settings.connection == "mean" or not fe.seats
-    empty = MeshModes(np.zeros(0), np.zeros((fe.dofs, 0)))
-    held = held_modes(fe, count, factor if mean else None, part_of(tell, 0.55, 0.7)) if body.held else empty
-    reusable: ElasticBody | None = factor if mean and not len(fe.held) else None
+    again = factor if settings.connection == "mean" or not fe.seats else None
     del factor
-    free = free_modes(fe, count, reusable, part_of(tell, 0.7, 0.9))
-    clocked("modes of the mesh", since)
-    since = time.perf_counter()
+    held = MeshModes(np.zeros(0), np.zeros((fe.dofs, 0)))
+    if body.held:
+        held = held_modes(fe, count, again, part_of(tell, 0.55, 0.7))
+    if len(fe.held):
+        again = None
+    free = free_modes(fe, count, again, part_of(tell, 0.7, 0.9))
+    clock.lap("modes of the mesh")
     tell(0.9, f"{settings.address}: error of the mesh")
     free_error = _mesh_error(fe, free)
     held_error = _mesh_error(fe, held)
-    clocked("error of the mesh", since)
+    clock.lap("error of the mesh")
     residual, rigid_frequency = rigid_residual(fe)
     frequency, shapes = body.modes()
     first = 0 if body.held else 6
     chosen = range(first, min(first + count, body.size))
+    errors = [body.eigenvalue_error((2.0 * np.pi * frequency[i]) ** 2, shapes[:, i]) or 0.0 for i in chosen]
     mass, centre, inertia = fe.mass_properties
     nodes, surface_nodes = len(fe.mesh.points), np.unique(fe.mesh.boundary)
     assert body.surface is not None, "a body of a mesh has a surface"
@@ -125,10 +117,9 @@ def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress
     K = body.stiffness[: body.interface, : body.interface]
     flexibility = np.linalg.inv(K) if body.held else None
     seats = []
-    for number, seat in enumerate(body.seats):
+    for number, (seat, patch) in enumerate(zip(body.seats, fe.seats, strict=True)):
         own = slice(6 * number, 6 * number + 6)
         stiffness = K[own, own] if flexibility is None else np.linalg.inv(flexibility[own, own])
-        patch = fe.seats[number]
         others = "held" if flexibility is None else "free"
         seats.append(CasingSeat(seat, patch.point, patch.area, len(patch.nodes), stiffness, others))
     return CasingRow(
@@ -153,13 +144,11 @@ def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress
         fixed_frequency_hz=body.fixed_frequency,
         coordinates=body.size,
         reduced_frequency_hz=frequency[list(chosen)],
-        reduction_error=np.array(
-            [0.5 * (body.eigenvalue_error((2.0 * np.pi * frequency[i]) ** 2, shapes[:, i]) or 0.0) for i in chosen]
-        ),
+        reduction_error=0.5 * np.array(errors),
         seats=tuple(seats),
         notes=fe.mesh.notes,
         memory_bytes=largest_memory(),
-        seconds=seconds,
+        seconds=clock.laps,
         points=body.surface.points,
         triangles=body.surface.triangles,
         free_shapes=free.shapes.reshape(nodes, 3, -1)[surface_nodes],

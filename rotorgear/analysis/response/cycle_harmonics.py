@@ -5,7 +5,6 @@ A curve x(u) over a cycle u = 0 to 1 is its mean plus the sum of Re(c_n e^{2 pi 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -24,9 +23,11 @@ _SMALL_CURVE = 0.1
 # First orders of the mesh, and of a cycle in which teeth differ, that are looked at by themselves: none of them is left out
 # that reaches the first share of the largest among them, however small they all are beside the others.
 _FIRST = 5
-# Teeth that differ have orders without end; no more than so many are taken.
+# Teeth that differ have orders without end; this is the largest number that is taken.
 _MOST = 1024
 _NODES = 256
+# The rule of Gauss and Legendre takes longer to find than to use.
+_gauss = cache(np.polynomial.legendre.leggauss)
 
 
 def harmonics_of_pieces(pieces: tuple[tuple[float, float, float], ...]) -> np.ndarray:
@@ -55,19 +56,12 @@ def _of_straight(start: np.ndarray, end: np.ndarray, first: np.ndarray, last: np
 
 def harmonics_of_pulse(duration: float, at: float) -> np.ndarray:
     """Coefficients (SEEN,) of a half sine of height 1 that lasts a share of the cycle from `at` on."""
-    nodes, weights = _gauss()
+    nodes, weights = _gauss(_NODES)
     x = 0.5 * (nodes + 1.0)
     n = np.arange(1, SEEN + 1)[:, None]
     return np.asarray(
         duration * (weights * np.sin(np.pi * x) * np.exp(-2j * np.pi * n * (at + duration * x))).sum(axis=1)
     )
-
-
-@cache
-def _gauss() -> tuple[np.ndarray, np.ndarray]:
-    """The rule of Gauss and Legendre, which takes longer to find than to use."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    return nodes, weights
 
 
 def strong(coefficients: np.ndarray) -> tuple[list[tuple[int, complex]], float]:
@@ -87,33 +81,21 @@ def harmonics_of_cycle(values: np.ndarray) -> np.ndarray:
     return np.asarray(2.0 * np.fft.fft(values, axis=0)[1 : count + 1] / len(values))
 
 
-@dataclass(frozen=True)
-class Needed:
-    """Harmonics of a curve that are needed for its peak to peak.
-
-    Attributes:
-        numbers: theirs, rising; major: those of them that are large by themselves.
-        weak: the largest of the others, relative to the strongest.
-        change: largest change of a peak to peak without the others, relative to it, or to a tenth of the largest one.
-    """
-
-    numbers: tuple[int, ...] = ()
-    major: frozenset[int] = frozenset()
-    weak: float = 0.0
-    change: float = 0.0
-
-
-def that_matter(values: np.ndarray, periods: int = 1) -> Needed:
-    """Which harmonics of values (p, c) over a cycle of so many mesh periods are needed for their peak to peak.
+def that_matter(values: np.ndarray, periods: int = 1) -> tuple[list[int], set[int], float, float]:
+    """Which harmonics of values (p, c) over a cycle of some mesh periods are needed for their peak to peak.
 
     The first orders of the mesh and of the cycle are among them, too.
+
+    Returns:
+        Their numbers, rising; those of them that are large by themselves; the largest of the others, relative to the strongest;
+        and the largest change of a peak to peak without the others, relative to it, or to a tenth of the largest one.
     """
     spectrum = np.fft.rfft(values, axis=0)
     spectrum[0] = 0.0
     size = np.abs(spectrum).max(axis=1)
     largest = float(size.max(initial=0.0))
     if not largest:
-        return Needed()
+        return [], set(), 0.0, 0.0
     first = _first_orders(np.abs(spectrum), periods)
     order = np.lexsort((-size, ~first))
     least = min(int(np.count_nonzero(first | (size > _MINOR * largest))), _MOST)
@@ -131,10 +113,9 @@ def that_matter(values: np.ndarray, periods: int = 1) -> Needed:
         count += max(1, count // 16)
     # Rounding is no harmonic, and the highest of an even number of values has no phase.
     numbers = sorted(int(n) for n in order[:count] if size[n] > 1e-12 * largest and 2 * n < len(values))
-    major = frozenset(n for n in numbers if size[n] > _MINOR * largest)
+    major = {n for n in numbers if size[n] > _MINOR * largest}
     weak = float(np.delete(size, numbers).max(initial=0.0)) / largest
-    some = weak > 1e-9
-    return Needed(tuple(numbers), major, weak if some else 0.0, change(count) if some else 0.0)
+    return (numbers, major, weak, change(count)) if weak > 1e-9 else (numbers, major, 0.0, 0.0)
 
 
 def _first_orders(size: np.ndarray, periods: int) -> np.ndarray:

@@ -6,7 +6,7 @@ Ewins, Modal Testing, 2nd ed., chapter 2 (Research Studies Press 2000).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -17,12 +17,11 @@ from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
-from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, highest_peaks, plan_up_to
-from rotorgear.analysis.response.plant import Plant
+from rotorgear.analysis.response.mesh import aims, damped_plant, highest_peaks, meshed
 from rotorgear.analysis.static.mean_state import about_mean
-from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
@@ -30,7 +29,6 @@ from rotorgear.results.laws import about_state, law_rows
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.bubble_errors import ForcedChanges
-from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.system import System
 
@@ -38,7 +36,9 @@ POINTS = 1000
 _CHECKED_ON_FINER = 4
 # Rounding below this is nothing beside the error of any mesh, and is not told.
 _ROUNDING = 1e-9
-_UNDAMPED = "nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping"
+_UNDAMPED = Note(
+    "", "nothing damps the model", "heights near a resonance are those of the nearest frequency; give a damping"
+)
 
 
 @renamed_arguments(damping_ratio="modal_damping")
@@ -87,35 +87,31 @@ def frf(
     check_request(turns, None, None, elements, accuracy)
     if not hz.size or not np.all(np.isfinite(hz)) or hz[0] <= 0.0:
         raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
-    if not inputs or not outputs:
-        raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
     check_modal_damping(modal_damping)
+    places = checked_places(model, inputs, outputs)
     given = model
     model, few = with_casing_modes(model, float(hz[-1]))
-    input_units = tuple("N m" if rotates(model, text) else "N" for text in inputs)
-    output_units = tuple("rad" if rotates(model, text) else "m" for text in outputs)
     zeta = modal_damping + model.damping.modal_ratio
-    state, first = about_mean(model, [turns or None], turns)
+    about = about_mean(model, [turns or None], turns)
 
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
-        plan = plan_up_to(model, at_speed(state, turns), MARGIN * float(hz[-1]), elements, aim)
-        system = linear_system(model, [turns], plan, state=first.with_tangents(state))
+        system = meshed(model, about, turns, float(hz[-1]), elements, aim)
         limit = damped_up_to(system, 2.0 * np.pi * float(hz[-1]))
-        found = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress)
-        receptance = found.receptance
+        solved = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress)
+        receptance, bubble_change, residual, rounding = solved
         progress(0.96, "error estimate")
         estimate = 0.0
         if any(system.nodes.elements.values()):
             # A finer mesh is looked at where a response has its highest peak, and at the peaks of what the elements lack: a
             # higher mode may have the larger error where the response itself is low.
             highest = highest_peaks(np.abs(receptance).reshape(len(hz), -1), 1)
-            at = np.union1d(highest, highest_peaks(found.bubble_change, _CHECKED_ON_FINER))
+            at = np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))
             finer = system.with_plan(all_finer(system))
-            there = _solved(finer, turns, hz[at], (inputs, outputs), (limit, zeta), silent)
-            estimate = relative_change(there.receptance, receptance[at], np.abs(receptance).max(axis=0))
-        if found.rounding > _ROUNDING:
-            estimate = max(estimate, found.rounding)
+            there = _solved(finer, turns, hz[at], (inputs, outputs), (limit, zeta), silent)[0]
+            estimate = relative_change(there, receptance[at], np.abs(receptance).max(axis=0))
+        if rounding > _ROUNDING:
+            estimate = max(estimate, rounding)
         if accuracy is None or estimate <= accuracy:
             break
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
@@ -124,30 +120,39 @@ def frf(
         model=given,
         speed=turns,
         frequency_hz=hz,
-        inputs=tuple(inputs),
-        outputs=tuple(outputs),
-        input_units=input_units,
-        output_units=output_units,
+        **places,
         receptance=receptance,
         damping_ratio=zeta,
-        residual=found.residual,
+        residual=residual,
         error_estimate=estimate,
         dofs=system.n,
         discretisation=pieces(system),
         laws=law_rows(system.state.operating),
         left_out=(
-            *first.notes,
+            *about[1].notes,
             *left_out(system, "frf", turns),
             *undamped_above(limit, zeta),
         ),
-        warnings=(
-            *few,
-            *([] if zeta or system.damping(turns).nnz else [_UNDAMPED]),
-            *([short] if short else []),
-        ),
+        warnings=(*few, *([] if zeta or system.damping(turns).nnz else [_UNDAMPED]), *([short] if short else [])),
         status=short or "success",
         method="direct sparse LU at every frequency" + about_state(system.state),
     )
+
+
+def checked_places(model: Model, inputs: Sequence[str], outputs: Sequence[str]) -> dict[str, Any]:
+    """Places of forces and of displacements with their units, as results have them.
+
+    Raises:
+        AnalysisError: there is none of either, or one that the model has not.
+    """
+    if not inputs or not outputs:
+        raise AnalysisError("inputs and outputs: expected at least one place where a force acts and one that is read")
+    return {
+        "inputs": tuple(inputs),
+        "outputs": tuple(outputs),
+        "input_units": tuple("N m" if rotates(model, text) else "N" for text in inputs),
+        "output_units": tuple("rad" if rotates(model, text) else "m" for text in outputs),
+    }
 
 
 def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.ndarray:
@@ -163,23 +168,6 @@ def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.nd
     return np.linspace(low, fmax, points)
 
 
-@dataclass(frozen=True)
-class _Solved:
-    """Receptances (f, o, i), and what may be wrong with them.
-
-    Attributes:
-        bubble_change: (f, i) change of the receptance at each input by polynomials that the shaft elements lack.
-        residual: the largest relative one.
-        rounding: what the rounding of M and K may change. A relative change eps of their entries moves the receptance f^T q
-            at the input by up to eps |q|^T (|K| + w^2 |M|) |q|; it is relative to the largest receptance there.
-    """
-
-    receptance: np.ndarray
-    bubble_change: np.ndarray
-    residual: float
-    rounding: float
-
-
 def _solved(
     system: System,
     speed: float,
@@ -187,14 +175,17 @@ def _solved(
     places: tuple[Sequence[str], Sequence[str]],
     damping: tuple[float, float],
     progress: Progress,
-) -> _Solved:
+) -> tuple[np.ndarray, np.ndarray, float, float]:
     """Solve each frequency for forces at the first of the places and displacements at the second ones.
 
     `damping`: frequency in rad/s up to which modes have a damping ratio beside the damping of the model, and that ratio.
+
+    Returns:
+        Receptances (f, o, i); what polynomials that the shaft elements lack would change of the receptance at each input, (f, i);
+        the largest relative residual; and what the rounding of M and K may change: a relative change eps of their entries moves
+        the receptance f^T q at the input by up to eps |q|^T (|K| + w^2 |M|) |q|; it is relative to the largest receptance there.
     """
-    limit, zeta = damping
-    modes = (*damped_modes(system, limit, speed), zeta) if zeta else None
-    dynamics = Plant(system, contact_lines(system), modes).dynamics(speed)
+    dynamics = damped_plant(system, speed, *damping).dynamics(speed)
     inputs, outputs = (moving_rows(system, names) for names in places)
     f = inputs.T
     bubbles = ForcedChanges.of(system)
@@ -218,7 +209,7 @@ def _solved(
             moved = np.maximum(moved, EPS * np.sum(size * (size_K @ size + w**2 * (size_M @ size)), axis=0))
             largest = np.maximum(largest, np.abs(np.sum(f * q, axis=0)))
     rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
-    return _Solved(np.array(rows), np.array(changes), worst, rounding)
+    return np.array(rows), np.array(changes), worst, rounding
 
 
 def relative_change(exact: np.ndarray, receptance: np.ndarray, largest: np.ndarray | None = None) -> float:

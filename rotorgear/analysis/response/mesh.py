@@ -1,4 +1,4 @@
-"""How finely a forced response is meshed, the modes that carry modal damping, and what a finer mesh says of the largest forces.
+"""The system that a forced response solves, the modes that carry modal damping, and what a finer mesh says of the largest forces.
 
 Beside it: whether the speeds are dense enough to see the peaks, and whether teeth part.
 """
@@ -17,25 +17,25 @@ from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer
 from rotorgear.analysis.modal.solve import Wanted, solve
 from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
-from rotorgear.analysis.response.run_up import solve_orders
+from rotorgear.analysis.response.run_up import answer
 from rotorgear.analysis.static.mean_state import Setup
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.layout.spring import constant_spring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.modal import ModalResult
-from rotorgear.system.contacts import contact_lines
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 # Up to this much above the highest excited frequency the mesh is refined.
-MARGIN = 1.25
+_MARGIN = 1.25
 # Each further round for an accuracy of amplitudes refines the frequencies by this much more.
 _TIGHTER = 0.03
 _CHECKED_ON_FINER = 4
-# Of an order: so many speeds where it is highest, and so many where its elements lack most.
+# Number of speeds, of an order, where it is highest, and of those where its elements lack most.
 _PEAKS = 2
-# A resonance shows its height to this share when its half-power width spans so many speeds.
+# A resonance shows its height to this share when its half-power width spans this number of speeds.
 _SPEEDS_A_PEAK = 2.0
 # An order pushes a mode that takes more than this share of what the most pushed one takes: the rest is rounding.
 _PUSHED = 1e-9
@@ -43,14 +43,28 @@ _PUSHED = 1e-9
 _UNDAMPED = 1e-12
 
 
-def plan_up_to(model: Model, state: State, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
-    """The mesh that modes about a state need up to a frequency in Hz, or a fixed one."""
-    if elements is not None:
-        return Plan(elements)
-    if not any(shaft.sections for shaft in model.shafts.values()):
-        return Plan()
-    asked = ModalRequest(fmax=fmax, accuracy=accuracy or DEFAULT_ACCURACY)
-    return plan_of(modes_about(model, asked, state))
+def meshed(
+    model: Model,
+    about: tuple[State, Setup],
+    speed: float,
+    fmax: float,
+    elements: int | None = None,
+    accuracy: float | None = None,
+) -> System:
+    """The system about its mean state, on the mesh that modes up to a frequency need, or on a fixed one.
+
+    Args:
+        model: a checked model. about: as `about_mean` has it.
+        speed: of the reference shaft in rad/s. fmax: highest excited frequency in Hz.
+        elements: number of basic elements in each shaft segment. accuracy: of the frequencies (default: 1e-3).
+    """
+    state, first = about
+    plan = Plan() if elements is None else Plan(elements)
+    if elements is None and any(shaft.sections for shaft in model.shafts.values()):
+        asked = ModalRequest(fmax=_MARGIN * fmax, accuracy=accuracy or DEFAULT_ACCURACY)
+        refined = modes_about(model, asked, at_speed(state, speed))
+        plan = Plan(START.elements, START.order, cut_of(refined.discretisation))
+    return linear_system(model, [speed], plan, state=first.with_tangents(state))
 
 
 def aims(accuracy: float | None) -> Iterator[float | None]:
@@ -65,11 +79,6 @@ def aims(accuracy: float | None) -> Iterator[float | None]:
         while aim > FINEST:
             yield aim
             aim = aim * _TIGHTER
-
-
-def plan_of(result: ModalResult) -> Plan:
-    """The plan that a modal result was refined to."""
-    return Plan(START.elements, START.order, cut_of(result.discretisation))
 
 
 def at_speed(state: State, speed: float) -> State:
@@ -108,11 +117,16 @@ def damped_modes(
     return np.real(found.vectors[:, keep]), np.where(found.rigid, 0.0, np.abs(found.eigenvalues))[keep]
 
 
+def damped_plant(system: System, speed: float, limit: float, zeta: float, dofs: np.ndarray | None = None) -> Plant:
+    """The plant whose modes up to a limit have a damping ratio beside its own damping; arguments as for `damped_modes`."""
+    return Plant(system, (*damped_modes(system, limit, speed, dofs), zeta) if zeta else None)
+
+
 def mesh_error(
     plant: Plant,
     orders: list[Order],
     speeds: np.ndarray,
-    readings: list[Readings],
+    readings: Readings,
     damping: tuple[float, float],
     setup: Setup,
 ) -> float:
@@ -125,24 +139,20 @@ def mesh_error(
     if not any(system.nodes.elements.values()):
         return 0.0
     finer = system.with_plan(all_finer(system))
-    lines = contact_lines(finer)
-    zeta, limit = damping
-    rich = Plant(finer, lines, (*damped_modes(finer, limit, float(speeds[-1])), zeta) if zeta else None)
-    forces = np.array([item.stacked for item in readings])  # (s, o, ...)
+    rich = damped_plant(finer, float(speeds[-1]), *damping)
+    forces = readings.stacked  # (s, o, ...)
     if not forces.size:
         return float("nan")  # the model has no part and no point whose answer could be compared
     size = np.abs(forces).max(axis=2, initial=0.0)
-    lacking = np.array([item.bubble_change for item in readings])  # (s, o)
+    lacking = readings.bubble_change  # (s, o)
     worst = 0.0
-    wanted = {order.name: order for order in orders_of(replace(setup, system=finer, lines=lines))[0]}
+    wanted = {order.name: order for order in orders_of(replace(setup, system=finer, lines=rich.lines))[0]}
     for o in strongest_orders(size):
         order = [wanted[orders[o].name]]
         changed = 0.0
         largest = float(size[:, o].max())
         for s in np.union1d(highest_peaks(size[:, [o]], _PEAKS), highest_peaks(lacking[:, [o]], _PEAKS)):
-            w, f = rich.loads(order, float(speeds[s]))
-            q = solve_orders(rich, rich.dynamics(float(speeds[s])), w, f)
-            there = rich.read(order, float(speeds[s]), w, q).stacked[0]
+            there = answer(rich, order, float(speeds[s])).stacked[0]
             largest = max(largest, float(np.abs(there).max(initial=0.0)))
             changed = max(changed, float(np.abs(there - forces[s, o]).max()))
         if largest:
@@ -165,26 +175,21 @@ def highest_peaks(size: np.ndarray, count: int) -> np.ndarray:
 
 def speed_warnings(
     plant: Plant, orders: list[Order], speeds: np.ndarray, modes: tuple[np.ndarray, np.ndarray, float]
-) -> list[str]:
-    """Sentences on damping that is missing, and on speeds too far apart for the sharpest resonance of the run-up."""
+) -> list[Note]:
+    """Facts on damping that is missing, and on speeds too far apart for the sharpest resonance of the run-up."""
     shapes, w, zeta = modes
     elastic = w > 0.0
     if not elastic.any():
         return []
-    C = (
-        plant.system.damping(float(np.max(np.abs(speeds))))
-        if not plant.has_tables
-        else plant.system.damping(float(speeds[-1]))
-    )
+    top = float(np.max(np.abs(speeds)))
+    C = plant.system.damping(float(speeds[-1]) if plant.has_tables else top)
     ratios = np.einsum("nm,nm->m", shapes, C @ shapes)[elastic] / (2.0 * w[elastic]) + zeta
     if float(ratios.max()) <= 0.0:
-        return [
-            "nothing damps the model: amplitudes near a resonance are as high as the nearest speed happens to be; give a damping"
-        ]
+        why = "amplitudes near a resonance are as high as the nearest speed happens to be; give a damping"
+        return [Note("", "nothing damps the model", why)]
     if len(speeds) < 2:
         return []
     step = float(np.max(np.diff(np.sort(np.abs(speeds)))))
-    top = float(np.max(np.abs(speeds)))
     width = np.inf
     for order in orders:
         if not order.ratio:  # its frequency does not sweep over resonances
@@ -197,37 +202,29 @@ def speed_warnings(
             width = min(width, float(np.min(2.0 * ratios[met] * w[elastic][met])) / order.ratio)
     if width >= _SPEEDS_A_PEAK * step:
         return []
-    apart = step * RPM_PER_RAD_S
-    wide = width * RPM_PER_RAD_S
     if width <= _UNDAMPED * top:
-        return [
-            "nothing damps a resonance that is met: its peak is as high as the nearest speed happens to be; give a damping"
-        ]
-    return [
-        f"speeds are {apart:.4g} rpm apart, but the sharpest resonance met is {wide:.2g} rpm wide at half power: "
-        "its peak may be higher than shown; more points or a narrower range show it"
-    ]
+        why = "its peak is as high as the nearest speed happens to be; give a damping"
+        return [Note("", "nothing damps a resonance that is met", why)]
+    apart = f"speeds are {step * RPM_PER_RAD_S:.4g} rpm apart"
+    wide = f"the sharpest resonance met is {width * RPM_PER_RAD_S:.2g} rpm wide at half power"
+    why = "its peak may be higher than shown; more points or a narrower range show it"
+    return [Note("", f"{apart}, but {wide}", why)]
 
 
-def parting(setup: Setup, force: np.ndarray, speeds: np.ndarray) -> list[str]:
-    """A sentence for each mesh whose teeth would part: dynamic force (o, s, c) of one order above the mean force."""
+def parting(setup: Setup, force: np.ndarray, speeds: np.ndarray) -> list[Note]:
+    """A fact for each mesh whose teeth would part: dynamic force (s, o, c) of one order above the mean force."""
     found = []
-    lines = setup.lines
-    for mesh in dict.fromkeys(lines.names):
-        contacts = [k for k, name in enumerate(lines.names) if name == mesh]
-        mean = np.maximum(setup.mean_force[contacts], 1e-300)
-        share = np.abs(force[:, :, contacts]).max(axis=0) / mean  # (s, contacts)
+    names = np.array(setup.lines.names)
+    for mesh in dict.fromkeys(setup.lines.names):
+        mean = setup.mean_force[names == mesh]
+        share = np.abs(force[:, :, names == mesh]).max(axis=1) / np.maximum(mean, 1e-300)  # (s, contacts)
         over = np.flatnonzero(share.max(axis=1) > 1.0)
-        if not over.size:
-            continue
-        if not np.any(setup.mean_force[contacts] > 0.0):
-            found.append(
-                f"meshes.{mesh} carries no mean force: its teeth part, and the linear answer takes them as joined"
-            )
-            continue
-        rpm = np.abs(speeds[over]) * RPM_PER_RAD_S
-        found.append(
-            f"meshes.{mesh}: its dynamic force exceeds the mean force at {len(over)} of {len(speeds)} speeds, between "
-            f"{rpm.min():.6g} and {rpm.max():.6g} rpm; there the teeth part, and the linear answer ends"
-        )
+        if over.size and not np.any(mean > 0.0):
+            why = "its teeth part, and the linear answer takes them as joined"
+            found.append(Note("", f"meshes.{mesh} carries no mean force", why))
+        elif over.size:
+            rpm = np.abs(speeds[over]) * RPM_PER_RAD_S
+            where = f"{len(over)} of {len(speeds)} speeds, between {rpm.min():.6g} and {rpm.max():.6g} rpm"
+            what = f"its dynamic force exceeds the mean force at {where}"
+            found.append(Note(f"meshes.{mesh}", what, "there the teeth part, and the linear answer ends"))
     return found

@@ -35,6 +35,7 @@ from rotorgear.analysis.static.joint_state import Cycle
 from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.model.parts.load import COMPONENTS, LoadHistory
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.note import Note
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.loads import varying_load, wrench_load
 from rotorgear.system.local import cycle_pieces
@@ -45,7 +46,9 @@ _Key = tuple[str, int | float | Fraction, float]
 # With that, the name of what excites, and its part of the order, a `blank` one with what it adds.
 _Part = tuple[_Key, str, "Order"]
 
-_FIRST_ORDER = "the product of its varying stiffness and the vibration; it acts to first order, as a force"
+
+# Excitations of an order, which add up where several parts have one frequency.
+_ADD_UP = ("unbalance", "error", "force", "couple", "applied")
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ class Order:
         ratio: frequency in rad/s over the size of the reference speed; fixed: what of it does not go with the speed, in rad/s.
         unbalance: force per square of the reference speed at the free dofs, (n,).
         error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
-        push: force at the free dofs whatever the speed, (n,) or 0.
+        applied: force at the free dofs whatever the speed, (n,) or 0.
         couple: of loaded teeth that feel the tilt of their shafts, about the place of each contact along its face, (c,) N m.
         minor: whether it is one of the many small orders that loaded teeth need for their peak to peak only.
     """
@@ -69,22 +72,14 @@ class Order:
     force: np.ndarray
     couple: np.ndarray
     minor: bool = False
-    push: np.ndarray | float = 0.0
+    applied: np.ndarray | float = 0.0
     fixed: float = 0.0
 
     def plus(self, other: Order) -> Order:
         """Both together; they have one frequency, or this one excites nothing."""
-        return replace(
-            self,
-            ratio=self.ratio or other.ratio,
-            fixed=other.fixed,
-            unbalance=self.unbalance + other.unbalance,
-            error=self.error + other.error,
-            force=self.force + other.force,
-            couple=self.couple + other.couple,
-            push=self.push + other.push,
-            minor=self.minor and other.minor,
-        )
+        sums = {name: getattr(self, name) + getattr(other, name) for name in _ADD_UP}
+        minor = self.minor and other.minor
+        return replace(self, ratio=self.ratio or other.ratio, fixed=other.fixed, minor=minor, **sums)
 
     def frequency_at(self, speed: float) -> float:
         """Frequency in rad/s at a reference speed in rad/s."""
@@ -95,18 +90,18 @@ class Order:
         w = self.frequency_at(speed)
         return np.asarray(
             speed**2 * self.unbalance
-            + self.push
+            + self.applied
             + lines.vectors @ ((lines.stiffness + 1j * w * lines.damping) * self.error - self.force)
             - lines.tilt @ self.couple
         )
 
 
-def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
-    """Return all orders of a system about its mean state, lowest ratio first, and sentences on harmonics that are left out.
+def orders_of(setup: Setup) -> tuple[list[Order], tuple[Note, ...]]:
+    """Return all orders of a system about its mean state, lowest ratio first, and notes on harmonics that are left out.
 
     What has one frequency is one order, with its phases, which follow from the teeth.
     """
-    left: list[str] = []
+    left: list[Note] = []
     nothing = np.zeros(setup.system.n, complex)
     rest = np.zeros(len(setup.lines.states), complex)
     blank = Order("", 0.0, nothing, rest, rest, rest, minor=True)
@@ -119,23 +114,22 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
     ):
         names, order = found.get(key, ([], blank))
         found[key] = names if name in names else [*names, name], order.plus(part)
-    orders = [
-        replace(o, name=f"{kind} {', '.join(names)} {harmonic:g}" + (" Hz" if o.fixed else "x"))
-        if isinstance(harmonic, float)
-        else replace(o, name=f"{kind} {', '.join(names)} {harmonic}x")
-        for (kind, harmonic, _), (names, o) in found.items()
-    ]
+    orders = []
+    for (kind, harmonic, _), (names, order) in found.items():
+        multiple = f"{harmonic:g}" if isinstance(harmonic, float) else f"{harmonic}"
+        unit = " Hz" if order.fixed else "x"
+        orders.append(replace(order, name=f"{kind} {', '.join(names)} {multiple}{unit}"))
     return sorted(orders, key=lambda order: (order.ratio, order.fixed)), tuple(dict.fromkeys(left))
 
 
-def _external_loads(system: System, blank: Order, left: list[str]) -> Iterable[_Part]:
+def _external_loads(system: System, blank: Order, left: list[Note]) -> Iterable[_Part]:
     """Each harmonic of loads and torque ripples."""
     T = system.dofs.transform
 
-    def turning(order: float, shaft: str, ratio: float, push: np.ndarray) -> _Part:
+    def turning(order: float, shaft: str, ratio: float, applied: np.ndarray) -> _Part:
         """An order of a shaft; one of a whole number is that of its unbalances."""
         multiple = int(order) if order == int(order) else order
-        part = replace(blank, ratio=order * ratio, push=push, minor=False)
+        part = replace(blank, ratio=order * ratio, applied=applied, minor=False)
         return ("shaft", multiple, round(order * ratio, 9)), shaft, part
 
     for item in system.state.applied:
@@ -149,19 +143,19 @@ def _external_loads(system: System, blank: Order, left: list[str]) -> Iterable[_
     for load in system.layout.external_loads:
         sense = system.direction * np.sign(load.ratio)
         if load.frequency:
-            push = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * load.phase))
+            applied = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * load.phase))
             name = load.address.removeprefix("loads.")
-            part = replace(blank, fixed=2.0 * np.pi * load.frequency, push=push, minor=False)
+            part = replace(blank, fixed=2.0 * np.pi * load.frequency, applied=applied, minor=False)
             yield ("load", load.frequency, 0.0), name, part
         elif load.order:
-            push = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * sense * load.phase))
-            yield turning(abs(load.order / load.ratio), load.counted, abs(load.ratio), push)
+            applied = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * sense * load.phase))
+            yield turning(abs(load.order / load.ratio), load.counted, abs(load.ratio), applied)
         elif load.history is not None and load.history.over == "angle":
             coefficients, rest = _of_history(load.history)
             for n, wrench in coefficients:
-                push = T.T @ wrench_load(system, load, wrench if sense > 0 else wrench.conj())
-                yield turning(float(n), load.counted, abs(load.ratio), push)
-            left += [f"{load.address}: {sentence}" for sentence in _weak("table over the angle", rest)]
+                applied = T.T @ wrench_load(system, load, wrench if sense > 0 else wrench.conj())
+                yield turning(float(n), load.counted, abs(load.ratio), applied)
+            left += _weak(load.address, "table over the angle", rest)
 
 
 def _of_history(history: LoadHistory) -> tuple[list[tuple[int, np.ndarray]], float]:
@@ -194,7 +188,7 @@ def _unbalances(system: System, blank: Order) -> Iterable[_Part]:
         yield ("shaft", 1, round(abs(ratio), 9)), item.shaft, part
 
 
-def _meshes(setup: Setup, blank: Order, left: list[str]) -> Iterable[_Part]:
+def _meshes(setup: Setup, blank: Order, left: list[Note]) -> Iterable[_Part]:
     """Every harmonic that a mesh is given."""
     system = setup.system
     load = system.state.about_nominal_flanks
@@ -213,9 +207,13 @@ def _meshes(setup: Setup, blank: Order, left: list[str]) -> Iterable[_Part]:
             yield ("mesh", harmonic, round(harmonic * ratio, 9)), mesh.name, part
 
 
-def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Iterable[tuple[int, int, complex]]:
+def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[Note]) -> Iterable[tuple[int, int, complex]]:
     """(0: error in m, 1: force in N; harmonic; amplitude) of what the file lets vary in a contact over its cycle."""
     state = setup.lines.states[contact]
+    address = f"meshes.{state.contact.mesh}"
+    first_order = Note(
+        address, "the product of its varying stiffness and the vibration", "it acts to first order, as a force"
+    )
     mean_force = float(setup.mean_force[contact])
     # What opens the nominal flanks closes the others.
     opens = 1.0 if setup.system.state.is_nominal(state) else -1.0
@@ -224,27 +222,26 @@ def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Itera
     for share in mesh.stiffness_variation:
         yield 1, share.harmonic, mean_force * share.amplitude * cmath.exp(1j * share.phase)
     if mesh.stiffness_variation and mean_force:
-        left.append(f"meshes.{state.contact.mesh}: {_FIRST_ORDER}")
+        left.append(first_order)
     loaded_teeth = setup.joint is not None and setup.joint.own[contact] >= 0
     pieces = cycle_pieces(setup.system, state) if mean_force and not loaded_teeth else ()
     if pieces:
         kept, rest = strong(harmonics_of_pieces(pieces))
         yield from ((1, n, mean_force * c) for n, c in kept)
-        left.append(f"meshes.{state.contact.mesh}: {_FIRST_ORDER}")
-        left += [f"meshes.{state.contact.mesh}: {sentence}" for sentence in _weak("stiffness", rest)]
+        left += [first_order, *_weak(address, "stiffness", rest)]
     if mesh.corner_impact is not None:
         pulse = mesh.corner_impact
         kept, rest = strong(harmonics_of_pulse(pulse.duration, pulse.at))
         yield from ((1, n, opens * pulse.force * c) for n, c in kept)
-        left += [f"meshes.{state.contact.mesh}: {sentence}" for sentence in _weak("corner impact", rest)]
+        left += _weak(address, "corner impact", rest)
 
 
-def _weak(what: str, rest: float) -> list[str]:
-    """A sentence on the largest of the harmonics that are left out, relative to the strongest of all."""
-    return [f"harmonics of its {what} of up to {100.0 * rest:.2g} % of the strongest"] if rest > 0.0 else []
+def _weak(part: str, what: str, rest: float) -> list[Note]:
+    """A note on the largest of the harmonics that are left out, relative to the strongest of all."""
+    return [Note(part, f"harmonics of its {what} of up to {100.0 * rest:.2g} % of the strongest")] if rest > 0.0 else []
 
 
-def _loaded_teeth(setup: Setup, blank: Order, left: list[str]) -> Iterable[_Part]:
+def _loaded_teeth(setup: Setup, blank: Order, left: list[Note]) -> Iterable[_Part]:
     """The harmonics of the joint state of loaded teeth.
 
     The damping of a contact is that of its deflection: what the approach is at first touch acts as a transmission error e, and
@@ -256,23 +253,23 @@ def _loaded_teeth(setup: Setup, blank: Order, left: list[str]) -> Iterable[_Part
         if not cycle.ratio:
             continue
         f = joint.excitation(cycle)
-        # Contacts are weighed by the deflection that their force stands for, and by the approach that it makes at a crawl: where
+        # Contacts are weighed by the deflection of their force, and by the approach that it makes at a crawl: where
         # helices share a load these are two curves.
         k = np.where(joint.stiffness > 0.0, joint.stiffness, np.inf)
         approach = np.where(joint.own >= 0, joint.pressed(cycle), 0.0)
-        needed = that_matter(np.hstack([f / k, approach - approach.mean(axis=0)]), cycle.periods)
-        if needed.weak > 0.0:
-            left.append(
-                f"meshes {', '.join(cycle.meshes)}: orders of their loaded teeth of up to {100.0 * needed.weak:.2g} % of the "
-                f"strongest; they would change its peak to peak at a crawl by {100.0 * needed.change:.2g} %"
-            )
+        deflections = np.hstack([f / k, approach - approach.mean(axis=0)])
+        numbers, major, weak, change = that_matter(deflections, cycle.periods)
+        if weak > 0.0:
+            which = f"orders of their loaded teeth of up to {100.0 * weak:.2g} % of the strongest"
+            size = f"they would change its peak to peak at a crawl by {100.0 * change:.2g} %"
+            left.append(Note("", f"meshes {', '.join(cycle.meshes)}", f"{which}; {size}"))
         error = joint.no_load(cycle)
         errors, forces, couples = (
             harmonics_of_cycle(values) for values in (error, f + joint.stiffness * error, joint.couple(cycle))
         )
-        for n in needed.numbers:
+        for n in numbers:
             ratio = n / cycle.periods * cycle.ratio
-            minor = n not in needed.major
+            minor = n not in major
             part = Order("", ratio, blank.unbalance, errors[n - 1], forces[n - 1], couples[n - 1], minor)
             for kind, name, harmonic in _named(setup.system, cycle, Fraction(n, cycle.periods)):
                 yield (kind, harmonic, round(ratio, 9)), name, part

@@ -10,7 +10,7 @@ gearbox, D = M V diag(2 ζ ω) Vᵀ M, brakes every point of the casing as accel
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -21,17 +21,17 @@ from rotorgear.analysis.common.stations import part_nodes
 from rotorgear.analysis.response.orders import Order
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRank
 from rotorgear.system.bubble_errors import ForcedChanges
-from rotorgear.system.contacts import ContactLines
+from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
 
 
 @dataclass(frozen=True)
 class Readings:
-    """Amplitudes at one speed.
+    """Amplitudes at one speed; at several of them each array has one axis more in front, (s, o, ...).
 
     Attributes:
         mesh_force, transmission_error, approach: (o, c), the approach in the middle of the face, transverse.
-        pressed: (o, c) approach along the flank normal at the place of the face where the contact's stiffness stands.
+        pressed: (o, c) approach along the flank normal at the place of the face where the contact has its stiffness.
         bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
         normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
@@ -57,25 +57,21 @@ class Readings:
 
         Where it has no part on a shaft either, the accelerations of its points, (o, k).
         """
-        orders = len(self.mesh_force)
-        forces = np.hstack([self.mesh_force, self.bearing_force.reshape(orders, -1)])
+        orders = self.mesh_force.shape[:-1]
+        forces = np.concatenate([self.mesh_force, self.bearing_force.reshape(*orders, -1)], axis=-1)
         if forces.size:
             return forces
-        return self.displacement[:, :, :3].reshape(orders, -1) if self.displacement.size else self.acceleration
-
-    def chosen(self, which: np.ndarray) -> Readings:
-        """Those of some orders, in their sequence."""
-        return Readings(**{item.name: getattr(self, item.name)[which] for item in fields(Readings)})
+        return self.displacement[..., :3].reshape(*orders, -1) if self.displacement.size else self.acceleration
 
 
 # What of the readings is in the result of a response.
 READ = tuple(item.name for item in fields(Readings) if item.name not in ("pressed", "bubble_change"))
 
 
-def joined(parts: Sequence[Readings]) -> Readings:
-    """Readings of several lists of orders at one speed as those of all of them."""
+def gathered(parts: Sequence[Readings], how: Callable[[list[np.ndarray]], np.ndarray] = np.stack) -> Readings:
+    """Several readings as one: quantity by quantity, one after the other (s, o, ...), or as `how` puts their arrays together."""
     names = [item.name for item in fields(Readings)]
-    return Readings(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    return Readings(**{name: how([getattr(part, name) for part in parts]) for name in names})
 
 
 def force_rows(
@@ -107,41 +103,6 @@ def force_rows(
             if beta and m.stiffness is not None:
                 C[rows, columns] += beta * m.stiffness[0][taken]
     return K, C
-
-
-class SeatLoads:
-    """Force, and moment about its point, on each seat that something stands in: rows of the matrices of those parts."""
-
-    def __init__(self, system: System) -> None:
-        self._system = system
-        self._rows: tuple[sp.csr_array, sp.csr_array] | None = None
-        standing: dict[str, list[str]] = {}
-        for address, (casing, number, _) in system.layout.seats:
-            name = f"{casing}.{system.layout.casing(casing).seats[number]}"
-            standing.setdefault(name, []).append(address)
-        self._standing = standing
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the seats, such as "box.left"."""
-        return tuple(self._standing)
-
-    @property
-    def shared(self) -> tuple[int, ...]:
-        """Numbers of the seats whose load is not that of one bearing."""
-        standing = self._standing.values()
-        return tuple(k for k, parts in enumerate(standing) if len(parts) > 1 or not parts[0].startswith("bearings."))
-
-    def read(self, speed: float, w: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Amplitudes (o, s, 6) for displacements q (n, o) at frequencies w (o,), at a reference speed; all in SI."""
-        if not self._standing:
-            return np.zeros((len(w), 0, 6))
-        if self._rows is None or self._system.has_tables:
-            T = sp.csr_array(self._system.dofs.transform)
-            K, C = force_rows(self._system, speed, tuple(self._standing.values()), slice(0, 6))
-            self._rows = sp.csr_array(sp.csr_array(K) @ T), sp.csr_array(sp.csr_array(C) @ T)
-        by_stiffness, by_damping = self._rows
-        return np.asarray(-(by_stiffness @ q + (by_damping @ q) * (1j * w)).T.reshape(len(w), -1, 6))
 
 
 class GroundLoads:
@@ -190,15 +151,16 @@ class GroundLoads:
 class Plant:
     """Matrices of a system over speed, with the modal damping that was asked for.
 
+    `seats` names the parts in each seat of a casing, such as "box.left" -> ["bearings.left"].
+
     Args:
-        system: the system about its mean state; lines: its contacts.
+        system: the system about its mean state.
         damping: modes (n, m), mass-normalised, their frequencies w (m,) in rad/s and the damping ratio they get.
     """
 
-    def __init__(
-        self, system: System, lines: ContactLines, damping: tuple[np.ndarray, np.ndarray, float] | None = None
-    ) -> None:
+    def __init__(self, system: System, damping: tuple[np.ndarray, np.ndarray, float] | None = None) -> None:
         beta = system.model.damping.rayleigh_beta
+        lines = contact_lines(system)
         self.system = system
         self.lines = replace(lines, damping=lines.damping + beta * lines.stiffness)
         self.low_rank: LowRank | None = None
@@ -221,10 +183,13 @@ class Plant:
             name: surface.normal_motion() / surface.normals_and_areas()[1].sum()
             for name, surface in self.surfaces.items()
         }
-        self.seats = SeatLoads(system)
+        self.seats: dict[str, list[str]] = {}
+        for part, (casing, number, _) in system.layout.seats:
+            name = f"{casing}.{system.layout.casing(casing).seats[number]}"
+            self.seats.setdefault(name, []).append(part)
         self.ground = GroundLoads(system, damped)
         self._parts: tuple[sp.csc_array, ...] | None = None
-        self._read: tuple[np.ndarray, np.ndarray] | None = None
+        self._rows: tuple[tuple[np.ndarray, ...], tuple[sp.csr_array, ...]] | None = None
         self._bubbles = ForcedChanges.of(system)
 
     def dynamics(self, speed: float) -> Dynamics:
@@ -258,8 +223,7 @@ class Plant:
         impedance = lines.stiffness + 1j * w[:, None] * lines.damping
         approach = (lines.vectors.T @ q).T
         force = impedance * (approach - error) + varied
-        K, C = self._bearings(speed)
-        held = -((K @ q) + (C @ q) * (1j * w)).T.reshape(len(w), -1, 3)
+        held, seated = (-(K @ q + (C @ q) * (1j * w)).T for K, C in self._force_rows(speed))
         moved = (self._points @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
         place = np.array([state.face.place if state.face else 0.0 for state in lines.states])
@@ -273,11 +237,11 @@ class Plant:
             transmission_error=rotation,
             approach=transverse,
             pressed=approach,
-            bearing_force=held,
+            bearing_force=held.reshape(len(w), -1, 3),
             acceleration=-(w**2)[:, None] * moved,
             displacement=there,
             normal_velocity=normal,
-            casing_seat_force=self.seats.read(speed, w, q),
+            casing_seat_force=np.asarray(seated).reshape(len(w), -1, 6),
             casing_ground_force=self.ground.read(w, q),
             bubble_change=lacking,
         )
@@ -291,15 +255,19 @@ class Plant:
             found[:, k] = np.sqrt(np.maximum(np.real(np.einsum("no,no->o", own.conj(), W @ own)), 0.0))
         return found
 
-    def _bearings(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """Rows that give the force on each bearing's node along x y z from displacements and velocities, (3 b, n) each."""
-        if self._read is not None and not self.has_tables:
-            return self._read
-        bearings = [(f"bearings.{name}",) for name in self.system.model.bearings]
-        K, C = force_rows(self.system, speed, bearings, slice(-6, -3))
-        T = self.system.dofs.transform
-        self._read = np.asarray((T.T @ K.T).T), np.asarray((T.T @ C.T).T)
-        return self._read
+    def _force_rows(self, speed: float) -> tuple[tuple[np.ndarray, ...], tuple[sp.csr_array, ...]]:
+        """Rows that give forces from displacements and from velocities: along x y z on each bearing's node (3 b, n) and, about
+        its point, on each seat that has a part in it (6 s, n)."""
+        if self._rows is None or self.has_tables:
+            T = self.system.dofs.transform
+            bearings = [(f"bearings.{name}",) for name in self.system.model.bearings]
+            on_nodes = force_rows(self.system, speed, bearings, slice(-6, -3))
+            in_seats = force_rows(self.system, speed, tuple(self.seats.values()), slice(0, 6))
+            self._rows = (
+                tuple(np.asarray((T.T @ rows.T).T) for rows in on_nodes),
+                tuple(sp.csr_array(sp.csr_array(rows) @ sp.csr_array(T)) for rows in in_seats),
+            )
+        return self._rows
 
 
 def _on_one_pattern(first: sp.csc_array, second: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:

@@ -21,30 +21,20 @@ from rotorgear.analysis.common.request import (
     speed_in_si,
 )
 from rotorgear.analysis.common.stations import shapes_at_stations
-from rotorgear.analysis.response.mesh import (
-    MARGIN,
-    aims,
-    at_speed,
-    damped_modes,
-    mesh_error,
-    parting,
-    plan_up_to,
-    speed_warnings,
-)
+from rotorgear.analysis.response.mesh import aims, damped_modes, mesh_error, meshed, parting, speed_warnings
 from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import READ, Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.response.second_order import peaks_of
 from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.mean_state import about_mean
-from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.response import ResponseResult
-from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
 
 METHODS = ("auto", "modal", "direct")
@@ -104,40 +94,36 @@ def response(
     check_request(None, None, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
     speed = float(chosen[-1])
-    # Tangents at all speeds, or at so many of them that straight lines between serve.
+    # Tangents at all speeds, or at enough of them for straight lines in between.
     spread = np.unique(np.linspace(0, len(chosen) - 1, _TANGENTS).round().astype(int))
-    state, first = about_mean(model, [float(value) for value in chosen[spread]], speed)
-    orders, weak = orders_of(first)
+    about = about_mean(model, [float(value) for value in chosen[spread]], speed)
+    orders, weak = orders_of(about[1])
     orders, highest, top, left = _within(orders, float(np.max(np.abs(chosen))), fmax)
     served, few = with_casing_modes(model, top / (2.0 * np.pi))
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
-        plan = plan_up_to(served, at_speed(state, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
-        system = linear_system(served, [speed], plan, state=first.with_tangents(state))
-        setup = replace(first, system=system, lines=contact_lines(system))
+        system = meshed(served, about, speed, top / (2.0 * np.pi), elements, aim)
+        modes = damped_modes(system, damped_up_to(system, highest), speed)
+        plant = Plant(system, (*modes, zeta))
+        setup = replace(about[1], system=system, lines=plant.lines)
         names = {order.name for order in orders}
         orders = [order for order in orders_of(setup)[0] if order.name in names]
-        modes, w = damped_modes(system, damped_up_to(system, highest), speed)
-        plant = Plant(system, setup.lines, (modes, w, zeta))
         how, why = choose_method(method, len(chosen), len(orders), system.n)
-        run = (
+        sweep = (
             direct_sweep(plant, orders, chosen, progress)
             if how == "direct"
-            else modal_sweep(plant, orders, chosen, (modes, w), progress)
+            else modal_sweep(plant, orders, chosen, modes, progress)
         )
+        readings, solver_error, checked, words = sweep
         progress(0.96, "error estimate")
-        estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, damped_up_to(system, top)), setup)
+        estimate = mesh_error(plant, orders, chosen, readings, (damped_up_to(system, top), zeta), setup)
         if accuracy is None or estimate <= accuracy:
             break
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
-    at = _shape_speed(model, shape_speed, chosen, run.readings)
-    shape_w, shape_loads = plant.loads(orders, at)
-    deflections = solve_orders(plant, plant.dynamics(at), shape_w, shape_loads)
+    at = _shape_speed(model, shape_speed, chosen, readings)
+    deflections = solve_orders(plant.dynamics(at), *plant.loads(orders, at))
     nodes, shapes = shapes_at_stations(system, system.dofs.expand(deflections))
-    quantities: dict[str, Any] = {
-        name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in READ
-    }
-    largest = peaks_of(setup, plant, orders, chosen, run.readings)
+    quantities: dict[str, Any] = {name: np.swapaxes(getattr(readings, name), 0, 1) for name in READ}
     joint = setup.joint
     maps = zip(setup.lines.names, joint.maps, joint.face_maps, strict=True) if joint else ()
     between_nodes = map_errors((name, one or along) for name, one, along in maps)
@@ -157,19 +143,19 @@ def response(
         points=tuple(model.points),
         places=tuple(plant.places),
         casings=tuple(plant.surfaces),
-        casing_seats=plant.seats.names,
+        casing_seats=tuple(plant.seats),
         casing_grounds=plant.ground.names,
         surface_area=np.array([surface.normals_and_areas()[1].sum() for surface in plant.surfaces.values()]),
         shape_speed=at,
         shapes=shapes,
         nodes=nodes,
         damping_ratio=zeta,
-        solver_error=run.solver_error,
-        checked=run.checked,
+        solver_error=solver_error,
+        checked=checked,
         error_estimate=estimate,
         dofs=system.n,
         discretisation=pieces(system),
-        largest=largest,
+        largest=peaks_of(joint, plant, orders, chosen, readings),
         laws=law_rows(system.state.operating),
         left_out=(
             *left,
@@ -182,17 +168,17 @@ def response(
         ),
         warnings=(
             *few,
-            *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
-            *parting(setup, quantities["mesh_force"], chosen),
+            *speed_warnings(plant, orders, chosen, (*modes, zeta)),
+            *parting(setup, readings.mesh_force, chosen),
             *([short] if short else []),
         ),
         status=short or "success",
-        method=f"{run.method} ({how}: {why}){about_state(system.state)}",
+        method=f"{words} ({how}: {why}){about_state(system.state)}",
     )
 
 
-def _within(orders: list[Order], fastest: float, fmax: float | None) -> tuple[list[Order], float, float, list[str]]:
-    """The orders up to `fmax` in Hz at the highest speed, and sentences about the others.
+def _within(orders: list[Order], fastest: float, fmax: float | None) -> tuple[list[Order], float, float, list[Note]]:
+    """The orders up to `fmax` in Hz at the highest speed, and notes on the others.
 
     Between them the highest frequency in rad/s, and the highest that the mesh is made for.
     """
@@ -212,16 +198,15 @@ def _within(orders: list[Order], fastest: float, fmax: float | None) -> tuple[li
             part, _, multiple = order.name.rpartition(" ")
             above.setdefault(part, []).append(multiple)
     runs = {part: m[0] if len(m) == 1 else f"{m[0]} to {m[-1]}, {len(m)} orders" for part, m in above.items()}
-    left = [f"{part} {multiples}: above {fmax:g} Hz at the highest speed" for part, multiples in runs.items()]
+    left = [Note("", f"{part} {many}", f"above {fmax:g} Hz at the highest speed") for part, many in runs.items()]
     highest = max(order.frequency_at(fastest) for order in kept)
     # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
     top = max((order.frequency_at(fastest) for order in kept if not order.minor), default=highest)
     beyond = [order for order in kept if order.frequency_at(fastest) > (1.0 + 1e-9) * top]
     if beyond:
-        left.append(
-            f"a finer mesh for {len(beyond)} small orders of loaded teeth above {top / (2.0 * np.pi):.5g} Hz, up to "
-            f"{beyond[-1].frequency_at(fastest) / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
-        )
+        small, last = (w / (2.0 * np.pi) for w in (top, beyond[-1].frequency_at(fastest)))
+        what = f"a finer mesh for {len(beyond)} small orders of loaded teeth above {small:.5g} Hz, up to {last:.5g} Hz"
+        left.append(Note("", what, "they are solved on the mesh for the larger ones"))
     return kept, highest, top, left
 
 
@@ -232,7 +217,7 @@ def _speeds(
     stop: float | str | None,
     points: int,
 ) -> tuple[np.ndarray, str]:
-    """Speeds in rad/s, in rising order of size, all of one sense, and a sentence where films have chosen the lowest."""
+    """Speeds in rad/s, in rising order of size, all of one sense, and a note where films have chosen the lowest."""
     begun = ""
     if given is None:
         operating = model.operating_speed
@@ -257,7 +242,7 @@ def _speeds(
     return speeds[np.argsort(np.abs(speeds), kind="stable")], begun
 
 
-def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, readings: list[Readings]) -> float:
+def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, readings: Readings) -> float:
     """Speed of the deflection shapes: as asked for, the operating one if it is in the range, else that of the largest force."""
     asked = speed_in_si(given)
     if asked is not None:
@@ -267,5 +252,4 @@ def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, re
     operating = model.operating_speed
     if operating and np.sign(operating) == np.sign(speeds[0]) and abs(speeds[0]) <= abs(operating) <= abs(speeds[-1]):
         return operating
-    largest = [float(np.abs(item.stacked).max(initial=0.0)) for item in readings]
-    return float(speeds[int(np.argmax(largest))])
+    return float(speeds[int(np.argmax(np.abs(readings.stacked).max(axis=(1, 2), initial=0.0)))])

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rotorgear.analysis.response.orders import Order
-from rotorgear.analysis.response.plant import Plant, Readings, joined
+from rotorgear.analysis.response.plant import Plant, Readings, gathered
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, part_of
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
@@ -29,14 +27,8 @@ _MODES_UP_TO = 1.5
 _IN_A_BUNCH = 32
 
 
-@dataclass(frozen=True)
-class Sweep:
-    """Readings at every speed, the error of the solver, how many points were checked, and words on the method."""
-
-    readings: list[Readings]
-    solver_error: float
-    checked: int
-    method: str
+# Readings (s, o, ...) at every speed, the error of the solver, how many points were checked, and words on the method.
+Sweep = tuple[Readings, float, int, str]
 
 
 def choose_method(asked: str, speeds: int, orders: int, n: int) -> tuple[str, str]:
@@ -60,15 +52,20 @@ def direct_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, progress
         progress(k / len(speeds), f"speed {k + 1} of {len(speeds)}")
         dynamics = plant.dynamics(speed)
         w, f = plant.loads(orders, speed)
-        q = solve_orders(plant, dynamics, w, f)
+        q = solve_orders(dynamics, w, f)
         worst = max(worst, dynamics.relative_residual(w, f, q))
         readings.append(plant.read(orders, speed, w, q))
-    return Sweep(
-        readings, worst, len(speeds) * len(orders), "direct sparse LU; largest residual relative to the forces inside"
-    )
+    method = "direct sparse LU; largest residual relative to the forces inside"
+    return gathered(readings), worst, len(speeds) * len(orders), method
 
 
-def solve_orders(plant: Plant, dynamics: Dynamics, w: np.ndarray, f: np.ndarray) -> np.ndarray:
+def answer(plant: Plant, orders: list[Order], speed: float) -> Readings:
+    """Readings of some orders at a speed, by direct solutions."""
+    w, f = plant.loads(orders, speed)
+    return plant.read(orders, speed, w, solve_orders(plant.dynamics(speed), w, f))
+
+
+def solve_orders(dynamics: Dynamics, w: np.ndarray, f: np.ndarray) -> np.ndarray:
     """Direct solution of every order, (n, o), each distinct frequency factored once."""
     q = np.zeros(f.shape, complex)
     for value in np.unique(w):
@@ -90,7 +87,7 @@ class ModalSweep:
         loads = np.hstack([plant.loads(orders, float(self.speeds[-1]))[1]])
         patterns = np.hstack([loads.real, loads.imag, plant.lines.vectors])
         self.basis = orthonormal(np.zeros((plant.system.n, 0)), np.hstack([modes, shifted.solve(patterns)]), self.scale)
-        self._projection: tuple[Pencil, Pencil] | None = None
+        self._projection: list[Pencil] | None = None
         self.modes = modes.shape[1]
         self.checked = 0
         self.error = np.inf
@@ -100,9 +97,9 @@ class ModalSweep:
         if self.plant.has_tables:
             return projected(dynamics, self.basis)
         if self._projection is None:
-            still, turning = (projected(self.plant.dynamics(x), self.basis) for x in (0.0, 1.0))
-            self._projection = still, turning
-        return self._projection[0].between(self._projection[1], speed)
+            self._projection = [projected(self.plant.dynamics(x), self.basis) for x in (0.0, 1.0)]
+        still, turning = self._projection
+        return still.between(turning, speed)
 
     def solve(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Frequencies (o,), displacements (n, o) and relative residuals (o,) at a speed."""
@@ -116,38 +113,57 @@ class ModalSweep:
         size = np.linalg.norm(f / self.scale[:, None], axis=0)
         return w, q, np.linalg.norm(rest, axis=0) / np.where(size > 0.0, size, 1.0)
 
-    def grow(self, progress: Progress) -> None:
-        """Add direct solutions until the largest error against them is below the tolerance, at every point tried."""
-        thinned = self.speeds[
-            np.unique(np.linspace(0, len(self.speeds) - 1, _SPEEDS_WHILE_GROWING).round().astype(int))
-        ]
+    def proved(self, progress: Progress) -> Readings:
+        """Readings at every speed, with a basis that was proved where its residual is largest, first at few of the speeds.
+
+        Raises:
+            ConvergenceError: the error against direct solutions stays above the tolerance.
+        """
+        count = len(self.speeds)
+        name = self.orders[-1].name
+        few = np.unique(np.linspace(0, count - 1, _SPEEDS_WHILE_GROWING).round().astype(int))
         for number in range(_ROUNDS):
-            progress(0.05 + 0.3 * number / _ROUNDS, f"basis of {self.basis.shape[1]}")
-            error = self._improve(thinned)
-            if error <= TOLERANCE:
-                return
-        raise ConvergenceError(
-            f"the modal solution still differs by {error:.1e} from direct ones with {self.basis.shape[1]} vectors; "
-            "use --method direct"
+            progress(0.05 + 0.3 * number / _ROUNDS, name)
+            if self.check(self.speeds[few], [self.solve(float(speed))[2] for speed in self.speeds[few]]) <= TOLERANCE:
+                break
+        else:
+            raise self._unproved()
+        for _ in range(_ROUNDS):
+            readings = []
+            residuals = []
+            for k, speed in enumerate(self.speeds):
+                if k % 10 == 0:
+                    progress(0.35 + 0.6 * k / count, name)
+                w, q, rest = self.solve(float(speed))
+                readings.append(self.plant.read(self.orders, float(speed), w, q))
+                residuals.append(rest)
+            if self.check(self.speeds, residuals) <= TOLERANCE:
+                return gathered(readings)
+        raise self._unproved()
+
+    def _unproved(self) -> ConvergenceError:
+        return ConvergenceError(
+            f"the modal solution of {self.orders[-1].name} still differs by {self.error:.1e} from direct ones with "
+            f"{self.basis.shape[1]} vectors; use --method direct"
         )
 
-    def _improve(self, speeds: np.ndarray) -> float:
-        residuals = np.array([self.solve(float(speed))[2] for speed in speeds])  # (s, o)
-        return self.check([(float(speeds[s]), o) for s, o in _worst(residuals)])
+    def check(self, speeds: np.ndarray, residuals: list[np.ndarray]) -> float:
+        """Largest relative error against direct solutions where the residuals (s, o) at some speeds are largest.
 
-    def check(self, points: list[tuple[float, int]]) -> float:
-        """Largest relative error at some (speed, order) against direct solutions, which join the basis where it is too large."""
+        These solutions join the basis where it is too large.
+        """
         new = []
         error = 0.0
-        for speed, order in points:
+        for s, order in _worst(np.array(residuals)):
+            speed = float(speeds[s])
             w, q, _ = self.solve(speed)
             f = self.plant.loads(self.orders, speed)[1][:, [order]]
             exact = self.plant.dynamics(speed).solve(float(w[order]), f)[:, 0]
             size = float(np.linalg.norm(self.scale * exact))
-            off = float(np.linalg.norm(self.scale * (exact - q[:, order]))) / size if size else 0.0
-            error = max(error, off)
+            difference = float(np.linalg.norm(self.scale * (exact - q[:, order]))) / size if size else 0.0
+            error = max(error, difference)
             self.checked += 1
-            if off > 0.1 * TOLERANCE:
+            if difference > 0.1 * TOLERANCE:
                 new += [exact.real, exact.imag]
         if error > TOLERANCE:
             self.basis = orthonormal(self.basis, np.array(new).T, self.scale)
@@ -173,9 +189,7 @@ def modal_sweep(
     """
     shapes, w = modes
     readings = []
-    error = 0.0
-    checked = 0
-    sizes = []
+    sweeps = []
     # Minor orders share a basis with those of like frequency, every other order has its own.
     minor = [o for o, order in enumerate(orders) if order.minor]
     bunches = [
@@ -188,33 +202,10 @@ def modal_sweep(
             top = _MODES_UP_TO * max(order.frequency_at(float(np.max(np.abs(speeds)))) for order in own)
             sweep = ModalSweep(plant, own, speeds, shapes[:, w <= top])
             share = part_of(progress, number / len(bunches), (number + 1) / len(bunches))
-            readings.append(_swept(sweep, own[-1].name, share))
-            error = max(error, sweep.error)
-            checked = checked + sweep.checked
-            sizes.append((sweep.modes, sweep.basis.shape[1] - sweep.modes))
-    most, added = max(sizes)
+            readings.append(sweep.proved(share))
+            sweeps.append(sweep)
+    most, added = max((sweep.modes, sweep.basis.shape[1] - sweep.modes) for sweep in sweeps)
     method = f"modal, up to {most} modes and {added} static and direct solutions as basis of an order"
     back = np.argsort(np.concatenate(bunches))
-    whole = [joined(parts).chosen(back) for parts in zip(*readings, strict=True)]
-    return Sweep(whole, error, checked, method)
-
-
-def _swept(sweep: ModalSweep, name: str, progress: Progress) -> list[Readings]:
-    """Readings of one order at every speed, when the basis has been proved where its residual is largest."""
-    plant = sweep.plant
-    orders = sweep.orders
-    speeds = sweep.speeds
-    sweep.grow(lambda fraction, _: progress(fraction, name))
-    for _ in range(_ROUNDS):
-        readings = []
-        residuals = []
-        for k, speed in enumerate(speeds):
-            if k % 10 == 0:
-                progress(0.35 + 0.6 * k / len(speeds), name)
-            w, q, rest = sweep.solve(float(speed))
-            readings.append(plant.read(orders, float(speed), w, q))
-            residuals.append(rest)
-        points = [(float(speeds[s]), o) for s, o in _worst(np.array(residuals))]
-        if sweep.check(points) <= TOLERANCE:
-            return readings
-    raise ConvergenceError(f"the modal solution of {name} does not come near direct ones; use --method direct")
+    whole = gathered(readings, lambda parts: np.concatenate(parts, axis=1)[:, back])
+    return whole, max(sweep.error for sweep in sweeps), sum(sweep.checked for sweep in sweeps), method

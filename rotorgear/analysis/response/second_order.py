@@ -16,56 +16,46 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from rotorgear.analysis.response.orders import Order
-from rotorgear.analysis.response.plant import Plant, Readings
-from rotorgear.analysis.response.run_up import solve_orders
+from rotorgear.analysis.response.plant import Plant, Readings, gathered
+from rotorgear.analysis.response.run_up import answer
 from rotorgear.analysis.static.joint_state import Cycle, JointState
-from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.response import Peak
 
 _SAME_FREQUENCY = 1e-9
-# Harmonics of r that move the contacts: so many of the strongest, down to this share of the largest.
+# Harmonics of r that move the contacts: the number of the strongest, down to this share of the largest.
 _STRONG = 12
 _WEAK = 0.02
 _MOTIONS_THAT_TURN = ("tilt_x", "tilt_y", "torsion")
 
 
-@dataclass(frozen=True)
-class _Run:
-    """A run-up that has been solved: readings by speed, each of all orders."""
-
-    setup: Setup
-    plant: Plant
-    orders: Sequence[Order]
-    speeds: np.ndarray
-    readings: Sequence[Readings]
-
-
 def peaks_of(
-    setup: Setup, plant: Plant, orders: Sequence[Order], speeds: np.ndarray, readings: Sequence[Readings]
+    joint: JointState | None, plant: Plant, orders: Sequence[Order], speeds: np.ndarray, readings: Readings
 ) -> tuple[Peak, ...]:
-    """The largest amplitude of each quantity of meshes, bearings and points, with the size of what is left out beside it."""
-    run = _Run(setup, plant, orders, speeds, readings)
+    """The largest amplitude of each quantity of meshes, bearings and points, with the size of what is left out beside it.
+
+    Args:
+        joint: the state of the loaded teeth that the response is about; None without any.
+        plant, orders, speeds: what was solved, (o,) orders at (s,) speeds in rad/s. readings: of all of them, (s, o, ...).
+    """
     known: dict[tuple[int, int], tuple[Readings | None, bool]] = {}
     found = []
-    for quantity, part, unit, values in _quantities(run):
+    for quantity, part, unit, values in _quantities(plant, readings):
         size = np.abs(values)  # (s, o, ...)
         s, o, *rest = (int(i) for i in np.unravel_index(int(np.argmax(size)), size.shape))
         amplitude = float(size[(s, o, *rest)])
         if not amplitude:
             continue
         if (s, o) not in known:
-            known[s, o] = _left_out(run, s, o)
+            known[s, o] = _left_out(joint, plant, orders, o, float(speeds[s]), readings.pressed[s])
         reading, parts = known[s, o]
         left = None
         if reading is not None and not parts:
-            alone = _Run(setup, plant, orders[:1], speeds[:1], [reading])
-            there = next(v for q, p, _, v in _quantities(alone) if (q, p) == (quantity, part))
+            there = next(v for q, p, _, v in _quantities(plant, gathered([reading])) if (q, p) == (quantity, part))
             left = float(np.abs(there[(0, 0, *rest)]))
         found.append(
             Peak(
@@ -83,49 +73,57 @@ def peaks_of(
     return tuple(found)
 
 
-def _quantities(run: _Run) -> Iterable[tuple[str, str, str, np.ndarray]]:
+def _quantities(plant: Plant, readings: Readings) -> Iterable[tuple[str, str, str, np.ndarray]]:
     """(quantity, part, unit, values (s, o, ...)) of all rows of the table of the largest amplitudes."""
-    names = run.setup.lines.names
-    model = run.setup.system.model
-
-    def stacked(field: str) -> np.ndarray:
-        return np.stack([getattr(reading, field) for reading in run.readings])
-
+    names = plant.lines.names
+    model = plant.system.model
     for mesh in dict.fromkeys(names):
         contacts = [k for k, name in enumerate(names) if name == mesh]
         for field, unit in (("mesh_force", "N"), ("transmission_error", "m"), ("approach", "m")):
-            yield field.replace("_", " "), mesh, unit, stacked(field)[:, :, contacts]
+            yield field.replace("_", " "), mesh, unit, getattr(readings, field)[:, :, contacts]
     for k, name in enumerate(model.bearings):
-        yield "bearing force", name, "N", stacked("bearing_force")[:, :, k]
+        yield "bearing force", name, "N", readings.bearing_force[:, :, k]
     for k, (name, point) in enumerate(model.points.items()):
         unit = "rad/s^2" if point.direction in _MOTIONS_THAT_TURN else "m/s^2"
-        yield "acceleration", name, unit, stacked("acceleration")[:, :, k]
-    for k in run.plant.seats.shared:
-        yield "seat force", run.plant.seats.names[k], "N", stacked("casing_seat_force")[:, :, k, :3]
-    for k, name in enumerate(run.plant.ground.names):
-        yield "ground force", name, "N", stacked("casing_ground_force")[:, :, k, :3]
-    for k, name in enumerate(run.plant.surfaces):
-        yield "normal velocity", name, "m/s", stacked("normal_velocity")[:, :, k]
+        yield "acceleration", name, unit, readings.acceleration[:, :, k]
+    for k, (name, standing) in enumerate(plant.seats.items()):
+        # The load of a seat with one bearing and nothing else is that of the bearing.
+        if len(standing) > 1 or not standing[0].startswith("bearings."):
+            yield "seat force", name, "N", readings.casing_seat_force[:, :, k, :3]
+    for k, name in enumerate(plant.ground.names):
+        yield "ground force", name, "N", readings.casing_ground_force[:, :, k, :3]
+    for k, name in enumerate(plant.surfaces):
+        yield "normal velocity", name, "m/s", readings.normal_velocity[:, :, k]
     if not model.bearings and not names:
-        for k, place in enumerate(run.plant.places):
-            yield "displacement", place, "m", stacked("displacement")[:, :, k, :2]
+        for k, place in enumerate(plant.places):
+            yield "displacement", place, "m", readings.displacement[:, :, k, :2]
 
 
-def _left_out(run: _Run, s: int, o: int) -> tuple[Readings | None, bool]:
-    """What the rest r adds to the readings of an order at a speed, None where no loaded teeth run at it; whether teeth part."""
-    joint = run.setup.joint
-    if joint is None:
-        return None, False
-    for number, cycle in enumerate(joint.cycles):
-        multiple = _multiple(cycle, run.orders[o])
+def _left_out(
+    joint: JointState | None, plant: Plant, orders: Sequence[Order], o: int, speed: float, pressed: np.ndarray
+) -> tuple[Readings | None, bool]:
+    """What the rest r adds to the readings of an order at a speed, None where no loaded teeth run at it; whether teeth part.
+
+    `pressed` (o, c) are the approaches of all orders there.
+    """
+    for number, cycle in enumerate(joint.cycles if joint is not None else ()):
+        multiple = _multiple(cycle, orders[o])
         if not multiple:
             continue
-        delta = _linear(run, s, joint, number)
+        assert joint is not None
+        # Approach (p, c) of the linear solution over the cycle, along the flank normals at the places of contact, in m.
+        count = len(cycle.position)
+        spectrum = np.fft.rfft(joint.pressed(cycle), axis=0) / count
+        for order, amplitudes in zip(orders, pressed, strict=True):
+            n = _multiple(cycle, order)
+            if 0 < n < len(spectrum):  # weak orders, which were not solved, follow as at a crawl
+                spectrum[n] = 0.5 * amplitudes
+        delta = np.fft.irfft(spectrum * count, count, axis=0)
         rest, parts = _rest(joint, number, delta)
-        moved = _moved(run, s, joint, cycle, np.fft.rfft(rest, axis=0) / len(rest))
+        moved = _moved(plant, speed, joint, cycle, np.fft.rfft(rest, axis=0) / len(rest))
         again, part_again = _rest(joint, number, delta + moved)
         coefficient = 2.0 * np.fft.rfft(again, axis=0)[multiple] / len(again)
-        return _answer(run, s, run.orders[o].ratio, coefficient), parts or part_again
+        return _answer(plant, speed, orders[o].ratio, coefficient), parts or part_again
     return None, False
 
 
@@ -133,18 +131,6 @@ def _multiple(cycle: Cycle, order: Order) -> int:
     """Which harmonic of a whole cycle an order is; 0 for none."""
     n = order.ratio * cycle.periods / cycle.ratio if cycle.ratio else 0.0
     return round(n) if n and abs(n - round(n)) <= _SAME_FREQUENCY * n else 0
-
-
-def _linear(run: _Run, s: int, joint: JointState, number: int) -> np.ndarray:
-    """Approach (p, c) of the linear solution at a speed over a cycle, along the flank normals at the places of contact, in m."""
-    cycle = joint.cycles[number]
-    count = len(cycle.position)
-    spectrum = np.fft.rfft(joint.pressed(cycle), axis=0) / count
-    for o, order in enumerate(run.orders):
-        n = _multiple(cycle, order)
-        if 0 < n < len(spectrum):  # weak orders, which were not solved, follow as at a crawl
-            spectrum[n] = 0.5 * run.readings[s].pressed[o]
-    return np.asarray(np.fft.irfft(spectrum * count, count, axis=0))
 
 
 def _rest(joint: JointState, number: int, delta: np.ndarray) -> tuple[np.ndarray, bool]:
@@ -161,23 +147,17 @@ def _rest(joint: JointState, number: int, delta: np.ndarray) -> tuple[np.ndarray
     return rest, parts
 
 
-def _moved(run: _Run, s: int, joint: JointState, cycle: Cycle, rest: np.ndarray) -> np.ndarray:
+def _moved(plant: Plant, speed: float, joint: JointState, cycle: Cycle, rest: np.ndarray) -> np.ndarray:
     """Approach (p, c) in m that the spectrum (h, c) of r adds by the linear plant at a speed, by its strong harmonics."""
     size = np.abs(rest).max(axis=1)
     found = np.zeros_like(rest)
     found[0] = -joint.compliance @ rest[0].real
     strongest = 1 + np.argsort(-size[1:])[:_STRONG]
     for n in strongest[size[strongest] > _WEAK * size.max()]:
-        reading = _answer(run, s, n / cycle.periods * cycle.ratio, 2.0 * rest[n])
-        found[n] = 0.5 * reading.pressed[0]
+        found[n] = 0.5 * _answer(plant, speed, n / cycle.periods * cycle.ratio, 2.0 * rest[n]).pressed[0]
     return np.asarray(np.fft.irfft(found * len(cycle.position), len(cycle.position), axis=0))
 
 
-def _answer(run: _Run, s: int, ratio: float, force: np.ndarray) -> Readings:
+def _answer(plant: Plant, speed: float, ratio: float, force: np.ndarray) -> Readings:
     """Readings of the linear plant at a speed under forces of the contacts (c,) in N at a multiple of the reference speed."""
-    nothing = np.zeros(run.plant.system.n)
-    order = [Order("", ratio, nothing, 0.0 * force, force, 0.0 * force)]
-    speed = float(run.speeds[s])
-    w, f = run.plant.loads(order, speed)
-    q = solve_orders(run.plant, run.plant.dynamics(speed), w, f)
-    return run.plant.read(order, speed, w, q)
+    return answer(plant, [Order("", ratio, np.zeros(plant.system.n), 0.0 * force, force, 0.0 * force)], speed)

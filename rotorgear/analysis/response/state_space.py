@@ -1,7 +1,7 @@
 """A gearbox as a linear system between inputs and outputs, for control and system simulation: whole, or reduced to modes.
 
 Reduced coordinates are those of the undamped modes of the conservative part up to a multiple of the highest frequency, and of
-static shapes (K + s^2 M)^-1 [B C^T] under unit forces at inputs and outputs, which stand for the modes above (residual
+static shapes (K + s^2 M)^-1 [B C^T] under unit forces at inputs and outputs, which represent the modes above (residual
 flexibility, R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2nd ed., Wiley 2006, ch. 17); the shift s lets
 trains turn freely. Where gyroscopic moments and damping need more, whole displacements at single frequencies join them. Motions
 that no matrix joins with an input or an output take part in no response, and have no coordinates.
@@ -18,14 +18,13 @@ import scipy.sparse as sp
 
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.points import moving_rows, rotates
+from rotorgear.analysis.common.points import moving_rows
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, missed, speed_in_si
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
-from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
-from rotorgear.analysis.response.plant import Plant
+from rotorgear.analysis.response.frequency_response import checked_places
+from rotorgear.analysis.response.mesh import damped_modes, damped_plant, meshed
 from rotorgear.analysis.static.mean_state import about_mean
-from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -35,14 +34,13 @@ from rotorgear.results.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general, single_thread
 from rotorgear.system.components import dof_motions, independent_groups
-from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.system import System
 
-# Modes are kept up to so many times the highest frequency; the static shapes stand for the rest.
+# Modes are kept up to this multiple of the highest frequency; the static shapes represent the rest.
 _KEPT = 1.5
 ACCURACY = 1e-4
-_UNDAMPED = "nothing damps the model: responses are infinite at its natural frequencies"
+_UNDAMPED = Note("", "nothing damps the model", "responses are infinite at its natural frequencies")
 # The shift of the static shapes over the highest frequency: above zero, where a free train has none.
 _SHIFT = 0.5
 # Dense matrices of the whole system: beyond this they would not fit into what opens them.
@@ -93,19 +91,14 @@ def state_space(
         ConvergenceError: the reduced system is singular, as at a mode without damping.
     """
     turns = speed_in_si(speed) or 0.0
-    check_request(turns, None, None, elements, None)
+    check_request(turns, None, fmax, elements, None)
     check_request(turns, None, None, None, accuracy)
-    if not 0.0 < fmax < float("inf"):
-        raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
-    if not inputs or not outputs:
-        raise AnalysisError("a state space needs at least one input and one output")
     check_modal_damping(modal_damping)
-    input_units = tuple("N m" if rotates(model, text) else "N" for text in inputs)
-    output_units = tuple("rad" if rotates(model, text) else "m" for text in outputs)
+    places = checked_places(model, inputs, outputs)
     zeta = modal_damping + model.damping.modal_ratio
     progress(0.02, "discretisation")
-    aim = None if elements is not None else accuracy
-    system, notes = frf_system(model, turns, fmax, elements, aim)
+    about = about_mean(model, [turns or None], turns)
+    system = meshed(model, about, turns, fmax, elements, accuracy)
     if full and system.n > _LARGEST:
         raise AnalysisError(
             f"a full state space of {system.n} degrees of freedom is dense in {2 * system.n} states; leave 'full' out for a "
@@ -116,20 +109,19 @@ def state_space(
     C = moving_rows(system, outputs)
     groups = _groups(system, turns)
     unmoved = tuple(
-        f"no input moves {text}: its responses are 0"
+        Note("", f"no input moves {text}", "its responses are 0")
         for text, row in zip(outputs, C, strict=True)
         if not np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size
     )
     reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, C.T]))
-    modes = (*damped_modes(system, damped_up_to(system, limit), turns, reached), zeta) if zeta else None
-    plant = Plant(system, contact_lines(system), modes)
+    plant = damped_plant(system, turns, damped_up_to(system, limit), zeta, reached)
     dynamics = plant.dynamics(turns).cut(reached)
     B = B[reached]
     C = C[:, reached]
     progress(0.4, "matrices")
     damped = bool(zeta) or bool(system.damping(turns).nnz)
     if full:
-        made = _Matrices.whole(dynamics, B, C)
+        made = _Matrices.of(dynamics, B, C)
         error = 0.0
         kept = 0
     else:
@@ -149,10 +141,7 @@ def state_space(
         model=model,
         speed=turns,
         fmax=fmax,
-        inputs=tuple(inputs),
-        outputs=tuple(outputs),
-        input_units=input_units,
-        output_units=output_units,
+        **places,
         mass_matrix=made.M,
         velocity_terms=made.D,
         stiffness_matrix=made.K,
@@ -166,7 +155,7 @@ def state_space(
         discretisation=pieces(system),
         laws=law_rows(system.state.operating),
         left_out=(
-            *notes,
+            *about[1].notes,
             *left_out(system, "frf", turns),
             *undamped_above(damped_up_to(system, limit), zeta),
             *_apart(system, reached),
@@ -175,16 +164,6 @@ def state_space(
         status=short or "success",
         method=("all degrees of freedom" if full else "modes and static shapes") + about_state(system.state),
     )
-
-
-def frf_system(
-    model: Model, turns: float, fmax: float, elements: int | None, accuracy: float | None = None
-) -> tuple[System, tuple[Note, ...]]:
-    """The system about its equilibrium at a speed in rad/s, meshed as `frf` meshes it up to a frequency in Hz; and notes."""
-    state, first = about_mean(model, [turns or None], turns)
-    plan = plan_up_to(model, at_speed(state, turns), MARGIN * fmax, elements, accuracy)
-    system = linear_system(model, [turns], plan, state=first.with_tangents(state))
-    return system, first.notes
 
 
 def _groups(system: System, turns: float) -> np.ndarray:
@@ -213,15 +192,14 @@ def _reached(system: System, groups: np.ndarray, places: np.ndarray) -> np.ndarr
     return reached
 
 
-def _apart(system: System, reached: np.ndarray) -> tuple[str, ...]:
+def _apart(system: System, reached: np.ndarray) -> tuple[Note, ...]:
     """What is left out because no input moves it and no output sees it."""
     rest = np.setdiff1d(np.arange(system.n), reached)
     if not rest.size:
         return ()
     motions = ", ".join(dict.fromkeys(dof_motions(system)[rest]))
-    return (
-        f"motions that no input moves and no output sees: {len(rest)} of {system.n} degrees of freedom ({motions})",
-    )
+    how_many = f"{len(rest)} of {system.n} degrees of freedom ({motions})"
+    return (Note("", "motions that no input moves and no output sees", how_many),)
 
 
 @dataclass(frozen=True)
@@ -235,24 +213,15 @@ class _Matrices:
     C: np.ndarray
 
     @classmethod
-    def whole(cls, dynamics: Dynamics, B: np.ndarray, C: np.ndarray) -> _Matrices:
-        """All degrees of freedom."""
-        D = dynamics.D.toarray()
+    def of(cls, dynamics: Dynamics, B: np.ndarray, C: np.ndarray, V: np.ndarray | None = None) -> _Matrices:
+        """All degrees of freedom, or the coordinates of a basis V (n, s): V^T M V and so on."""
+        parts = (dynamics.M, dynamics.D, dynamics.K)
+        M, D, K = (A.toarray() if V is None else V.T @ (A @ V) for A in parts)
         if dynamics.low_rank is not None:
             P, d = dynamics.low_rank
+            P = P if V is None else V.T @ P
             D = D + (P * d) @ P.T
-        return cls(dynamics.M.toarray(), D, dynamics.K.toarray(), B, C)
-
-    @classmethod
-    def in_basis(cls, dynamics: Dynamics, B: np.ndarray, C: np.ndarray, V: np.ndarray) -> _Matrices:
-        """The coordinates of a basis V (n, s): V^T M V and so on."""
-        D = V.T @ (dynamics.D @ V)
-        if dynamics.low_rank is not None:
-            P, d = dynamics.low_rank
-            P = V.T @ P
-            D = D + (P * d) @ P.T
-        M = V.T @ (dynamics.M @ V)
-        return cls(0.5 * (M + M.T), D, V.T @ (dynamics.K @ V), V.T @ B, C @ V)
+        return cls(M, D, K, B, C) if V is None else cls(0.5 * (M + M.T), D, K, V.T @ B, C @ V)
 
     def receptance(self, w: float) -> np.ndarray:
         """C Z^-1 B at a frequency in rad/s, (o, i)."""
@@ -306,7 +275,7 @@ def _reduced(
     basis: J. S. Hesthaven, G. Rozza, B. Stamm, Certified Reduced Basis Methods, Springer 2016, ch. 3). Judged is between these
     frequencies, and on the tops and flanks of the peaks of the reduced system.
     """
-    made = _Matrices.in_basis(dynamics, B, C, basis)
+    made = _Matrices.of(dynamics, B, C, basis)
     even = limit * np.arange(1, _BETWEEN + 1) / _BETWEEN
     # Golden parts of the steps: no even grid, and half-way between the others.
     judged = limit * (np.arange(_BETWEEN) + 0.381966) / _BETWEEN
@@ -326,7 +295,7 @@ def _reduced(
         if larger.shape[1] == basis.shape[1]:
             return made, error
         basis = larger
-        made = _Matrices.in_basis(dynamics, B, C, basis)
+        made = _Matrices.of(dynamics, B, C, basis)
 
 
 def _peaks(made: _Matrices, limit: float) -> np.ndarray:

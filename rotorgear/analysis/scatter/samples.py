@@ -154,7 +154,7 @@ def shares_at(study: Study, z: Floats) -> Floats:
     family = study.family
     nominal = state_at(family.spreads.numbers.model, [family.speed])
     model = sample_at(family.spreads, tuple(map(float, z)))
-    found = load_shares(solved(model, Plan(1), family.speed, silent, nominal).equilibrium)
+    found = load_shares(solved(model, Plan(1), family.speed, silent, nominal))
     return np.array([found.get(key, np.nan) for key in study.shared])
 
 

@@ -260,7 +260,7 @@ def _study(
     notes = (f"excitations above the highest mode ({top:.4g} Hz; --modes): {', '.join(beyond)}",) if beyond else ()
     shared: tuple[tuple[str, str], ...] = ()
     if sharing:
-        shared = tuple(load_shares(solved(model, Plan(1), speed, silent).equilibrium))
+        shared = tuple(load_shares(solved(model, Plan(1), speed, silent)))
         if not shared:
             notes = (*notes, "load sharing: no gear of the model shares its load among meshes")
     study = Study(family, min(modes, len(nominal.omega)), wide, least, nominal, (), chosen, participation, shared)

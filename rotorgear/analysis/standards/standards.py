@@ -20,12 +20,11 @@ from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import damped_plant, meshed
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.standards import rules
 from rotorgear.analysis.static.lowest_speed import needs_rotation
 from rotorgear.analysis.static.mean_state import about_mean
-from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -42,7 +41,6 @@ from rotorgear.results.standards import (
     RuleTable,
     StandardsResult,
 )
-from rotorgear.system.contacts import contact_lines
 from rotorgear.system.damped_range import damped_up_to
 from rotorgear.system.loads import weight_loads
 
@@ -384,12 +382,10 @@ def plant_up_to(
     low, top = ends
     speed = direction * top
     tangents = direction * np.linspace(low or 0.1 * top, top, _TANGENTS)
-    state, first = about_mean(model, [float(x) for x in tangents], speed)
-    plan = plan_up_to(model, at_speed(state, speed), MARGIN * frequency / (2.0 * np.pi), None, None)
-    system = linear_system(model, [speed], plan, state=first.with_tangents(state))
-    zeta = model.damping.modal_ratio
-    damping = (*damped_modes(system, damped_up_to(system, frequency), speed), zeta) if zeta else None
-    return Plant(system, contact_lines(system), damping), first.notes
+    about = about_mean(model, [float(x) for x in tangents], speed)
+    system = meshed(model, about, speed, frequency / (2.0 * np.pi))
+    limit = damped_up_to(system, frequency)
+    return damped_plant(system, speed, limit, model.damping.modal_ratio), about[1].notes
 
 
 class UnbalanceResponse:

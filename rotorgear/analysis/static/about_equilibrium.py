@@ -9,20 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rotorgear.analysis.static.along_faces import equilibrate_along_faces
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.registry import law_of
 from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.model import Model
-from rotorgear.model.parts.supports import NonlinearElement
 from rotorgear.note import Note
+from rotorgear.system.local_parts import without_linear_part
 from rotorgear.system.system import flow_system
 
+if TYPE_CHECKING:
+    from rotorgear.forces.law import ForceLaw
 # A helix that carries less than this share of the force of the torque flow is as good as open, as between two shafts that are
 # held: its tangent would be that of a few newtons, which the rounding of the map decides.
 _CARRIES = 1e-3
@@ -31,7 +32,7 @@ _CARRIES = 1e-3
 def state_speed(model: Model, speeds: Sequence[float | None], direction: int) -> float:
     """Speed in rad/s of the static state that analyses at some speeds of one sense are about.
 
-    It is the operating speed where that has the same sense, else the first one; None stands for standstill, where it is the
+    It is the operating speed where that has the same sense, else the first one; None is standstill, where it is the
     operating speed in the sense +1 or -1 of the state.
     """
     asked = [speed for speed in speeds if speed is not None]
@@ -59,27 +60,22 @@ def about_cycle(model: Model, speeds: Sequence[float | None], state: State) -> S
     try:
         equilibrium, joint = over_cycle(equilibrate(flow_system(model).with_state(flow), speed), speed)
     except AnalysisError as error:
-        reason = (
-            f"there is no solution ({str(error).rstrip('.')}); the tangent at the force of the torque flow is taken"
-        )
-        lost = (
-            Note(f"meshes.{name}", "the mean state of its loaded teeth over the mesh cycle", reason) for name in teeth
-        )
-        return replace(state, notes=(*state.notes, *lost))
+        what = "the mean state of its loaded teeth over the mesh cycle"
+        why = f"there is no solution ({str(error).rstrip('.')}); the tangent at the force of the torque flow is taken"
+        return replace(state, notes=(*state.notes, *(Note(f"meshes.{name}", what, why) for name in teeth)))
     if joint is None:
         return state
-    cycle = {}
-    for name in teeth:
-        helices = [
-            (
-                state,
-                bool(closed) and state.start is not None and state.normal_force > _CARRIES * abs(alone.normal_force),
-            )
-            for state, closed, alone in zip(equilibrium.lines.states, equilibrium.closed, flow.forces, strict=True)
-            if state.contact.mesh == name
-        ]
-        if helices and all(carries for _, carries in helices):
-            cycle[name] = tuple(state for state, _ in helices)
+    lines = equilibrium.lines
+    open_meshes = {
+        now.contact.mesh
+        for now, closed, alone in zip(lines.states, equilibrium.closed, flow.forces, strict=True)
+        if not closed or now.start is None or now.normal_force <= _CARRIES * abs(alone.normal_force)
+    }
+    cycle = {
+        name: tuple(now for now in lines.states if now.contact.mesh == name)
+        for name in teeth
+        if name in lines.names and name not in open_meshes
+    }
     return replace(state, cycle=cycle).of_kind("dynamic")
 
 
@@ -105,9 +101,8 @@ def along_faces(model: Model, speeds: Sequence[float | None], state: State) -> S
     if key in model.states and not state.tangents:
         return model.states[key]
     settled = equilibrate_along_faces(flow_system(model).with_state(state.of_kind("static")), speed)
-    faces = settled.equilibrium.system.state.faces
     found = replace(
-        torque_flow(model.layout, state.direction, faces),
+        torque_flow(model.layout, state.direction, settled.system.state.faces),
         tangents=state.tangents,
         films=state.films,
         mapped_at=state.mapped_at,
@@ -143,33 +138,19 @@ def settled_films(model: Model, speed: float) -> dict[str, tuple[float | None, f
     Raises:
         AnalysisError: there is no equilibrium at that speed.
     """
-    films = {
-        f"bearings.{name}": (bearing.film.heats, bearing.film.follows)
-        for name, bearing in model.bearings.items()
-        if bearing.film is not None and bearing.film.settles
-    } | {
-        f"nonlinear_elements.{name}": (_heats(element), _follows(element))
-        for name, element in model.nonlinear_elements.items()
-        if _heats(element) or _follows(element)
-    }
-    if not films or not speed:
-        return {}
     system = flow_system(model, direction=-1 if speed < 0.0 else 1, kind="static")
+    if not speed or not any(any(_settles(part.law)) for part in without_linear_part(system)):
+        return {}
     equilibrium, _ = over_cycle(equilibrate(system, speed), speed)
-    laws: dict[str, Any] = {state.part.part: state.part.law.settled(state.d) for state in equilibrium.laws}
-    return {
-        address: (laws[address].temperature if heats else None, laws[address].inlet if follows else None)
-        for address, (heats, follows) in films.items()
-    }
+    films: dict[str, tuple[float | None, float | None]] = {}
+    for state in equilibrium.laws:
+        heats, follows = _settles(state.part.law)
+        law: Any = state.part.law.settled(state.d)
+        if heats or follows:
+            films[state.part.part] = law.temperature if heats else None, law.inlet if follows else None
+    return films
 
 
-def _heats(element: NonlinearElement) -> bool:
-    """Whether an element is a film whose viscosity follows from its heat balance."""
-    if "grade" not in law_of(element.law).declared():
-        return False
-    return bool(element.parameters.get("grade")) and element.parameters.get("heat_share", 1.0) != 0.0
-
-
-def _follows(element: NonlinearElement) -> bool:
-    """Whether an element is a film whose inlet is where its gap is widest."""
-    return bool(element.parameters.get("follows")) and "inlet" in law_of(element.law).declared()
+def _settles(law: ForceLaw) -> tuple[bool, bool]:
+    """Whether a law is a film whose viscosity follows from its heat balance, and one whose inlet is where its gap is widest."""
+    return getattr(law, "heats", False), getattr(law, "follows", False)

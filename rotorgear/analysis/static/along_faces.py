@@ -12,7 +12,7 @@ structure to the face, linear about that answer, with another F and f.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,23 +30,8 @@ _PASSES = 25
 _DECIDED = 1e-7
 
 
-@dataclass(frozen=True)
-class AlongFaces:
-    """An equilibrium with the loads along its faces.
-
-    Attributes:
-        equilibrium: of the structure; the state of its system knows the loads along the faces.
-        faces: of each contact that feels the tilt of its shafts and carries, else None.
-        passes: how often the faces were asked; 0 where none is.
-    """
-
-    equilibrium: Equilibrated
-    faces: tuple[FaceLoad | None, ...]
-    passes: int
-
-
-def equilibrate_along_faces(system: System, speed: float, progress: Progress = silent) -> AlongFaces:
-    """Return the equilibrium in which shafts and faces agree.
+def equilibrate_along_faces(system: System, speed: float, progress: Progress = silent) -> Equilibrated:
+    """Return the equilibrium in which shafts and faces agree; the state of its system knows the loads along the faces.
 
     Raises:
         AnalysisError: no loads, a motion that nothing holds and the loads push, flanks that can't be settled, or teeth that the
@@ -57,7 +42,7 @@ def equilibrate_along_faces(system: System, speed: float, progress: Progress = s
     whole = equilibrium.lines.stiffness
     feels = [state.face is not None for state in equilibrium.lines.states]
     if not any(feels):
-        return AlongFaces(equilibrium, (None,) * len(feels), 0)
+        return replace(equilibrium, faces=(None,) * len(feels))
     for count in range(1, _PASSES + 1):
         progress(count / (count + 1.0), f"load along the faces, pass {count}")
         given = misalignments(equilibrium)
@@ -85,7 +70,7 @@ def equilibrate_along_faces(system: System, speed: float, progress: Progress = s
                 if len(carrying) == len(own):
                     known[name] = carrying
             system = equilibrium.system.with_state(replace(equilibrium.system.state, faces=known))
-            return AlongFaces(replace(equilibrium, system=system), faces, count)
+            return replace(equilibrium, system=system, faces=faces, passes=count)
     raise ConvergenceError(
         f"shafts and loads along the faces did not come to agree in {_PASSES} passes; the misalignment still changes by "
         f"{100.0 * max(changes):.2g} %. Look for a shaft that hardly anything holds against tilting."

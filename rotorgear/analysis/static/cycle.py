@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 _POSITIONS = 128
 # Positions whose curves are made together.
 _TOGETHER = 512
-# A curve F(delta) at one position is straight between so many points to each step of load of its map.
+# Number of straight pieces of a curve F(delta) at one position for each step of load of its map.
 _FINER = 8
 # Cycles of several pitches whose rows of the map agree to this share are solved once.
 _ALIKE = 1e-10
@@ -99,7 +99,7 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
         load.contact_map(state, near=True) if along is None else None
         for state, along in zip(lines.states, face_maps, strict=True)
     )
-    have = [one is not None or along is not None for one, along in zip(maps, face_maps, strict=True)]
+    have = [not (one is along is None) for one, along in zip(maps, face_maps, strict=True)]
     if not any(have):
         return None
     phases = [load.path_phase(state.contact) for state in lines.states]
@@ -160,7 +160,7 @@ class _Problem:
     def mapped(self) -> np.ndarray:
         """Numbers (m,) of the contacts that have a map."""
         both = zip(self.maps, self.face_maps, strict=True)
-        return np.array([i for i, maps in enumerate(both) if any(one is not None for one in maps)])
+        return np.array([i for i, (one, along) in enumerate(both) if not (one is along is None)])
 
     @cached_property
     def tilting(self) -> np.ndarray:
@@ -173,15 +173,15 @@ class _Problem:
         return np.append(self.mapped, len(self.maps) + np.arange(len(self.tilting)))
 
     @cached_property
+    def place(self) -> np.ndarray:
+        """e (c,) in m of the contacts along their faces; 0 without a face map."""
+        return self._of_faces([state.face for state in self.equilibrium.lines.states])[0]
+
+    @cached_property
     def vectors(self) -> np.ndarray:
         """V (n, c + t) of the displacements: approaches, in the middle of a face that has a map, and tilts."""
         lines = self.equilibrium.lines
-        approach = lines.vectors.copy()
-        for i in self.tilting:
-            face = lines.states[i].face
-            assert face is not None
-            approach[:, i] -= face.place * lines.tilt[:, i]
-        return np.hstack([approach, lines.tilt[:, self.tilting]])
+        return np.hstack([lines.vectors - self.place * lines.tilt, lines.tilt[:, self.tilting]])
 
     @cached_property
     def stiffness(self) -> np.ndarray:
@@ -191,22 +191,26 @@ class _Problem:
     @cached_property
     def springs(self) -> np.ndarray:
         """k (m + t, m + t) of the moving displacements."""
-        lines = self.equilibrium.lines
-        faces = [state.face for state in lines.states]
-        closed = self.equilibrium.closed
-        held = [face and replace(face, tilt_stiffness=face.tilt_stiffness * closed[i]) for i, face in enumerate(faces)]
-        return self._springs(self.stiffness, held)
+        place, against_tilt = self._of_faces([state.face for state in self.equilibrium.lines.states])
+        return self._springs(self.stiffness, place, against_tilt * self.equilibrium.closed)
 
-    def _springs(self, stiffness: np.ndarray, faces: Sequence[FaceState | None]) -> np.ndarray:
+    def _of_faces(self, faces: Sequence[FaceState | None]) -> np.ndarray:
+        """Place in m and stiffness against a tilt in N m, (2, c), of contacts with a face map; 0 of the others."""
+        return np.array(
+            [
+                (face.place, face.tilt_stiffness) if face and face_map else (0.0, 0.0)
+                for face, face_map in zip(faces, self.face_maps, strict=True)
+            ]
+        ).T
+
+    def _springs(self, stiffness: np.ndarray, place: np.ndarray, against_tilt: np.ndarray) -> np.ndarray:
         """Matrix (m + t, m + t) of contacts that are springs k at a place of their face and resist a tilt about it."""
-        m = self.mapped
-        K = np.diag(np.append(stiffness[m], np.zeros(len(self.tilting))))
-        for number, i in enumerate(self.tilting):
-            face = faces[i]
-            assert face is not None
-            both = np.array([int(np.flatnonzero(m == i)[0]), len(m) + number])
-            at = np.array([1.0, face.place])
-            K[np.ix_(both, both)] = stiffness[i] * np.outer(at, at) + np.diag([0.0, face.tilt_stiffness])
+        t = self.tilting
+        K = np.diag(np.append(stiffness[self.mapped], against_tilt[t]))
+        approaches = np.searchsorted(self.mapped, t)
+        tilts = len(self.mapped) + np.arange(len(t))
+        K[approaches, tilts] = K[tilts, approaches] = stiffness[t] * place[t]
+        K[tilts, tilts] += stiffness[t] * place[t] ** 2
         return K
 
     @cached_property
@@ -223,15 +227,11 @@ class _Problem:
     def compliance_about(self, stiffness: np.ndarray, faces: Sequence[FaceState | None]) -> np.ndarray:
         """Approach (c, c) at their places under unit forces there of mapped contacts, about other springs: A (1 + dk A_m)^-1."""
         moving = self.moving
-        change = self._springs(stiffness, faces) - self.springs
+        place, against_tilt = self._of_faces(faces)
+        change = self._springs(stiffness, place, against_tilt) - self.springs
         A = self.compliance @ np.linalg.inv(np.eye(len(moving)) + change @ self.compliance[moving])
         count = len(self.maps)
-        places = np.zeros((count + len(self.tilting), count))  # of approaches at the places in all displacements
-        places[:count] = np.eye(count)
-        for number, i in enumerate(self.tilting):
-            face = faces[i]
-            assert face is not None
-            places[count + number, i] = face.place
+        places = np.vstack([np.eye(count), np.diag(place)[self.tilting]])  # of all displacements in those at the places
         found = np.zeros((count, count))
         found[:, self.mapped] = places.T @ A @ places[np.ix_(moving, self.mapped)]
         return found
@@ -241,11 +241,8 @@ class _Problem:
         """All displacements (c + t,) under the loads with the forces of moving ones k d."""
         equilibrium = self.equilibrium
         found = self.vectors.T @ equilibrium.q
-        force = np.append(equilibrium.force[self.mapped], np.zeros(len(self.tilting)))
-        for number, i in enumerate(self.tilting):
-            face = equilibrium.lines.states[i].face
-            assert face is not None
-            force[len(self.mapped) + number] = equilibrium.moment[i] + face.place * equilibrium.force[i]
+        moment = equilibrium.moment + self.place * equilibrium.force  # about the middle of the face
+        force = np.append(equilibrium.force[self.mapped], moment[self.tilting])
         return np.asarray(found + self.compliance @ (force - self.springs @ found[self.moving]))
 
     def cycle(self, running: np.ndarray, ratio: float) -> Cycle:
@@ -258,8 +255,8 @@ class _Problem:
         key = np.hstack([np.round(approach / (_ALIKE * (np.ptp(approach) or 1.0))) for approach, _ in tables])
         _, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
         every = len(self.maps)
-        approach = np.zeros((len(first), every))
-        force, tilt, moment = np.zeros((3, len(first), every))
+        mapped = len(self.mapped)
+        approach, force, tilt, moment = np.zeros((4, len(first), every))
         for row, p in enumerate(first):
             if row % _TOGETHER == 0:
                 curves = [curves_at(first[row : row + _TOGETHER]) for _, curves_at in tables]
@@ -273,21 +270,19 @@ class _Problem:
             moved = self.start - self.compliance @ (found.force - self.springs @ found.d)
             approach[row] = moved[:every]
             force[row] = self.spring_start + self.stiffness * (approach[row] - self.gap)
-            count_mapped = len(self.mapped)
-            force[row, self.mapped] = found.force[:count_mapped]
-            approach[row, self.mapped] = found.d[:count_mapped]
-            moment[row, self.tilting] = found.force[count_mapped:]
-            tilt[row, self.tilting] = found.d[count_mapped:]
+            force[row, self.mapped] = found.force[:mapped]
+            approach[row, self.mapped] = found.d[:mapped]
+            moment[row, self.tilting] = found.force[mapped:]
+            tilt[row, self.tilting] = found.d[mapped:]
         meshes = dict.fromkeys(self.equilibrium.lines.names[i] for i in running)
-        again = which.ravel()
-        return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again], tilt[again], moment[again])
+        every_row = (values[which.ravel()] for values in (approach, force, tilt, moment))
+        return Cycle(tuple(meshes), ratio, periods, position, *every_row)
 
     def _at(self, curves: list[_Curve]) -> LocalEquilibrium:
         """Equilibrium of the mapped contacts on the curves of one position."""
-        mapped = len(self.mapped)
         # Places of the displacements of each curve among the moving ones.
-        tilts = {int(i): mapped + number for number, i in enumerate(self.tilting)}
-        places = [np.array([k, *([tilts[int(i)]] if int(i) in tilts else [])]) for k, i in enumerate(self.mapped)]
+        contact = np.append(self.mapped, self.tilting)
+        places = [np.flatnonzero(contact == i) for i in self.mapped]
 
         def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             F = np.zeros(len(d))
@@ -336,8 +331,7 @@ class _Problem:
         if face_map is not None:
             law = self.face_laws[contact]
             if u is None:
-                mean = partial(_along_face, law.mean(), 0.0)
-                return np.ones((len(position), 1)), lambda some: [mean] * len(some)
+                return _constant(len(position), partial(_along_face, law.mean(), 0.0))
             rows = np.hstack([one.curves(one.load, u) for one in face_map.maps])
             return rows, lambda some: [partial(_along_face, law, float(place)) for place in u[some]]
         contact_map = self.maps[contact]
@@ -347,21 +341,20 @@ class _Problem:
         far = 10.0 * contact_map.largest_load
         fine = np.append((load[:-1, None] + np.diff(load)[:, None] * (np.arange(_FINER) / _FINER)).ravel(), load[-1])
         forces = np.append(fine, far)
+
+        def approaches(u: np.ndarray) -> np.ndarray:
+            return np.column_stack([contact_map.curves(fine, u), contact_map.approach_at(far, u)])
+
         if u is None:
-            everywhere = contact_map.position
-            rows = contact_map.approach_at(np.append(load, far), everywhere[:, None]).mean(axis=0)
-            beyond = contact_map.approach_at(far, everywhere).mean()
-            approach = gap + np.append(contact_map.curves(fine, everywhere).mean(axis=0), beyond)
-            return np.broadcast_to(
-                rows, (len(position), len(rows))
-            ), lambda some: [partial(_straight, approach, forces)] * len(some)
+            mean = gap + approaches(contact_map.position).mean(axis=0)
+            return _constant(len(position), partial(_straight, mean, forces))
+        rows = contact_map.approach_at(np.append(load, far), u[:, None])
+        return rows, lambda some: [partial(_straight, gap + row, forces) for row in approaches(u[some])]
 
-        def curves(some: np.ndarray) -> list[_Curve]:
-            at = u[some]
-            approaches = np.column_stack([contact_map.curves(fine, at), contact_map.approach_at(far, at)])
-            return [partial(_straight, gap + row, forces) for row in approaches]
 
-        return contact_map.approach_at(np.append(load, far), u[:, None]), curves
+def _constant(count: int, curve: _Curve) -> tuple[np.ndarray, Callable[[np.ndarray], list[_Curve]]]:
+    """A table whose curve is the same at all positions."""
+    return np.ones((count, 1)), lambda some: [curve] * len(some)
 
 
 def _along_face(law: ForceLaw, place: float, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

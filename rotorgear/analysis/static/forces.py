@@ -103,7 +103,7 @@ def ground_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
 
 
 def seat_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
-    """Force, and moment about its point, of what stands in a seat on the casing: "box.left" -> (6,)."""
+    """Force, and moment about its point, of the parts in a seat on the casing: "box.left" -> (6,)."""
     system = equilibrium.system
     found: dict[str, np.ndarray] = {}
     for (casing, number, arm), on_shaft in _in_seats(equilibrium):

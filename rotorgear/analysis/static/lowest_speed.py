@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+
 from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.registry import law_of
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.system import flow_system
 
@@ -26,7 +29,7 @@ def needs_rotation(model: Model) -> tuple[str, ...]:
 
 
 def lowest_speed(model: Model, given: float | str | None, top: float, least: float = 0.0) -> tuple[float, str]:
-    """The speed in rad/s at which a range up to `top` begins, of its sense, and a sentence where the films have chosen it.
+    """The speed in rad/s at which a range up to `top` begins, of its sense, and a note where the films have chosen it.
 
     Where none is given it is `least`; with films that have no equilibrium there, the lowest of some shares of `top` that has one.
 
@@ -54,21 +57,11 @@ def lowest_speed(model: Model, given: float | str | None, top: float, least: flo
             return False
         return True
 
-    if carries(tried[0]):
-        return tried[0], _sentence(films, tried[0])
-    low, high = 0, len(tried)
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if carries(tried[middle]) else (middle, high)
-    if high == len(tried):
+    first = 0 if carries(tried[0]) else bisect_left(tried, True, 1, key=carries)
+    if first == len(tried):
         equilibrate(system, top)  # says why
-        return tried[-1], _sentence(films, tried[-1])
-    return tried[high], _sentence(films, tried[high])
-
-
-def _sentence(films: tuple[str, ...], low: float) -> str:
+        first -= 1
+    what = f"speeds below {abs(tried[first]) * RPM_PER_RAD_S:.6g} rpm of the input shaft"
     names = f"{films[0]} and {len(films) - 1} more" if len(films) > 1 else films[0]
-    return (
-        f"speeds below {abs(low) * RPM_PER_RAD_S:.6g} rpm of the input shaft: the film of {names} carries only while its shaft "
-        "turns; --from chooses another lower end"
-    )
+    why = f"the film of {names} carries only while its shaft turns; --from chooses another lower end"
+    return tried[first], Note("", what, why)

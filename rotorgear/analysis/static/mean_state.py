@@ -1,6 +1,6 @@
 """The mean state that linear responses and motions in time are about: flanks and mean forces from statics.
 
-Torsional springs between turning shafts and the ground stand for machines that turn with the train, and whose torque is among
+Torsional springs between turning shafts and the ground represent machines that turn with the train, and whose torque is among
 the loads: a mean torque in them would be there twice. So they act on vibration only, about the mean twist. Statics leaves them
 out (`without_torsion_to_ground`); responses are about that state; in time they get the load f = K_g q_mean, with which they carry
 nothing at the mean displacements. Where the loads do not balance by themselves there is no such state: the springs then hold
@@ -52,7 +52,7 @@ class Setup:
 
 
 def about_mean(model: Model, speeds: Sequence[float | None], at: float) -> tuple[State, Setup]:
-    """What a linear response stands on: the state about the equilibria at some speeds, and the mean state at one of them.
+    """What a linear response is about: the state about the equilibria at some speeds, and the mean state at one of them.
 
     Modes for the mesh are about the first one. The response is about the second, with the tangents of the first over speed:
     `with_tangents` puts the two together.

@@ -23,56 +23,44 @@ def sensitivities(
     lines = equilibrium.lines
     active = np.where(equilibrium.closed, lines.stiffness, 0.0)
     resists = np.where(equilibrium.closed, lines.tilt_stiffness, 0.0)
-    count = len(active)
-    names: list[str] = []
-    units: list[str] = []
-    rights: list[np.ndarray] = []  # df - dK q
-    directs: list[np.ndarray] = []  # the part of dF that does not go through dq
-
-    def add(name: str, unit: str, right: np.ndarray, direct: np.ndarray) -> None:
-        names.append(name)
-        units.append(unit)
-        rights.append(right)
-        directs.append(direct)
-
-    meshes = list(dict.fromkeys(lines.names))
-    for mesh in meshes:
-        mine = np.array([name == mesh for name in lines.names]) * active
-        add(f"meshes.{mesh}.index_error", "N/m", lines.vectors @ mine, -mine)
-    for mesh in meshes:
+    # Name, unit, df - dK q, and the part of dF that does not go through dq.
+    terms: list[tuple[str, str, np.ndarray, np.ndarray]] = []
+    masks = {mesh: np.array([name == mesh for name in lines.names], float) for mesh in lines.names}
+    for mesh, own in masks.items():
+        mine = own * active
+        terms.append((f"meshes.{mesh}.index_error", "N/m", lines.vectors @ mine, -mine))
+    for mesh in masks:
         second = [s.contact.mesh == mesh and s.contact.helix == 1 for s in lines.states]
         if any(second):
             mine = np.array(second) * active
-            add(f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine)
-    for mesh in meshes:
-        own = np.array([name == mesh for name in lines.names], float)
+            terms.append((f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine))
+    for mesh, own in masks.items():
         mine = own * equilibrium.force
         right = -(lines.vectors @ mine + lines.tilt @ (own * equilibrium.moment))
-        add(f"meshes.{mesh}.stiffness", "N", right, mine)
-    for part, right in _stiffness_terms(equilibrium).items():
-        add(part, "N", right, np.zeros(count))
-    for mesh in meshes:
-        mine = np.array([name == mesh for name in lines.names], float)
-        turning = lines.turned.T @ equilibrium.q
-        right = -(lines.turned @ (mine * equilibrium.force) + lines.vectors @ (mine * active * turning))
-        right -= lines.tilted @ (mine * equilibrium.moment)
-        right -= lines.tilt @ (mine * resists * (lines.tilted.T @ equilibrium.q))
-        add(f"meshes.{mesh}.centre_line_angle", "N/rad", right, mine * active * turning)
+        terms.append((f"meshes.{mesh}.stiffness", "N", right, mine))
+    terms += [(part, "N", right, np.zeros(len(active))) for part, right in _stiffness_terms(equilibrium).items()]
+    turning = lines.turned.T @ equilibrium.q
+    for mesh, own in masks.items():
+        right = -(lines.turned @ (own * equilibrium.force) + lines.vectors @ (own * active * turning))
+        right -= lines.tilted @ (own * equilibrium.moment)
+        right -= lines.tilt @ (own * resists * (lines.tilted.T @ equilibrium.q))
+        terms.append((f"meshes.{mesh}.centre_line_angle", "N/rad", right, own * active * turning))
 
     # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.
     kept = []
-    dropped = []
     columns = []
-    for k, right in enumerate(rights):
+    left = []
+    for name, unit, right, direct in terms:
         try:
             columns.append(equilibrium.solver.solve(right[:, None])[:, 0])
-            kept.append(k)
         except AnalysisError:
-            dropped.append(names[k])
-    dq = np.array(columns).T if columns else np.zeros((len(equilibrium.q), 0))
-    force = (active[:, None] * (lines.vectors.T @ dq)).T + np.array(directs)[kept]
-    left = tuple(Note(name, "the derivative by it", "it would set the free motions going") for name in dropped)
-    return tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left
+            left.append(Note(name, "the derivative by it", "it would set the free motions going"))
+            continue
+        kept.append((name, unit, direct))
+    dq = np.array(columns).reshape(len(kept), len(equilibrium.q)).T
+    direct_part = np.array([direct for *_, direct in kept]).reshape(len(kept), len(active))
+    force = (active[:, None] * (lines.vectors.T @ dq)).T + direct_part
+    return tuple(name for name, *_ in kept), tuple(unit for _, unit, _ in kept), force, tuple(left)
 
 
 def _stiffness_terms(equilibrium: Equilibrated) -> dict[str, np.ndarray]:

@@ -6,6 +6,8 @@ mesh is F_i / sum F, and the sharing factor of n meshes is K_gamma = n max F_i /
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated
@@ -15,41 +17,35 @@ from rotorgear.results.static import Share
 _DECIDED = 1e-7
 
 
-def share_rows(equilibrium: Equilibrated, derivative: np.ndarray) -> tuple[tuple[Share, ...], np.ndarray]:
-    """Return the shares of all groups of meshes, and their derivatives (k, g) from those of the contact forces (k, c)."""
+def share_rows(
+    equilibrium: Equilibrated, parameters: Sequence[str], derivative: np.ndarray
+) -> tuple[tuple[Share, ...], np.ndarray]:
+    """Return the shares of all groups of meshes, and their derivatives (k, g).
+
+    Args:
+        equilibrium: with its contacts. parameters, derivative: of the contact forces, (k, c), as `sensitivities` has them.
+    """
     rows: list[Share] = []
     changes: list[np.ndarray] = []
-    indexes = _index_derivatives(equilibrium)
+    names = np.array(equilibrium.lines.names)
+    contacts = {mesh: names == mesh for mesh in equilibrium.lines.names}
+    by = dict(zip(parameters, derivative, strict=True))
     for gear, meshes in _groups(equilibrium).items():
-        mine = [np.array([name == mesh for name in equilibrium.lines.names]) for mesh in meshes]
-        force = np.array([equilibrium.force[contacts].sum() for contacts in mine])
+        force = np.array([equilibrium.force[contacts[mesh]].sum() for mesh in meshes])
         total = force.sum()
         if not total:
             continue
-        change = np.array([derivative[:, contacts].sum(axis=1) for contacts in mine])  # (meshes, k)
+        change = np.array([derivative[:, contacts[mesh]].sum(axis=1) for mesh in meshes])  # (meshes, k)
         share = force / total
         moved = (change - share[:, None] * change.sum(axis=0)) / total
-        stiff = np.array([indexes[np.ix_(contacts, contacts)].max() for contacts in mine]).max()
+        # A gap in both helices moves the sum of their forces in a loop only; between the helices it is no matter of the branch.
+        gaps = [by[f"meshes.{mesh}.index_error"] for mesh in meshes]
+        stiff = max(sum(abs(gap[own].sum()) for own in contacts.values()) for gap in gaps)
         loop = stiff > _DECIDED * float(equilibrium.lines.stiffness.max())
         for mesh, part, row in zip(meshes, share, moved, strict=True):
             rows.append(Share(gear, mesh, float(part), float(len(meshes) * part), "stiffness" if loop else "loads"))
             changes.append(row)
     return tuple(rows), np.array(changes).T.reshape(len(derivative), len(rows))
-
-
-def _index_derivatives(equilibrium: Equilibrated) -> np.ndarray:
-    """|dF_i / de_j| of whole meshes' index errors, (c, c)."""
-    active = np.where(equilibrium.closed, equilibrium.lines.stiffness, 0.0)
-    names = np.array(equilibrium.lines.names)
-    out = np.zeros((len(active), len(active)))
-    for mesh in dict.fromkeys(equilibrium.lines.names):
-        mine = np.where(names == mesh, active, 0.0)
-        dq = equilibrium.solver.solve((equilibrium.lines.vectors @ mine)[:, None])[:, 0]
-        change = active * (equilibrium.lines.vectors.T @ dq) - mine
-        # A gap in both helices moves their sum in a loop only; between the helices alone it is no matter of the branch.
-        total = sum(abs(change[names == other].sum()) for other in dict.fromkeys(equilibrium.lines.names))
-        out[:, names == mesh] = total
-    return out
 
 
 def _groups(equilibrium: Equilibrated) -> dict[str, list[str]]:

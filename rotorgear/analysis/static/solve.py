@@ -6,7 +6,7 @@ instead, and the torque flow is turned there. That is repeated until every conta
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -34,6 +34,7 @@ from rotorgear.system.system import System
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
+    from rotorgear.gears.stiffness.face_load import FaceLoad
 
 # A contact pulls where its force is below minus this share of the largest one.
 _PULLS = 1e-9
@@ -41,40 +42,28 @@ _PULLS = 1e-9
 
 @dataclass(frozen=True)
 class LawState:
-    """A law in equilibrium: displacements d and force (k,), and its tangents there, (k, k), stiffness and damping.
-
-    `averaged`: whether its rolling elements turn, so that force and tangents are means over a pitch of them.
-    """
+    """A law in equilibrium: displacements d and force (k,), and its tangents there, (k, k), stiffness and damping."""
 
     part: LocalPart
     d: np.ndarray
     force: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
-    averaged: bool = False
 
-
-def operating_points(states: Iterable[LawState], speed: float) -> tuple[OperatingPoint, ...]:
-    """Where an equilibrium at a speed of the reference shaft in rad/s found each law."""
-    return tuple(
-        OperatingPoint(
-            part=state.part.part,
-            speed=speed,
-            force=state.force,
-            displacement=state.d,
-            stiffness=state.stiffness,
-            damping=state.damping,
-            averaged=bool(state.part.law.cycle()) and state.averaged,
-        )
-        for state in states
-    )
+    def at(self, speed: float) -> OperatingPoint:
+        """Where an equilibrium at a speed of the reference shaft in rad/s found the law."""
+        # Rolling elements that turn: force and tangents are means over a pitch of them.
+        averaged = bool(self.part.law.cycle()) and speed != 0.0
+        return OperatingPoint(self.part.part, speed, self.force, self.d, self.stiffness, self.damping, averaged)
 
 
 @dataclass(frozen=True)
 class Equilibrated:
     """A solved system: q (n,), forces of the c contacts (0 where open), and what derivatives need.
 
-    `moment` (c,) is that of the contacts against the tilt of their flanks, about their places (N m).
+    `moment` (c,) is that of the contacts against the tilt of their flanks, about their places (N m). `faces` (c,) has the load
+    along the face of each contact that feels the tilt of its shafts and carries, else None; `passes` counts how often these
+    loads were asked for.
     """
 
     system: System
@@ -89,6 +78,8 @@ class Equilibrated:
     moment: np.ndarray
     notes: tuple[Note, ...]
     laws: tuple[LawState, ...] = ()
+    faces: tuple[FaceLoad | None, ...] = ()
+    passes: int = 0
 
 
 def equilibrate(
@@ -120,12 +111,12 @@ def equilibrate(
         pressed = equilibrium.lines.force(equilibrium.q)
         worst = int(np.argmin(equilibrium.force)) if equilibrium.force.size else -1
         through = np.flatnonzero(~closed & (pressed > size))
+        pulls = worst >= 0 and equilibrium.force[worst] < -size
+        closed = closed.copy()
         if through.size:
-            closed = closed.copy()
             closed[through[0]] = True
-        elif worst >= 0 and equilibrium.force[worst] < -size:
+        elif pulls:
             # It is opened, or its mesh carries on the other flank where the loads can't do without it.
-            closed = closed.copy()
             closed[worst] = False
             try:
                 _solve(system, speed, closed, near)
@@ -261,8 +252,7 @@ def _laws_at_rest(
         if why := law.beyond(d, speed):
             raise AnalysisError(f"{part.part}: in equilibrium at {speed * RPM_PER_RAD_S:.6g} rpm {why}")
         tangent = law.settled(d).linearised(d, speed=speed)
-        own = replace(part, law=law)
-        states.append(LawState(own, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
+        states.append(LawState(replace(part, law=law), d, tangent.force, tangent.stiffness, tangent.damping))
     return states
 
 
@@ -278,7 +268,7 @@ def without_torsion_to_ground(
 ) -> tuple[list[ElementGroup], tuple[Note, ...]]:
     """Leave torsional springs between turning shafts and the ground out: what turns can't wind them up.
 
-    They stand for machines that turn as well, whose torque is among the loads. Where a support holds a shaft of the same
+    They are machines that turn as well, whose torque is among the loads. Where a support holds a shaft of the same
     part of the train fixed in torsion, nothing turns, and they stay.
     """
     train = system.train
@@ -291,19 +281,16 @@ def without_torsion_to_ground(
         B = group.matrices.strain
         D = group.matrices.modulus
         turns = bool(group.shaft) and train.ratios.get(group.shaft, 0) != 0 and train.group[group.shaft] not in held
-        if table not in ("bearings", "supports") or not turns or B is None or D is None:
-            kept.append(group)
-            continue
-        twist = B[0][:, -1] != 0.0  # the torsion of the shaft's own node, which comes last
-        if not np.any(D[0][twist]):
-            kept.append(group)
-            continue
-        cut = D.copy()
-        cut[:, twist, :] = 0.0
-        cut[:, :, twist] = 0.0
-        kept.append(replace(group, matrices=replace(group.matrices, modulus=cut)))
-        why = "the shaft turns, and the loads hold the torque"
-        notes.append(Note(group.part, "torsional stiffness to ground", why))
+        if table in ("bearings", "supports") and turns and B is not None and D is not None:
+            twist = B[0][:, -1] != 0.0  # the torsion of the shaft's own node, which comes last
+            if np.any(D[0][twist]):
+                cut = D.copy()
+                cut[:, twist, :] = 0.0
+                cut[:, :, twist] = 0.0
+                group = replace(group, matrices=replace(group.matrices, modulus=cut))
+                why = "the shaft turns, and the loads hold the torque"
+                notes.append(Note(group.part, "torsional stiffness to ground", why))
+        kept.append(group)
     return kept, tuple(notes)
 
 

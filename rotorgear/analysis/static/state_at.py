@@ -45,13 +45,13 @@ def state_at(
 
     Args:
         model: a checked model.
-        speeds: of the reference shaft in rad/s, of one sense, at which tangents are taken; None stands for standstill, where
+        speeds: of the reference shaft in rad/s, of one sense, at which tangents are taken; None is standstill, where
             films have none, so that the operating speed serves.
         direction: +1 or -1, sense about +z in which the reference shaft turns; None: that of the speeds, else of the model.
         near: the laws in a known equilibrium near the first of them, from which it is looked for.
         beside: a state of a model next to this one, whose face maps serve as long as this state lies among their misalignments.
             They take nearly all the time of an equilibrium. And a map is known to a few thousandths of its tangents only: were
-            each model on a map of its own, the difference of two would be off by as much.
+            each model on a map of its own, the difference of two would be wrong by as much.
         springs: address -> what takes the place of a bearing in the equilibrium and about it.
 
     Raises:
@@ -104,11 +104,10 @@ def sense_of(speeds: Sequence[float | None]) -> int:
 
 def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: Sequence[LawState]) -> State:
     """The state about the equilibrium, from that of the torque flow."""
-    laws = {f"bearings.{name}": bearing for name, bearing in model.bearings.items() if not bearing.is_linear} | {
-        f"nonlinear_elements.{name}": element
-        for name, element in model.nonlinear_elements.items()
-        if not element.is_given
+    laws: dict[str, Bearing | NonlinearElement] = {
+        f"bearings.{name}": bearing for name, bearing in model.bearings.items() if not bearing.is_linear
     }
+    laws |= {f"nonlinear_elements.{name}": one for name, one in model.nonlinear_elements.items() if not one.is_given}
     wanted = sorted(laws.keys() - state.tangents.keys())
     # Most models have none of these parts: what finds an equilibrium is loaded for the others only.
     if any(mesh.tilt for mesh in model.meshes.values()):
@@ -121,12 +120,12 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
         state = about_cycle(model, speeds, state)
     if not wanted:
         return state
-    from rotorgear.analysis.static.solve import equilibrate, operating_points
+    from rotorgear.analysis.static.solve import equilibrate
 
     running = state.direction * abs(model.operating_speed or 0.0)
     at = sorted({running if speed is None else float(speed) for speed in speeds}, key=abs)
     system = flow_system(model).with_state(state.of_kind("static"))
-    # Each begins where the one before stands.
+    # Each begins at the one before.
     found: list[dict[str, LawState]] = []
     for speed in at:
         near = equilibrate(system, speed, near=near).laws
@@ -134,9 +133,7 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
     tangents = {part: _tangent(model, part, laws[part], at, [laws[part] for laws in found]) for part in wanted}
     # Each once where there is one speed, in the order of the speeds.
     ends = {at[0]: found[0], at[-1]: found[-1]}
-    operating = [
-        point for speed, there in ends.items() for point in operating_points((there[part] for part in wanted), speed)
-    ]
+    operating = [there[part].at(speed) for speed, there in ends.items() for part in wanted]
     return replace(state, tangents={**state.tangents, **tangents}, operating=tuple(operating))
 
 
@@ -150,18 +147,14 @@ def _tangent(
     """The spring that a law is about its equilibria at some speeds of the reference shaft."""
     given = given_spring(owner).damping[0]
     used = [DOF_NAMES.index(d) for d in owner.directions] if isinstance(owner, NonlinearElement) else None
-    stiffness = np.array([_six(state.stiffness, used) for state in states])
-    damping = np.array([given + _six(state.damping, used) for state in states])
+    stiffness = np.zeros((len(states), 6, 6))
+    damping = np.repeat(given[None], len(states), axis=0)
+    for number, state in enumerate(states):
+        dofs = np.arange(len(state.d)) if used is None else used
+        stiffness[number][np.ix_(dofs, dofs)] = state.stiffness
+        damping[number][np.ix_(dofs, dofs)] += state.damping
     ratio = abs(float(model.layout.train.ratio(owner.shaft)))
     change = max(float(np.abs(A - A[0]).max()) / max(float(np.abs(A[0]).max()), 1e-300) for A in (stiffness, damping))
     if change <= _CONSTANT or ratio == 0.0:
         return constant_spring(stiffness[0], damping[0])
     return Spring(stiffness, damping, ratio * np.abs(np.array(speeds)))
-
-
-def _six(A: np.ndarray, used: list[int] | None) -> np.ndarray:
-    """Tangents (k, k) among the six displacements of a node."""
-    full = np.zeros((6, 6))
-    dofs = list(range(len(A))) if used is None else used
-    full[np.ix_(dofs, dofs)] = A
-    return full

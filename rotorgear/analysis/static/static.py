@@ -12,7 +12,7 @@ from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_or_operating
 from rotorgear.analysis.common.stations import displacement_places, shapes_at_stations
-from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
+from rotorgear.analysis.static.along_faces import decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.forces import (
     bearing_forces,
@@ -25,7 +25,7 @@ from rotorgear.analysis.static.forces import (
 )
 from rotorgear.analysis.static.sensitivity import sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
-from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded, operating_points
+from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State
@@ -81,10 +81,9 @@ def static(
         found = solved(model, Plan(count), given, progress)
         progress(0.5, "error estimate")
         # Change of all forces when every element is halved, relative to the largest.
-        finer = equilibrate(found.equilibrium.system.with_plan(Plan(2 * count)), given or 0.0)
-        there = forces_of(finer)
+        there = forces_of(equilibrate(found.system.with_plan(Plan(2 * count)), given or 0.0))
         size = float(np.max(np.abs(there), initial=0.0))
-        change = float(np.max(np.abs(forces_of(found.equilibrium) - there), initial=0.0))
+        change = float(np.max(np.abs(forces_of(found) - there), initial=0.0))
         estimate = change / size if size else 0.0
         if accuracy is None or estimate <= accuracy:
             break
@@ -102,7 +101,7 @@ def static(
 
 def solved(
     model: Model, plan: Plan, speed: float | None, progress: Progress, beside: State | None = None
-) -> AlongFaces:
+) -> Equilibrated:
     """The equilibrium on a mesh, with loaded teeth over the mesh cycle where they need it; errors are those of `static`.
 
     `beside` is a state of a model next to this one, whose face maps serve, as in `state_at`.
@@ -118,11 +117,11 @@ def solved(
         )
     progress(0.1, f"solving {system.n} dofs")
     found = equilibrate_along_faces(system, speed or 0.0, part_of(progress, 0.1, 0.4))
-    if found.passes and decided_by_loads(found.equilibrium):
+    if found.passes and decided_by_loads(found):
         return found
     progress(0.4, "loaded teeth over the mesh cycle")
-    equilibrium, _ = over_cycle(found.equilibrium, speed or 0.0)
-    return replace(found, equilibrium=equilibrium)
+    equilibrium, _ = over_cycle(found, speed or 0.0)
+    return replace(equilibrium, faces=found.faces, passes=found.passes)
 
 
 def forces_of(equilibrium: Equilibrated) -> np.ndarray:
@@ -131,18 +130,17 @@ def forces_of(equilibrium: Equilibrated) -> np.ndarray:
     return np.concatenate([equilibrium.force, *held])
 
 
-def _result(found: AlongFaces, speed: float | None, estimate: float) -> StaticResult:
-    equilibrium = found.equilibrium
+def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> StaticResult:
     system = equilibrium.system
-    faces = _face_rows(found)
+    faces = _face_rows(equilibrium)
     states = equilibrium.lines.states
     q = system.dofs.expand(equilibrium.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
     parameters, units, derivatives, underivable = sensitivities(equilibrium)
-    shares, share_change = share_rows(equilibrium, derivatives)
+    shares, share_change = share_rows(equilibrium, parameters, derivatives)
     approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
     together = system.layout.assembly
-    # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
+    # A free motion is no mistake in statics: where the loads do not push it, forces are the same whatever its size.
     count = equilibrium.motions.shape[1]
     free = f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
     what = "misalignment over the face by the shafts"
@@ -186,23 +184,22 @@ def _result(found: AlongFaces, speed: float | None, estimate: float) -> StaticRe
         error_estimate=estimate,
         dofs=system.n,
         faces=faces,
-        laws=law_rows(operating_points(equilibrium.laws, speed or 0.0)),
-        passes=found.passes,
+        laws=law_rows(law.at(speed or 0.0) for law in equilibrium.laws),
+        passes=equilibrium.passes,
         left_out=(*left_out(system, "static", speed), *equilibrium.notes, *unfelt, *underivable),
-        warnings=(*system.nodes.merged, *_warnings(found, faces)),
+        warnings=(*system.nodes.merged, *_warnings(equilibrium, faces)),
         method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
     )
 
 
-def _face_rows(found: AlongFaces) -> tuple[MeshFace, ...]:
+def _face_rows(equilibrium: Equilibrated) -> tuple[MeshFace, ...]:
     """The load along each face that feels the tilt of its shafts, or that has teeth which could."""
     rows = []
-    equilibrium = found.equilibrium
     for k, (state, whole) in enumerate(zip(equilibrium.lines.states, misalignments(equilibrium), strict=True)):
         contact = state.contact
         mesh = equilibrium.system.layout.mesh(contact.mesh).part
-        face = found.faces[k]
+        face = equilibrium.faces[k]
         if face is None and (mesh.stiffness != "tooth_fe" or not equilibrium.closed[k]):
             continue
         rows.append(
@@ -229,9 +226,8 @@ def phases_in_pitches(load: State) -> dict[str, float]:
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
 
 
-def _warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[Note]:
+def _warnings(equilibrium: Equilibrated, faces: tuple[MeshFace, ...]) -> list[Note]:
     """What statics says of contacts, of loops, and of shafts that misalign teeth which don't feel it."""
-    equilibrium = found.equilibrium
     lines = equilibrium.lines
     layout = equilibrium.system.layout
     notes: list[Note] = []
@@ -254,7 +250,7 @@ def _warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[Note]:
         for mesh, closing, rest in layout.assembly.loops
         if not closing and abs(rest) > 1e-6
     ]
-    for name, face in zip(lines.names, found.faces, strict=True):
+    for name, face in zip(lines.names, equilibrium.faces, strict=True):
         notes += [Note(f"meshes.{name}", note) for note in face.warnings] if face is not None else []
     force = dict(zip(lines.names, equilibrium.force, strict=True))
     stiffness = dict(zip(lines.names, lines.stiffness, strict=True))

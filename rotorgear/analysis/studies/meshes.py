@@ -283,7 +283,7 @@ def static_convergence_study(
         model, speed: as for `static`.
         elements, accuracies, repeat, progress: as for `convergence_study`.
     """
-    finest = solved(model, Plan(1, _STATIC_ORDER), speed_or_operating(speed, model), silent).equilibrium
+    finest = solved(model, Plan(1, _STATIC_ORDER), speed_or_operating(speed, model), silent)
     truth = forces_of(finest)
     size = max(float(np.abs(truth).max(initial=0.0)), np.finfo(float).tiny)
 

@@ -12,8 +12,8 @@ from rotorgear.analysis.bearing.state import (
     by_its_law,
     carried,
     change_of_tangents,
-    equilibrium_of,
     law_at,
+    laws_of,
     on_grid,
 )
 from rotorgear.analysis.common.recorded import recorded
@@ -67,7 +67,7 @@ def bearing_convergence_study(
     address = address_of(model, bearing)
     given = speed_or_operating(speed, model) or 0.0
     progress(0.0, "equilibrium of the gearbox")
-    state = law_at(equilibrium_of(by_its_law(model, address), given), address)
+    state = law_at(laws_of(by_its_law(model, address), given), address)
     law = state.part.law
     film = bool(law.grid)
     if not film and not (law.cycle() and given):

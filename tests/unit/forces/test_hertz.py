@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from rotorgear.forces.rolling import point_contact
+from rotorgear.forces.rolling import contact_ellipses, point_contact
 
 E = 210e9
 NU = 0.3
@@ -38,7 +38,7 @@ def test_a_ball_between_two_raceways_gives_by_both_contacts_one_after_the_other(
 ) -> None:
     D = 14e-3
     pitch = 77e-3
-    c = point_contact(D, pitch, inner * D, outer * D, angle, E, NU)
+    c = point_contact(contact_ellipses(D, pitch, inner * D, outer * D, angle), E / (1.0 - NU**2))
     load = 900.0
     total = 0.0
     for sign, groove in ((-1.0, inner), (1.0, outer)):
@@ -51,6 +51,8 @@ def test_a_ball_between_two_raceways_gives_by_both_contacts_one_after_the_other(
 
 
 def test_the_constant_scales_with_modulus_and_size() -> None:
-    one = point_contact(14e-3, 77e-3, 7.3e-3, 7.5e-3, 0.3, E, NU)
-    assert point_contact(28e-3, 154e-3, 14.6e-3, 15e-3, 0.3, E, NU) == pytest.approx(np.sqrt(2.0) * one, rel=1e-9)
-    assert point_contact(14e-3, 77e-3, 7.3e-3, 7.5e-3, 0.3, 2.0 * E, NU) == pytest.approx(2.0 * one, rel=1e-12)
+    small = tuple(contact_ellipses(14e-3, 77e-3, 7.3e-3, 7.5e-3, 0.3))
+    large = contact_ellipses(28e-3, 154e-3, 14.6e-3, 15e-3, 0.3)
+    one = point_contact(small, E)
+    assert point_contact(large, E) == pytest.approx(np.sqrt(2.0) * one, rel=1e-9)
+    assert point_contact(small, 2.0 * E) == pytest.approx(2.0 * one, rel=1e-12)

@@ -108,11 +108,12 @@ def test_half_sommerfeld_carries_less_than_reynolds():
 def test_the_pressure_field_adds_up_to_the_force():
     law = JournalFilm(VISCOSITY, RADIUS, 0.1, CLEARANCE, follows=True)
     d = np.array([0.3 * CLEARANCE, -0.4 * CLEARANCE])
-    angle, z, pressure = law.pressure(d, speed=SPEED)
-    area = 2.0 * RADIUS * (2.0 * np.pi / 240) * (z[1] - z[0])
-    total = area * np.array([np.sum(pressure.T * np.cos(angle)), np.sum(pressure.T * np.sin(angle))])
+    film = law.inside(d, speed=SPEED)
+    area = 2.0 * RADIUS * (2.0 * np.pi / 240) * (film.z[1] - film.z[0])
+    turned = np.array([np.cos(film.angle), np.sin(film.angle)])
+    total = area * (turned @ film.pressure).sum(axis=1)
     np.testing.assert_allclose(total, law.evaluate(d, speed=SPEED).force, rtol=1e-12)
-    assert pressure.min() >= 0.0
+    assert film.pressure.min() >= 0.0
 
 
 def test_a_bearing_that_is_too_long_or_whose_lobes_overlap_is_refused():
@@ -129,7 +130,7 @@ def test_the_film_carries_where_it_must_and_nowhere_else(lobes: int, v: tuple[fl
     # p >= 0, A p >= push, p (A p - push) = 0 of the discrete film, built anew: whatever set of nodes the solution began with.
     law = JournalFilm(0.02, 30e-3, 40e-3, 60e-6, lobes=lobes, preload=0.4 if lobes > 1 else 0.0, around=60, along=4)
     d = (20e-6, -10e-6)
-    pressure = law.pressure(d, v, speed=speed)[2].reshape(lobes, -1, law.along)
+    pressure = law.field_at(d, v, speed).pressure.reshape(lobes, -1, law.along)
     pads = law.parameters()[13:].reshape(lobes, 3)
     rows = pressure.shape[1]
     step = 2.0 * np.pi / lobes / (rows + 1)

@@ -115,10 +115,10 @@ def test_slices_converge_with_order_two():
     ],
 )
 def test_a_designation_says_what_rolls(designation, count, element, pitch, kind, estimated):
-    found = inner_geometry(designation)
-    assert (found.keys["elements"], found.keys["kind"], found.estimated) == (count, kind, estimated)
-    assert 1e3 * found.keys["element_diameter"] == pytest.approx(element)
-    assert 1e3 * found.keys["pitch_diameter"] == pytest.approx(pitch)
+    found, source = inner_geometry(designation)
+    assert (found["elements"], found["kind"], source == "") == (count, kind, estimated)
+    assert 1e3 * found["element_diameter"] == pytest.approx(element)
+    assert 1e3 * found["pitch_diameter"] == pytest.approx(pitch)
 
 
 def test_shares_of_the_estimate_are_near_the_bearings_that_are_known():
@@ -128,7 +128,7 @@ def test_shares_of_the_estimate_are_near_the_bearings_that_are_known():
         known = dict(designations._KNOWN)
         designations._KNOWN.pop(name)
         try:
-            keys = inner_geometry(name).keys
+            keys, _ = inner_geometry(name)
         finally:
             designations._KNOWN.update(known)
         assert keys["elements"] == pytest.approx(count, abs=1.01)

@@ -83,11 +83,11 @@ class RollingElements(BearingGeometry):
         """Fill what a designation tells, where it is not given."""
         if not isinstance(data, dict) or not isinstance(data.get("designation"), str):
             return data
-        known = inner_geometry(data["designation"])
-        if known is None:
+        known, _ = inner_geometry(data["designation"])
+        if not known:
             raise refuse(f"a designation of the series {SERIES}; or leave it out and give kind, elements and diameters")
         given = {key: value for key, value in data.items() if value is not None}
-        return {**known.keys, **given}
+        return {**known, **given}
 
     @property
     def play(self) -> float | None:
@@ -97,8 +97,8 @@ class RollingElements(BearingGeometry):
     @property
     def estimate(self) -> tuple[str, str, str]:
         """Where its elements follow from its boundary dimensions."""
-        known = inner_geometry(self.designation or "")
-        if known is None or not known.estimated:
+        known, published = inner_geometry(self.designation or "")
+        if not known or published:
             return "", "", ""
         return (
             "elements estimated, since no maker prints them: stiffness and loads are an order of size",
@@ -159,9 +159,9 @@ class RollingElements(BearingGeometry):
         fitting = f"elements that fit on a circle of {millimetres(self.pitch_diameter)}"
         full = self.elements * self.element_diameter > math.pi * self.pitch_diameter
         rollers = self.kind in ("roller", "tapered")
-        known = inner_geometry(self.designation or "")
+        known, _ = inner_geometry(self.designation or "")
         others = []
-        for key, value in known.keys.items() if known is not None else ():
+        for key, value in known.items():
             given = getattr(self, key)
             same = given == value or (isinstance(given, float) and math.isclose(given, value))
             if key != "contact_angle" and not same:

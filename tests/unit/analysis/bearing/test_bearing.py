@@ -9,7 +9,7 @@ import rotorgear as rg
 from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.forces.rolling import line_pressure, point_pressure
+from rotorgear.forces.rolling import contact_ellipses, line_pressure, point_pressure
 from tests.models import disk_in_bearing
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
@@ -26,9 +26,9 @@ def journal_rotor(around: int = 60) -> rg.Model:
 def test_a_ball_on_a_plane_and_a_roller_on_a_plane_have_hertz_pressure() -> None:
     R, Q, L, E, nu = 5e-3, 100.0, 10e-3, 210e9, 0.3
     reduced = 0.5 * E / (1.0 - nu**2)
-    flat = point_pressure(np.array([Q]), 2.0 * R, 1e6, 1e6, 1e6, 0.0, E, nu)[0][0]
+    flat = point_pressure(np.array([Q]), contact_ellipses(2.0 * R, 1e6, 1e6, 1e6, 0.0), 2.0 * reduced)[0][0]
     assert flat == pytest.approx((6.0 * Q * reduced**2 / (np.pi**3 * R**2)) ** (1.0 / 3.0), rel=1e-6)
-    line = line_pressure(np.array([Q]), L, 2.0 * R, 0.0, E, nu)[1][0]
+    line = line_pressure(np.array([Q]), L, 2.0 * R, 0.0)[1][0]
     assert line == pytest.approx(np.sqrt(Q * reduced / (np.pi * L * R)), rel=1e-12)
 
 

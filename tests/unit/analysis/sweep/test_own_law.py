@@ -60,8 +60,8 @@ def test_the_law_of_the_tutorial_runs_in_a_transient_and_a_sweep_alike(file_of_a
 
 def test_a_name_of_the_package_is_not_taken_by_another_law(file_of_a_user: ModuleType) -> None:
     with pytest.raises(rg.AnalysisError, match="'mesh_contact' is a force law of the package"):
-        registry.register("mesh_contact", file_of_a_user.Stop)
+        registry.register_law("mesh_contact")(file_of_a_user.Stop)
     with pytest.raises(rg.AnalysisError, match="'a b' is no name"):
-        registry.register("a b", file_of_a_user.Stop)
+        registry.register_law("a b")(file_of_a_user.Stop)
     with pytest.raises(rg.AnalysisError, match="derived from"):
-        registry.register("text", str)  # type: ignore[type-var]
+        registry.register_law("text")(str)  # type: ignore[type-var]
