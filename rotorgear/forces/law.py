@@ -376,8 +376,8 @@ class ForceLaw(ABC):
         Kv = np.zeros(k * k)
         energy = np.zeros(4)
         force(p, state, d, v, F, Kd, Kv, energy)
-        *powers, contact = map(float, energy)
-        return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), *powers, int(contact))
+        stored, power_in, dissipated, contact = map(float, energy)
+        return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), stored, power_in, dissipated, int(contact))
 
     def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValue:
         """`evaluate` at r instants in one compiled loop: d and v (r, k); time, angle and speed (r,) or the same for all."""
@@ -398,8 +398,8 @@ class ForceLaw(ABC):
         evaluate_instants(*laws, p, np.zeros(self.state_size()), instants, answer)
         Kd = answer.Kd.reshape(r, k, k)
         Kv = answer.Kv.reshape(r, k, k)
-        *powers, contact = answer.energy.T
-        return LawValue(answer.F, Kd, Kv, *powers, contact.astype(np.int64))
+        stored, power_in, dissipated, contact = answer.energy.T
+        return LawValue(answer.F, Kd, Kv, stored, power_in, dissipated, contact.astype(np.int64))
 
 
 # Places of a rolling element in its pitch over which a linearisation averages.

@@ -364,18 +364,14 @@ class LoadedTeeth(ForceLaw):
         return FLANK_STATE * (1 if self.coast is None else 2)
 
     @property
-    def rows(self) -> np.ndarray:
-        """The inverted map, read-only, as `inverted` has it."""
-        return self._inverted[1]
-
-    @property
-    def _inverted(self) -> tuple[float, np.ndarray]:
+    def inverse(self) -> tuple[float, np.ndarray]:
+        """Step of x in m and rows of the inverted map, as `inverted` has them."""
         return inverted(self.load, self.approach if self.tilt.size else self.approach[None], self.moment)
 
     @cached_property
     def _parameters(self) -> np.ndarray:
         # Kept: statics over a cycle evaluate one law a thousand times, and the whole map is copied into them.
-        spacing, rows = self._inverted
+        spacing, rows = self.inverse
         series = pairs(self.error_cos, self.error_sin)
         face = [self.place, len(self.tilt), *self.tilt] if self.tilt.size else []
         coast = np.zeros(0) if self.coast is None else self.coast.parameters()

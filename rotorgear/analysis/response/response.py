@@ -13,13 +13,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import (
-    check_modal_damping,
-    check_request,
-    check_whole,
-    missed,
-    speed_in_si,
-)
+from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.mesh import aims, damped_modes, mesh_error, meshed, parting, speed_warnings
 from rotorgear.analysis.response.orders import Order, orders_of

@@ -146,13 +146,13 @@ def _tangent(
 ) -> Spring:
     """The spring that a law is about its equilibria at some speeds of the reference shaft."""
     given = given_spring(owner).damping[0]
-    used = [DOF_NAMES.index(d) for d in owner.directions] if isinstance(owner, NonlinearElement) else None
+    named = owner.directions if isinstance(owner, NonlinearElement) else DOF_NAMES[: len(states[0].d)]
+    used = [DOF_NAMES.index(direction) for direction in named]
+    among = np.ix_(range(len(states)), used, used)
     stiffness = np.zeros((len(states), 6, 6))
+    stiffness[among] = [state.stiffness for state in states]
     damping = np.repeat(given[None], len(states), axis=0)
-    for number, state in enumerate(states):
-        dofs = np.arange(len(state.d)) if used is None else used
-        stiffness[number][np.ix_(dofs, dofs)] = state.stiffness
-        damping[number][np.ix_(dofs, dofs)] += state.damping
+    damping[among] += [state.damping for state in states]
     ratio = abs(float(model.layout.train.ratio(owner.shaft)))
     change = max(float(np.abs(A - A[0]).max()) / max(float(np.abs(A[0]).max()), 1e-300) for A in (stiffness, damping))
     if change <= _CONSTANT or ratio == 0.0:

@@ -156,18 +156,18 @@ def test_force_tangents_and_energies_are_those_of_the_two_laws_that_became_this_
 @pytest.mark.parametrize("law", [LAW, LoadedTeeth.examples()[5]])
 def test_laws_that_differ_in_stiffness_and_errors_read_the_same_rows(law: LoadedTeeth) -> None:
     other = replace(law, load=law.load.copy(), approach=law.approach.copy(), stiffness=2e8, error_mean=1e-6)
-    assert other.rows is law.rows
+    assert other.inverse[1] is law.inverse[1]
     with pytest.raises(ValueError, match="read-only"):
-        law.rows[0, 0] = 1.0
+        law.inverse[1][0, 0] = 1.0
     stiffer = replace(law, approach=0.5 * law.approach)
-    assert not np.array_equal(stiffer.rows, law.rows)
+    assert not np.array_equal(stiffer.inverse[1], law.inverse[1])
 
 
-def test_a_map_too_large_to_be_kept_is_turned_over_alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    kept = LAW.rows
+def test_a_map_too_large_to_be_kept_is_inverted_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = LAW.inverse[1]
     monkeypatch.setattr("rotorgear.forces.loaded_map._LARGE", 0.0)
-    assert LAW.rows is not kept
-    assert np.array_equal(LAW.rows, kept)
+    assert LAW.inverse[1] is not kept
+    assert np.array_equal(LAW.inverse[1], kept)
 
 
 def test_tilts_come_with_moments_and_without_coast_flanks_on_their_line() -> None:
