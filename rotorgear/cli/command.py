@@ -12,7 +12,7 @@ import typer
 from typer.core import TyperCommand
 
 from rotorgear.cli.options import Option, kind_of, option_of, parameter
-from rotorgear.cli.verb import REQUIRED, Argument, arguments_of, summary_of
+from rotorgear.cli.verb import REQUIRED, Argument, arguments_of, summary_of, told_by
 
 OWN, FILES = "Options", "Files and pictures"
 # Where a result goes: one option of one meaning for all commands.
@@ -124,7 +124,9 @@ class Command:
     def to_typer(self, body: Callable[[Command, dict[str, Any]], None]) -> Any:
         """The command as typer runs it; `body` as in `function`."""
         single = typer.Typer(add_completion=False, rich_markup_mode=None)
-        single.command(self.name, cls=CommandInGroups)(self.function(body))
+        told = told_by(self.verbs[0]) if self.verbs else ""
+        epilog = f"The result tells: {told}." if told else None
+        single.command(self.name, cls=CommandInGroups, epilog=epilog)(self.function(body))
         return typer.main.get_command(single)
 
 

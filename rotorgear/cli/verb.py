@@ -63,6 +63,22 @@ def summary_of(verb: str) -> str:
     return re.split(r"\n(?:Args|Returns|Raises):\n", text)[0].strip()
 
 
+def told_by(verb: str) -> str:
+    """What the result of a verb tells, with units: the labels of its fields, from their declarations; "" of other values."""
+    module, function = _declaration(verb)
+    returned = ast.unparse(function.returns) if function.returns else ""
+    imports = [item for item in parsed(module).body if isinstance(item, ast.ImportFrom)]
+    homes = [item.module for item in imports if item.module and returned in [one.name for one in item.names]]
+    told = []
+    for item in parsed(homes[0]).body if homes else ():
+        for field in item.body if isinstance(item, ast.ClassDef) and item.name == returned else ():
+            for call in [field.value] if isinstance(field, ast.AnnAssign) else getattr(field, "decorator_list", []):
+                if isinstance(call, ast.Call) and ast.unparse(call.func) in ("of", "derived"):
+                    label, *unit = [ast.literal_eval(text) for text in call.args[:2]]
+                    told.append(f"{label} ({unit[0]})" if any(unit) else label)
+    return "; ".join(dict.fromkeys(told))
+
+
 @cache
 def parsed(module: str) -> ast.Module:
     """The syntax tree of a module of rotorgear."""

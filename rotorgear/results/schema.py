@@ -429,6 +429,12 @@ class Record:
                     if one.json and one.record is None and one.axes and one.axes[0] in lists.all_axes:
                         lists.take(one, cls.json_axes)
                         cls.declarations[one.name] = replace(cls.declarations[one.name], json=())
+        own = [
+            f"    {one.name}: {one.label}{f' in {one.unit}' * bool(one.unit)}."
+            for one in order
+            if one.name not in inherited
+        ]
+        cls.__doc__ = "\n".join([cls.__doc__ or "", "\nAttributes:" * bool(own), *own])
         Record.known[record_name(cls)] = cls
         Record.known.setdefault(cls.__name__, cls)  # files of 0.1 name a record by its class alone
 

@@ -116,7 +116,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "contact",
         json=Written(
             "mesh_driver",
-            lambda result, driver: dict(zip(result.contact_mesh[::-1], driver[::-1], strict=True)),
+            lambda result, driver: {mesh: driver[result.contact_mesh.index(mesh)] for mesh in result.contact_mesh},
             axes=("MESH",),
         ),
     )

@@ -52,10 +52,10 @@ def test_every_argument_of_a_verb_is_an_option_or_hidden_by_name(command: Comman
 
 def test_another_docstring_and_another_default_are_another_help(monkeypatch: pytest.MonkeyPatch) -> None:
     text = reader.source_of("rotorgear.analysis.campbell.campbell")
-    changed = text.replace("points: number of speeds", "points: how many speeds").replace(
+    changed = text.replace("points: number of speeds", "points: a count of speeds").replace(
         "points: int = DEFAULT_SPEEDS", "points: int = 77"
     )
-    assert changed.count("how many speeds") == changed.count("= 77") == 1
+    assert changed.count("a count of speeds") == changed.count("= 77") == 1
     real = reader.source_of
     monkeypatch.setattr(
         reader,
@@ -72,7 +72,7 @@ def test_another_docstring_and_another_default_are_another_help(monkeypatch: pyt
     finally:
         reader.arguments_of.cache_clear()
         reader.parsed.cache_clear()
-    assert "How many speeds between them, evenly spaced. [default: 77]" in help_text
+    assert "A count of speeds between them, evenly spaced. [default: 77]" in help_text
 
 
 def _alone(command: Command) -> typer.Typer:
