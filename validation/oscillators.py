@@ -16,9 +16,9 @@ from rotorgear.solvers.time.local_forces import gather
 from rotorgear.solvers.time.local_system import (
     Integrator,
     LocalSystem,
+    MotionState,
     Records,
     Rotation,
-    State,
     local_values,
     state_at_rest,
 )
@@ -83,15 +83,15 @@ def integrate(
         )
     ]
 
-    def keep(records: Records, _: State) -> None:
-        rows = [records.fields.rows(kind, np.eye(n)) for kind in "qva"]
+    def keep(records: Records, _: MotionState) -> None:
+        rows = [records.rows(kind, np.eye(n)) for kind in "qva"]
         found.append((records.t, *rows, records.F, records.energy[:, :, 0].sum(axis=1)))
 
     run(system, integrator, Schedule(h, steps, every), state, keep, tolerance=1e-13)
     return Motion(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 
-def _stored(system: LocalSystem, state: State) -> np.ndarray:
+def _stored(system: LocalSystem, state: MotionState) -> np.ndarray:
     return local_values(system, state.q, state.v, 0.0)[1].reshape(-1, 4)[:, 0].sum(keepdims=True)
 
 

@@ -381,7 +381,7 @@ class ForceLaw(ABC):
 
     def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValue:
         """`evaluate` at r instants in one compiled loop: d and v (r, k); time, angle and speed (r,) or the same for all."""
-        from rotorgear.solvers.time.arguments import Answer, Instants
+        from rotorgear.solvers.time.arguments import Answer
         from rotorgear.solvers.time.kernel_contact import evaluate_instants, no_force, no_schedule
 
         schedule, force = self.functions()
@@ -392,10 +392,9 @@ class ForceLaw(ABC):
         time, angle, speed = (np.array(np.broadcast_to(np.asarray(x, float), r)) for x in (time, angle, speed))
         p = np.ascontiguousarray(self.parameters(), dtype=float)
         answer = Answer(np.zeros((r, k)), np.zeros((r, k * k)), np.zeros((r, k * k)), np.zeros((r, 4)))
-        instants = Instants(angle, speed, time, d, v)
         # As tuples of two, so that numba takes the functions by pointer and keeps the loop on disk, whatever the law.
         laws = (schedule, no_schedule), (force, no_force)
-        evaluate_instants(*laws, p, np.zeros(self.state_size()), instants, answer)
+        evaluate_instants(*laws, p, np.zeros(self.state_size()), angle, speed, time, d, v, answer)
         Kd = answer.Kd.reshape(r, k, k)
         Kv = answer.Kv.reshape(r, k, k)
         stored, power_in, dissipated, contact = answer.energy.T

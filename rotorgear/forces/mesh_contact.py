@@ -21,8 +21,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
-from rotorgear.solvers.batch.columns import ERROR, SLOPE, STIFFNESS, TABLE_ROWS, Column
-from rotorgear.solvers.batch.columns import PUSH as PUSH_ROW
+from rotorgear.solvers.batch.columns import ERROR, FORCE_SHARE, SLOPE, STIFFNESS, TABLE_ROWS, Column
 from rotorgear.solvers.contact.gap_contact import contact, momentum
 from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, DEAD_ZONE, NON_ADHESIVE, PENETRATION, UNILATERAL
 from rotorgear.solvers.time.compiled import force_function, schedule_function
@@ -258,7 +257,7 @@ class MeshContact(ForceLaw):
         found[:, 0, STIFFNESS] = k / mean if mean else 1.0
         found[:, 0, ERROR] = e
         found[:, 0, SLOPE] = slope / order
-        found[:, 0, PUSH_ROW] = push / self.impact if self.impact else 0.0
+        found[:, 0, FORCE_SHARE] = push / self.impact if self.impact else 0.0
         return found
 
     def table_key(self) -> bytes:

@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
-from rotorgear.solvers.batch.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import FORCE_SHARE, OWN_LAW, PRESCRIBED, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 # Of the parameters; then the times from which an acceleration of the reference holds, and the accelerations.
@@ -114,14 +114,14 @@ class RotatingForce(ForceLaw):
         if self.times:
             return (Column(OWN_LAW),) * self.components
         size = self.amplitude * abs(self.order * speed) ** self.power
-        return (Column(PRESCRIBED, push=size),) * self.components
+        return (Column(PRESCRIBED, prescribed=size),) * self.components
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
         """-cos p, and -sin p in a plane."""
         phase = self.order * angles + self.phase
         found = np.zeros((len(angles), self.components, TABLE_ROWS))
         for component, turning in enumerate((np.cos, np.sin)[: self.components]):
-            found[:, component, PUSH] = -turning(phase)
+            found[:, component, FORCE_SHARE] = -turning(phase)
         return found
 
     def table_key(self) -> bytes:

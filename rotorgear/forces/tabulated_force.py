@@ -13,7 +13,7 @@ import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
 from rotorgear.forces.rotating_force import force
-from rotorgear.solvers.batch.columns import PRESCRIBED, PUSH, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import FORCE_SHARE, PRESCRIBED, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import schedule_function
 
 ORDER, OVER_ANGLE, COUNT, FIRST = range(4)  # of the parameters; then the places, then the values
@@ -96,12 +96,12 @@ class TabulatedForce(ForceLaw):
 
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """A prescribed force."""
-        return (Column(PRESCRIBED, push=1.0),)
+        return (Column(PRESCRIBED, prescribed=1.0),)
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
         """The force."""
         found = np.zeros((len(angles), 1, TABLE_ROWS))
-        found[:, 0, PUSH] = -states[:, 0]
+        found[:, 0, FORCE_SHARE] = -states[:, 0]
         return found
 
     def table_key(self) -> bytes:

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter
-from rotorgear.solvers.batch.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
+from rotorgear.solvers.batch.columns import FORCE_SHARE, OWN_LAW, PRESCRIBED, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 # Of the parameters, in the order of the fields; and of the state.
@@ -101,13 +101,13 @@ class TorqueCurve(ForceLaw):
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """A prescribed torque where the speed does not matter, else a law of its own."""
         if self.power == 0.0 and self.damping == 0.0:
-            return (Column(PRESCRIBED, push=self.torque),)
+            return (Column(PRESCRIBED, prescribed=self.torque),)
         return (Column(OWN_LAW),)
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
         """The torque over M0."""
         found = np.zeros((len(angles), 1, TABLE_ROWS))
-        found[:, 0, PUSH] = -states[:, TORQUE_NOW] / self.torque if self.torque else 0.0
+        found[:, 0, FORCE_SHARE] = -states[:, TORQUE_NOW] / self.torque if self.torque else 0.0
         return found
 
     def table_key(self) -> bytes:

@@ -220,7 +220,6 @@ def contacts_alone() -> Any:
 
 @pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
 def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
-    from rotorgear.solvers.batch.arguments import ColumnValues
     from rotorgear.solvers.batch.kernel_parts import FOUND, IN_D, IN_V, SIDE
     from rotorgear.solvers.contact.vectors import BATCH
 
@@ -236,7 +235,7 @@ def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
     d[0::2] = np.array([one for one, _ in moved]).T
     d[1::2] = np.array([rate for _, rate in moved]).T / SPEED
     values, tables = (np.repeat(each[:, :, None], BATCH, axis=2) for each in (columns.values, table))
-    acting = ColumnValues(columns.kind, columns.mode, columns.jumps, columns.counted, True, values)
+    acting = columns._replace(jumping=True, values=values)
     contacts_alone()(acting, tables, 1.0, d, F, found.reshape(k, FOUND, BATCH), used)
     for lane, (one, rate) in enumerate(moved):
         alone = law.evaluate(one, rate, angle=ANGLE, speed=SPEED)

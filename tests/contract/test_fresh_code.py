@@ -44,8 +44,7 @@ from fractions import Fraction
 import numpy as np
 from rotorgear.analysis.sweep.point import ready, at_rest, table_of
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.batch.run_block import Plan, Start, run_block
-from rotorgear.solvers.batch.trajectory import trajectory
+from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block, trajectory
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from validation.oscillators import integrate, local_system
 law = MeshContact(3.0, 0.2, 0.5, ramp=0.05, order=1.0, error_cos=(0.1,))
@@ -54,7 +53,7 @@ point = ready(at_rest(system, [Fraction(1)], ("contact",)), 0.9)
 table = table_of(point, 50)
 start = Start(np.array([0.2]), np.zeros(1))
 print(repr([
-    float(run_block([point.system], [start], [table], Plan(50, 0, 1, 0))[0].section[-1, 0, 0]),
+    float(run_block([point.system], [start], [table], BatchPlan(50, 0, 1, 0))[0].section[-1, 0, 0]),
     float(trajectory(point.system, start, table, 50, 1)[-1, 0, 0]),
     float(integrate(system, "average acceleration", 0.1, 20, [0.2], [0.0]).q[-1][0]),
     float(equilibrium(system).q[0]),

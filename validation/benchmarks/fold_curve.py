@@ -17,7 +17,7 @@ from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, scale_of
 from rotorgear.analysis.orbits.verify import first_node
 from rotorgear.progress import silent
 from rotorgear.solvers.periodic.arclength import Walk, at_value
-from rotorgear.solvers.periodic.balance import Grid
+from rotorgear.solvers.periodic.balance import HarmonicGrid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 from rotorgear.solvers.sparse.factor import single_thread
 from validation.seeds.rows import loaded
@@ -35,7 +35,7 @@ def equations(torque: str, *torques: str) -> tuple[HarmonicOrbits, SystemFamily]
     if torques:
         ranges.append(range_of(model, "operation.torque", torques))
     family = SystemFamily(model, ranges, None, None)
-    grid = Grid(HARMONICS, INSTANTS * HARMONICS, family.order)
+    grid = HarmonicGrid(HARMONICS, INSTANTS * HARMONICS, family.order)
     return HarmonicOrbits(family.plant, grid, scale_of(family.plant(0.0))), family
 
 

@@ -18,7 +18,8 @@ import numpy as np
 
 from rotorgear.analysis.sweep.point import Point, at_rest, ready, table_of
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.columns import PER_DEPTH
+from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.local_system import LocalSystem
 from validation.oscillators import local_system
@@ -192,10 +193,7 @@ def _structure(point: Point) -> tuple[np.ndarray, ...]:
         cfirst,
         ccolumns,
         s.B[crows, ccolumns],
-        c.stiffness,
-        c.damping,
-        c.clearance,
-        c.per_depth,
+        *np.ascontiguousarray(c.values[:, :4].T),
     )
 
 
@@ -210,7 +208,7 @@ def apart(n: int, m: int, periods: int = 20) -> float:
     own = points(n, m)
     starts = [Start(p.system.rest, np.zeros(n)) for p in own]
     tables = [table_of(own[0], STEPS)]
-    orbits = run_block([p.system for p in own], starts, tables, Plan(STEPS, 0, periods, 0))
+    orbits = run_block([p.system for p in own], starts, tables, BatchPlan(STEPS, 0, periods, 0))
     single = [scalar(p, s, tables[0], periods) for p, s in zip(own, starts, strict=True)]
     size = max(np.abs(x).max() for x in single)
     return float(max(np.abs(o.section[:, :, 0] - x).max() for o, x in zip(orbits, single, strict=True)) / size)
@@ -225,7 +223,7 @@ def rates(n: int, m: int, tangents: int = 0) -> dict[str, float]:
 
     def batch() -> float:
         before = time.process_time()
-        run_block([p.system for p in own], starts, tables, Plan(STEPS, periods, 1, tangents))
+        run_block([p.system for p in own], starts, tables, BatchPlan(STEPS, periods, 1, tangents))
         return BATCH * STEPS * (periods + 1) / (time.process_time() - before)
 
     def single() -> float:
@@ -304,7 +302,7 @@ def _numpy_slope(t, y, point, phase, ripple, error):  # type: ignore[no-untyped-
     side = np.where(x > 0.0, 1.0, np.where(x < -c.clearance, -1.0, 0.0))
     depth = np.maximum(np.maximum(x, -x - c.clearance), 0.0)
     k = c.stiffness * (1.0 + ripple * np.cos(t + phase))
-    F = side * (k * depth + c.damping * np.minimum(depth * c.per_depth, 1.0) * side * rate)
+    F = side * (k * depth + c.damping * np.minimum(depth * c.values[:, PER_DEPTH], 1.0) * side * rate)
     return np.concatenate([dz, s.load - s.K @ z - s.D @ dz - s.B @ F])
 
 

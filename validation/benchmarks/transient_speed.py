@@ -22,7 +22,14 @@ import rotorgear as rg
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import LocalSystem, Rotation, State, evaluated, local_values, state_at_rest
+from rotorgear.solvers.time.local_system import (
+    LocalSystem,
+    MotionState,
+    Rotation,
+    evaluated,
+    local_values,
+    state_at_rest,
+)
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.system.local import local_model
 from rotorgear.system.plan import Plan
@@ -61,7 +68,7 @@ def step_of(system: LocalSystem) -> float:
     return 2.0 * np.pi / (order * float(system.rotation.speeds[0])) / PER_PERIOD
 
 
-def refactoring(system: LocalSystem, h: float, start: State, steps: int) -> np.ndarray:
+def refactoring(system: LocalSystem, h: float, start: MotionState, steps: int) -> np.ndarray:
     """Textbook Newmark: assemble and factor K + 2/h C + 4/h^2 M in each Newton iteration; contact forces (steps, m)."""
     D = system.velocity_terms(float(system.rotation.speeds[0]))
     q = start.q.copy()
@@ -100,7 +107,7 @@ class Timed:
     seconds: float
 
 
-def timed(system: LocalSystem, method: Any, h: float, start: State, steps: int, every: int = 1) -> Timed:
+def timed(system: LocalSystem, method: Any, h: float, start: MotionState, steps: int, every: int = 1) -> Timed:
     """Run a method once for its compilation and once for the clock; the loop is timed, not the records of fields."""
     before = time.process_time()
     stepper = method.prepare(system, h, float(system.rotation.speeds[0]), 1e-10)

@@ -22,7 +22,7 @@ from rotorgear.model.parts.old_names import current_address
 from rotorgear.note import Note
 from rotorgear.solvers.batch.columns import PRESCRIBED
 from rotorgear.solvers.periodic.plant import Plant, Plants
-from rotorgear.solvers.periodic.samples import Cycle
+from rotorgear.solvers.periodic.samples import MotionCycle
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.local import LocalModel
@@ -305,7 +305,7 @@ class Outputs:
         along = [unit == "m" for unit in self.place_unit]
         return self.place_column[along] if any(along) else self.place_column
 
-    def extremes(self, cycle: Cycle) -> tuple[np.ndarray, np.ndarray]:
+    def extremes(self, cycle: MotionCycle) -> tuple[np.ndarray, np.ndarray]:
         """Least and largest approach of the contacts, (c, 2), and displacements of the places, (k, 2)."""
         both = cycle.extremes()
         return both[self.contact_column] / self.transverse[:, None], both[self.place_column]

@@ -18,7 +18,7 @@ from rotorgear.results.orbits import SpecialCurve
 from rotorgear.solvers.periodic.arclength import Node, Walk, at_value, corrected, walk
 from rotorgear.solvers.periodic.curves import SpecialCurve as CurveEquations
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
-from rotorgear.solvers.periodic.samples import Cycle
+from rotorgear.solvers.periodic.samples import MotionCycle
 from rotorgear.solvers.periodic.shooting import ShootingOrbits
 from rotorgear.solvers.periodic.special import DOUBLING, FOLD, Certified, Special, kinds_between, located
 
@@ -174,10 +174,10 @@ def special_curves(
 
 def _curve(
     orbits: AnyOrbits, kind: str, node: Node, family: SystemFamily, plan: Walk
-) -> tuple[list[tuple[float, float, Cycle]], str]:
+) -> tuple[list[tuple[float, float, MotionCycle]], str]:
     """Points of the curve that begins at a special point, shares of both ranges and the motion there, and why it ended."""
     equations = CurveEquations(lambda q: orbits.along(lambda p: family.plant(p, q)), kind, node.y, node.p, 0.0)
-    points: list[tuple[float, float, Cycle]] = []
+    points: list[tuple[float, float, MotionCycle]] = []
 
     def heard(one: Node) -> bool:
         p = float(one.y[-1])

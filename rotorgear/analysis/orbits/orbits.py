@@ -26,10 +26,10 @@ from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
 from rotorgear.results.orbits import OrbitBranch, OrbitsResult, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.arclength import Node, Walk
-from rotorgear.solvers.periodic.balance import Grid
+from rotorgear.solvers.periodic.balance import HarmonicGrid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits, static_displacements
 from rotorgear.solvers.periodic.plant import Plant
-from rotorgear.solvers.periodic.samples import Cycle, answered
+from rotorgear.solvers.periodic.samples import MotionCycle, answered
 from rotorgear.solvers.periodic.shooting import MOST_COORDINATES, MOST_RATIO, ShootingOrbits
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, PeriodicCurve, compared, over_period
@@ -165,7 +165,7 @@ def orbits(
             H = (harmonics or HARMONICS) * 2**doublings
             N = instants * 2**doublings if instants else INSTANTS * H
             N += N % 2
-            problem, why = equations_of(method, family, Grid(H, N, family.order), scale)
+            problem, why = equations_of(method, family, HarmonicGrid(H, N, family.order), scale)
             # Of small systems transients from rest cost little.
             small = _coordinates(plant) <= MOST_COORDINATES
             from_rest = partial(settled, problem, family, progress=progress) if small else None
@@ -255,7 +255,7 @@ def scale_of(plant: Plant) -> np.ndarray:
     return np.where(stiff, np.maximum(d, _UNLOADED), largest)
 
 
-def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarray) -> tuple[AnyOrbits, str]:
+def equations_of(method: str, family: SystemFamily, grid: HarmonicGrid, scale: np.ndarray) -> tuple[AnyOrbits, str]:
     """The equations and what they are, in words.
 
     Raises:
@@ -377,7 +377,7 @@ def gathered(branches: list[Branch], outputs: Outputs, family: SystemFamily, har
     }
 
 
-def statistics_of(cycle: Cycle, plant: Plant, outputs: Outputs) -> MotionStatistics:
+def statistics_of(cycle: MotionCycle, plant: Plant, outputs: Outputs) -> MotionStatistics:
     """Statistics of the contacts over a period, what is between its instants included."""
 
     def laws(t: np.ndarray, d: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -23,7 +23,7 @@ from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.special import Certified
 from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import LocalSystem, Records, State, state_at_rest
+from rotorgear.solvers.time.local_system import LocalSystem, MotionState, Records, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 
@@ -37,14 +37,14 @@ _MOST_DENSE = 400
 
 def run_periods(
     system: LocalSystem, order: float, periods: int, q: np.ndarray, v: np.ndarray, steps: int = _RUN_STEPS
-) -> tuple[State, np.ndarray]:
+) -> tuple[MotionState, np.ndarray]:
     """Run over base periods from a motion: the state at the end, and local displacements at all steps (r, m)."""
     T = 2.0 * np.pi / (order * abs(float(system.rotation.speeds[0])))
     h = T / steps
     state = state_at_rest(system, h, q, v)
     found: list[np.ndarray] = []
 
-    def keep(records: Records, _: State) -> None:
+    def keep(records: Records, _: MotionState) -> None:
         found.append(records.d)
 
     # The exponential method where all modes are cheap.
@@ -111,7 +111,7 @@ def _verified(branch: Branch, one: Certified, family: SystemFamily, column: np.n
     system = family.system(family.shares_at(node.p))
     plant = family.plant(node.p)
     # The motion at the begin of its period.
-    q, v = (orbits.state if isinstance(orbits, HarmonicOrbits) else orbits.motion)(node.y, node.p)
+    q, v = orbits.state(node.y, node.p)
     cycle = orbits.cycle(node.y, node.p)
     size = float(np.ptp(cycle.extremes()[column], axis=1).max(initial=0.0)) or 1.0
     k = branch.periods

@@ -27,7 +27,7 @@ from rotorgear.results.convergence import ConvergenceStudy, SweepConvergenceStud
 from rotorgear.results.sweep import SweepResult
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.periodic.arclength import at_value
-from rotorgear.solvers.periodic.balance import Grid
+from rotorgear.solvers.periodic.balance import HarmonicGrid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 from rotorgear.solvers.periodic.shooting import ShootingOrbits
 from rotorgear.solvers.sparse.factor import single_thread
@@ -297,7 +297,7 @@ def orbits_convergence_study(
 
     def solved(n: int, instants: int, begin: np.ndarray | None) -> tuple[HarmonicOrbits, np.ndarray]:
         """The motion of n harmonics, found from that of given coefficients (harmonics + 1, m), or from the static state."""
-        equations = HarmonicOrbits(family.plant, Grid(n, instants, order), scale)
+        equations = HarmonicOrbits(family.plant, HarmonicGrid(n, instants, order), scale)
         if begin is None:
             return equations, at_value(equations, equations.start(0.0), 0.0).y
         c = np.pad(begin[: n + 1], ((0, max(0, n + 1 - len(begin))), (0, 0)))

@@ -15,7 +15,7 @@ from rotorgear.analysis.sweep.certify import bounded, judged, motion_statistics,
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.analysis.sweep.request import Request
-from rotorgear.solvers.batch.run_block import Orbit, Plan, Start, run_block
+from rotorgear.solvers.batch.run_block import BatchPlan, Orbit, Start, run_block
 from rotorgear.solvers.batch.small_system import steps_stable
 from rotorgear.solvers.time.statistics import compared, gain
 
@@ -82,7 +82,7 @@ def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarra
 def run_jobs(
     points: Sequence[Point],
     starts: Sequence[Start],
-    plan: Plan,
+    plan: BatchPlan,
     request: Request,
     go_on: Callable[[], bool] | None = None,
 ) -> list[Orbit]:
@@ -128,7 +128,7 @@ def _in_other_steps(
     points: Sequence[Point],
     orbits: Sequence[Orbit],
     chosen: Sequence[int],
-    plan: Plan,
+    plan: BatchPlan,
     go_on: Callable[[], bool] | None,
     more: int = 0,
 ) -> tuple[int, list[Orbit]]:
@@ -147,7 +147,7 @@ def _certify(
     points: Sequence[Point],
     orbits: list[Orbit],
     chosen: Sequence[int],
-    plan: Plan,
+    plan: BatchPlan,
     request: Request,
     go_on: Callable[[], bool] | None,
 ) -> dict[int, Start]:
@@ -171,7 +171,7 @@ def _certify(
             continue
 
         def advance(states: Sequence[Start], length: int, point: Point = points[i]) -> list[Start]:
-            once = Plan(plan.steps, 0, length, 0)
+            once = BatchPlan(plan.steps, 0, length, 0)
             cuts = (states[k : k + BATCH] for k in range(0, len(states), BATCH))
             return [one.end for own in cuts for one in _run([point] * len(own), own, once, go_on)]
 
@@ -184,7 +184,9 @@ def _certify(
     return onward
 
 
-def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None) -> list[Orbit]:
+def _run(
+    points: Sequence[Point], starts: Sequence[Start], plan: BatchPlan, go_on: Callable[[], bool] | None
+) -> list[Orbit]:
     """Run systems side by side, with tables of what depends on time."""
     tables = {
         shape: table_of(point, plan.steps)
@@ -195,7 +197,7 @@ def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Ca
 
 
 def run_blocks(
-    tasks: Sequence[tuple[list[Point], list[Start], Plan, Request]],
+    tasks: Sequence[tuple[list[Point], list[Start], BatchPlan, Request]],
     workers: int | None,
     executor: Pool | None,
     heard: Callable[[float], None] = lambda share: None,

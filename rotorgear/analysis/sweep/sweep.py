@@ -29,8 +29,7 @@ from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.portrait import Portraits
 from rotorgear.results.sweep import Reduction, SweepResult
-from rotorgear.solvers.batch.run_block import Orbit, Plan
-from rotorgear.solvers.batch.trajectory import trajectory
+from rotorgear.solvers.batch.run_block import BatchPlan, Orbit, trajectory
 from rotorgear.solvers.sparse.factor import single_thread
 
 # How many portraits, or the values of the parameters next to which points keep theirs.
@@ -225,7 +224,7 @@ def _run(
                     states.append(start_of(p.system, number, request.seed, request.throw))
             # A system has no more exponents than states beside its rigid-body motions.
             most = 2 * (own[0].system.n - len(own[0].system.rigid))
-            plan = Plan(int(steps[block[0].point]), request.discard, request.sample, min(request.exponents, most))
+            plan = BatchPlan(int(steps[block[0].point]), request.discard, request.sample, min(request.exponents, most))
             tasks.append(([p.bare for p in own], states, plan, request))
         begun = done
         runs = sum(map(len, rest))

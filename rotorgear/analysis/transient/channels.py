@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.solvers.time.local_system import Fields, Observed
+from rotorgear.solvers.time.local_system import Observed, Records
 from rotorgear.system.local import LocalModel
 
 _AXES = ("x", "y", "z")
@@ -23,11 +23,11 @@ class Channels:
     units: tuple[str, ...]
     rows: dict[str, tuple[np.ndarray, np.ndarray]]
 
-    def values(self, fields: Fields, F: np.ndarray) -> np.ndarray:
-        """Values (r, p) at the recorded steps with the local forces F (r, m)."""
-        values = np.zeros((len(F), len(self.names)))
+    def values(self, records: Records) -> np.ndarray:
+        """Values (r, p) at the recorded steps."""
+        values = np.zeros((len(records.t), len(self.names)))
         for kind, (which, Y) in self.rows.items():
-            values[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
+            values[:, which] += records.F @ Y.T if kind == "F" else records.rows(kind, Y)
         return values
 
     def observed(self, n: int, m: int) -> Observed:

@@ -20,7 +20,14 @@ from rotorgear.model.model import model_hash
 from rotorgear.progress import Progress
 from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.arguments import Gathered
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, local_values, state_at_rest
+from rotorgear.solvers.time.local_system import (
+    Integrator,
+    LocalSystem,
+    MotionState,
+    Records,
+    local_values,
+    state_at_rest,
+)
 from rotorgear.solvers.time.run import Schedule, run
 
 # Records of a chunk at which stored energies are evaluated.
@@ -34,7 +41,7 @@ class LedgerBook:
 
     system: LocalSystem
     h: float
-    start: State
+    start: MotionState
     damping_rows: np.ndarray
     table: list[np.ndarray] = field(default_factory=list)
     # What must be known to go on: energy spent in dampers, and time and power of the last record.
@@ -70,19 +77,18 @@ class LedgerBook:
             return
         power = np.zeros(records.t.size)
         for A, rows, kind in self._powers:
-            v = records.fields.rows("v", rows)
-            w = v if kind == "v" else records.fields.rows("q", rows)
+            v = records.rows("v", rows)
+            w = v if kind == "v" else records.rows("q", rows)
             power = power + np.einsum("ri,ri->r", v, w @ A.T)
         if len(self.damping_rows):
-            power = power + np.sum(records.fields.rows("v", self.damping_rows) ** 2, axis=1)
+            power = power + np.sum(records.rows("v", self.damping_rows) ** 2, axis=1)
         before, t0, p0 = self.sums or (0.0, 0.0, power[0])
         steps = np.diff(records.t, prepend=t0)
         spent = before + np.cumsum(steps * 0.5 * (power + np.concatenate([[p0], power[:-1]])))
         self.sums = (float(spent[-1]), float(records.t[-1]), float(power[-1]))
         which = np.unique(np.linspace(0, records.t.size - 1, _SAMPLES + 1).astype(int)[1:])
-        fields = records.fields.chosen(which)
-        q = fields.rows("q", self._all)
-        v = fields.rows("v", self._all)
+        q = records.rows("q", self._all, which)
+        v = records.rows("v", self._all, which)
         kinetic, strain = self._stored(q, v)
         laws = records.energy[which].sum(axis=1)
         work = q @ self.system.load - self._work_at_start
@@ -119,7 +125,7 @@ class Stream(Protocol):
 class Histories:
     """What one integration gave: tables chunk by chunk, and the state at its end."""
 
-    state: State
+    state: MotionState
     h: float
     status: str = "success"
     parts: list[dict[str, np.ndarray]] = field(default_factory=list)
@@ -169,17 +175,17 @@ def run_task(
     def told(fraction: float, step: str) -> None:
         progress(fraction, f"{text}: {step}" if text else step)
 
-    def receive(records: Records, state: State) -> None:
+    def receive(records: Records, state: MotionState) -> None:
         part = {
             "t": records.t,
             "d": records.d,
-            "watched": records.fields.rows("q", watched),
+            "watched": records.rows("q", watched),
             "F": records.F,
-            "values": task.channels.values(records.fields, records.F),
+            "values": task.channels.values(records),
         }
         last = records.t > (steps - frames * grid.every + 0.5) * h
         if frames and last.any():
-            found.motion.append((records.t[last], records.fields.chosen(last).rows("q", np.eye(local.n))))
+            found.motion.append((records.t[last], records.rows("q", np.eye(local.n), last)))
         before = len(book.table)
         book.add(records)
         found.parts.append(part)
@@ -227,7 +233,7 @@ def _take_over(chunk: dict[str, np.ndarray], found: Histories, book: LedgerBook)
     state.inner = {name.removeprefix("inner "): x.copy() for name, x in chunk.items() if name.startswith("inner ")}
 
 
-def state_arrays(state: State) -> dict[str, np.ndarray]:
+def state_arrays(state: MotionState) -> dict[str, np.ndarray]:
     """A state as arrays, for a stream."""
     plain = {f"state {name}": getattr(state, name) for name in _STATE}
     gathered = {f"gathered {name}": value for name, value in state.gathered._asdict().items()}

@@ -102,7 +102,9 @@ def grid_of(
     if time is not None and not 0.0 < time < np.inf:
         raise AnalysisError(f"time: got {time}, expected more than 0")
     # Highest frequency at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b).
-    contact = float(contact_rates(task.local.local).max(initial=0.0)) / (2.0 * np.pi)
+    local = task.local.local
+    rates = contact_rates(local.M, local.B.toarray(), local.forces.reference_stiffness)
+    contact = float(rates.max(initial=0.0)) / (2.0 * np.pi)
     frequencies = base_frequencies(task)
     fastest = max(frequencies, default=0.0)
     slowest = min(frequencies, default=0.0)

@@ -1,4 +1,4 @@
-"""What the compiled loops over small systems take and fill, by name, as solvers/time/arguments.py says it for the time loops.
+"""What the compiled loops over small systems take and fill, by name, like solvers/time/arguments.py for the time loops.
 
 n degrees of freedom, m local displacements ("columns"), w = BATCH systems side by side on the last axis. Loops read the fields
 into variables of their own before they begin: numba reads a field anew each time it is named.
@@ -6,25 +6,11 @@ into variables of their own before they begin: numba reads a field anew each tim
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from rotorgear.solvers.time.arguments import SparseRows
-
-
-class BatchSpan(NamedTuple):
-    """How far a batch runs.
-
-    Attributes:
-        turns: periods of the fastest excitation in a common one; steps: steps in one of those; begun: common periods before.
-        counting: whether the statistics count.
-    """
-
-    turns: int
-    steps: int
-    begun: int
-    counting: bool
+from rotorgear.solvers.time.arguments import Laws, SparseRows
 
 
 class BatchSystem(NamedTuple):
@@ -47,62 +33,34 @@ class BatchSystem(NamedTuple):
     root: np.ndarray
 
 
-class ColumnValues(NamedTuple):
-    """How the columns act, see columns.py.
-
-    Attributes:
-        kind, mode, jumps, counted: (m,). jumping: whether the damping of any one jumps.
-        values: (m, 6) of one system, (m, 6, w) of a batch, in the order of `Columns.values`.
-    """
-
-    kind: np.ndarray
-    mode: np.ndarray
-    jumps: np.ndarray
-    counted: np.ndarray
-    jumping: bool
-    values: np.ndarray
-
-
 class ActingLaws(NamedTuple):
-    """l laws that act by functions of their own, see kernel_laws.py; of a batch, `parameters` are (s, p) of s systems
-    and `clock` is (2, w).
+    """Laws that act by functions of their own, see kernel_laws.py.
 
     Attributes:
-        place: (2, l) first of the local displacements of each, and how many it takes.
-        clock: (2,) radians of the reference for one of the fastest excitation, and the rad/s of that.
+        laws: l laws; their parameters are (s, p) of s systems. place: (2, l) first of the local displacements of each, and how
+        many it takes.
+        clock: (2, w) radians of the reference for one of the fastest excitation, and the rad/s of that.
     """
 
-    schedules: tuple[Any, ...]
-    forces: tuple[Any, ...]
-    kind: np.ndarray
+    laws: Laws
     place: np.ndarray
-    parameters: np.ndarray
-    parameters_first: np.ndarray
-    state_first: np.ndarray
-    block_first: np.ndarray
     clock: np.ndarray
 
 
 class BatchMotion(NamedTuple):
-    """What a batch carries from step to step.
+    """What a batch carries from step to step, and what is found in p common periods.
 
     Attributes:
         state: z and z', (2 n, w). kept: (m, 4, w) of the end of the last step, see kernel_jumps.py.
         tangents: (t, 2 n, w). last: (m, w) sides that touched last.
+        growth: of tangents, (p, t, w), and section: (p, 2 m, w), at the end of each period.
+        sums: (m, 14, w) and extremes, the least and largest of the watched displacements, (2, p, w), so far.
     """
 
     state: np.ndarray
     kept: np.ndarray
     tangents: np.ndarray
     last: np.ndarray
-
-
-class BatchRecords(NamedTuple):
-    """What is found in p common periods: growth of tangents (p, t, w) and sections (p, 2 m, w).
-
-    So far: sums (m, 14, w), and extremes, the least and largest of the watched displacements, (2, p, w).
-    """
-
     growth: np.ndarray
     section: np.ndarray
     sums: np.ndarray
@@ -124,28 +82,3 @@ class TangentWork(NamedTuple):
     used: np.ndarray
     start: np.ndarray
     done: np.ndarray
-
-
-class PathSpan(NamedTuple):
-    """`steps` in a period of the fastest excitation, `begun` before the first one, every `every`-th recorded."""
-
-    steps: int
-    every: int
-    begun: int
-
-
-class PathSystem(NamedTuple):
-    """One system: K and D (n, n), B (n, m) and the constant load (n,)."""
-
-    K: np.ndarray
-    D: np.ndarray
-    B: np.ndarray
-    load: np.ndarray
-
-
-class PathWork(NamedTuple):
-    """Arrays of one system: d, d', F and its damping of each column (m, 4), state of the laws (s,), SPACE numbers for a law."""
-
-    local: np.ndarray
-    condition: np.ndarray
-    space: np.ndarray

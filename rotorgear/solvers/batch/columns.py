@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +22,11 @@ ALWAYS = 2
 STIFFNESS = 0
 ERROR = 1
 SLOPE = 2
-PUSH = 3
+FORCE_SHARE = 3
 TABLE_ROWS = 4
+# Values of a column: k, c, clearance, 1/depth of regularisation, prescribed force, depth of regularisation.
+K, C, CLEARANCE, PER_DEPTH, FORCE, DEPTH = range(6)
+VALUES = 6
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class Column:
     Attributes:
         kind: of contact, or PRESCRIBED or OWN_LAW; mode: of its damping.
         stiffness: mean, N/m; damping: N s/m; clearance: between both sides, m.
-        depth: regularisation depth over which damping grows, m; push: N, by which the table's share is multiplied.
+        depth: regularisation depth over which damping grows, m; prescribed: N, by which the table's share is multiplied.
         counted: whether statistics of contact are kept of it.
     """
 
@@ -42,63 +46,57 @@ class Column:
     damping: float = 0.0
     clearance: float = 0.0
     depth: float = 1.0
-    push: float = 0.0
+    prescribed: float = 0.0
     counted: bool = False
 
 
-@dataclass(frozen=True)
-class Columns:
-    """The columns of a system, arrays (m,), as `Column` has them but for per_depth = 1/depth."""
+class Columns(NamedTuple):
+    """m columns as the kernels read them.
+
+    Attributes:
+        kind, mode, counted: (m,) as of `Column`.
+        jumps: (m,) whether the damping sets in where sides meet: NEVER, only as they CLOSE, or ALWAYS, as they part as well.
+        jumping: whether that of any one does.
+        values: (m, 6) of one system, (m, 6, w) of a batch: K ... DEPTH.
+    """
 
     kind: np.ndarray
     mode: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-    clearance: np.ndarray
-    per_depth: np.ndarray
-    push: np.ndarray
+    jumps: np.ndarray
     counted: np.ndarray
+    jumping: bool
+    values: np.ndarray
 
     @classmethod
     def of(cls, columns: Sequence[Column]) -> Columns:
         """Put columns side by side."""
-        kind, mode, stiffness, damping, clearance, depth, push, counted = (
-            np.array([getattr(column, item.name) for column in columns]) for item in fields(Column)
-        )
-        return cls(
-            kind.astype(np.int64),
-            mode.astype(np.int64),
-            stiffness.astype(float),
-            damping.astype(float),
-            clearance.astype(float),
-            1.0 / depth.astype(float),
-            push.astype(float),
-            counted.astype(bool),
-        )
+        kind = np.array([column.kind for column in columns], dtype=np.int64)
+        mode = np.array([column.mode for column in columns], dtype=np.int64)
+        counted = np.array([column.counted for column in columns], dtype=bool)
+        rows = [(c.stiffness, c.damping, c.clearance, 1.0, c.prescribed, c.depth) for c in columns]
+        values = np.array(rows, dtype=float).reshape(-1, VALUES)
+        values[:, PER_DEPTH] = 1.0 / values[:, DEPTH]
+        values[:, DEPTH] = 1.0 / values[:, PER_DEPTH]
+        parts = ((kind == DEAD_ZONE) | (kind == UNILATERAL)) & (mode != PENETRATION)
+        sudden = parts & (values[:, C] > 0.0)
+        jumps = np.where(sudden, np.where(mode == ADHESIVE, ALWAYS, CLOSING), NEVER).astype(np.int64)
+        return cls(kind, mode, jumps, counted, bool(np.any(sudden)), values)
 
     @property
-    def jumps(self) -> np.ndarray:
-        """(m,) whether the damping sets in where sides meet: NEVER, only as they CLOSE, or ALWAYS, as they part as well."""
-        parts = ((self.kind == DEAD_ZONE) | (self.kind == UNILATERAL)) & (self.mode != PENETRATION)
-        sudden = parts & (self.damping > 0.0)
-        return np.where(sudden, np.where(self.mode == ADHESIVE, ALWAYS, CLOSING), NEVER).astype(np.int64)
+    def stiffness(self) -> np.ndarray:
+        """Mean stiffness of each, (m,)."""
+        return self.values[:, K]
 
     @property
-    def values(self) -> np.ndarray:
-        """(m, 6) as the kernels read them: k, c, clearance, 1/depth, prescribed force, depth."""
-        return np.stack(
-            [self.stiffness, self.damping, self.clearance, self.per_depth, self.push, 1.0 / self.per_depth], axis=1
-        )
+    def damping(self) -> np.ndarray:
+        """Damping of each, (m,)."""
+        return self.values[:, C]
+
+    @property
+    def clearance(self) -> np.ndarray:
+        """Clearance of each between both sides, (m,)."""
+        return self.values[:, CLEARANCE]
 
     def scaled(self, w: float) -> Columns:
         """Forces over w^2, damping over w: as time counts in 1/w."""
-        return Columns(
-            self.kind,
-            self.mode,
-            self.stiffness / w**2,
-            self.damping / w,
-            self.clearance,
-            self.per_depth,
-            self.push / w**2,
-            self.counted,
-        )
+        return self._replace(values=self.values / np.array([w**2, w, 1.0, 1.0, w**2, 1.0]))

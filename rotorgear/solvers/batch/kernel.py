@@ -26,6 +26,7 @@ from rotorgear.solvers.batch.kernel_parts import (
     product,
     put_of,
     read_table,
+    row_product,
     widen,
 )
 from rotorgear.solvers.batch.kernel_switches import (
@@ -38,17 +39,8 @@ from rotorgear.solvers.batch.kernel_switches import (
     keep_end,
 )
 from rotorgear.solvers.batch.kernel_tangents import keep_speed, look_along, orthonormal
-from rotorgear.solvers.contact.vectors import BATCH, copy_rows, fill, get, put, work
+from rotorgear.solvers.contact.vectors import BATCH, copy_rows, get, put, work
 from rotorgear.solvers.time.compiled import compiled
-
-
-@compiled(fast=True, inner=True)
-def slope_of(i, first, column, value, stage, at):
-    """z'' of a dof: row i of a sparse matrix times rows of a stage from `at` on."""
-    total = fill(0.0)
-    for p in range(first[i], first[i + 1]):
-        total += get(value, p) * get(stage, at + column[p])
-    return total
 
 
 @compiled(fast=True, inner=True)
@@ -67,7 +59,7 @@ def advance(number, h, matrix, stage, ahead, at, base, base_at, total):
     weight = 1.0 if number == 0 else 2.0
     share = h if number == 2 else 0.5 * h
     for i in range(n):
-        a = slope_of(i, first, column, value, stage, at)
+        a = row_product(i, first, column, value, stage, at)
         v = get(stage, at + n + i)
         q0 = get(base, base_at + i)
         v0 = get(base, base_at + n + i)
@@ -90,12 +82,10 @@ def advance(number, h, matrix, stage, ahead, at, base, base_at, total):
 
 
 @compiled(fast=True, inner=True)
-def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, base, work):
+def tangent_stage(number, h, system, columns, acting, found, kept, stage, ahead, base, work):
     """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin."""
     matrix = system.matrix
-    first = system.across.first
-    column = system.across.column
-    value = system.across.value
+    across = system.across
     jumps = columns.jumps
     jumping = columns.jumping
     d = work.d
@@ -103,20 +93,19 @@ def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, b
     totals = work.totals
     used = work.used
     start = work.start
-    own = laws.kind.size > 0
+    own = acting.laws.kind.size > 0
     t = stage.shape[0]
     rows = stage.shape[1]
     n = base.shape[1] // 2
     m = found.shape[0]
     for k in range(t):
         at = k * rows
-        for j in range(2 * m):
-            put(d, j, slope_of(j, first, column, value, stage, at))
+        product(across, stage, at, d)
         for j in range(m):
             along = of(found, j, IN_D) * get(d, 2 * j) + of(found, j, IN_V) * get(d, 2 * j + 1)
             put(stage, at + 2 * n + j, along)
         if own:
-            laws_along(laws, blocks, d, stage, at + 2 * n)
+            laws_along(acting, blocks, d, stage, at + 2 * n)
         add_contacts(number, h, columns, found, d, work.done, DONE * m * k)
         if jumping:
             add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
@@ -132,9 +121,7 @@ def weight_of(number, h):
 @compiled(fast=True, inner=True)
 def end_tangents(system, columns, kept, moved, tangents, impulse, work):
     """Put the impulses of the damping right along all tangents."""
-    first = system.across.first
-    column = system.across.column
-    value = system.across.value
+    across = system.across
     per_force = system.per_force
     jumps = columns.jumps
     values = columns.values
@@ -146,8 +133,7 @@ def end_tangents(system, columns, kept, moved, tangents, impulse, work):
     n = tangents.shape[1] // 2
     m = jumps.size
     for k in range(t):
-        for j in range(2 * m):
-            put(d, j, slope_of(j, first, column, value, moved, k * rows))
+        product(across, moved, k * rows, d)
         missing_along(jumps, values, kept, d, used, start, m * k, impulse)
         add_impulses(per_force, impulse, moved, k * rows, tangents, 2 * n * k)
 
@@ -159,20 +145,18 @@ def switch_tangents(h, system, columns, step_begin, ends, moved, tangents, work)
     d = work.d
     m = columns.kind.size
     for k in range(tangents.shape[0]):
-        product(across, moved[k], d)
+        product(across, moved[k], 0, d)
         correct(h, columns, step_begin, ends, system.per_force, d, work.done, tangents[k], moved[k], DONE * m * k)
 
 
 @compiled(fast=True, free=True)
-def batch_loop(span, system, columns, table, laws, motion, records):
+def batch_loop(turns, steps, begun, counting, system, columns, table, acting, motion):
     """Advance the motion of all systems in place by common periods and record a section at the end of each.
 
+    turns: periods of the fastest excitation in a common one. steps: in one of those. begun: common periods before.
+    counting: whether the statistics count. columns: of a batch. acting: see `ActingLaws`.
     table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
     """
-    turns = span.turns
-    steps = span.steps
-    begun = span.begun
-    counting = span.counting
     matrix = system.matrix
     across = system.across
     per_force = system.per_force
@@ -184,10 +168,10 @@ def batch_loop(span, system, columns, table, laws, motion, records):
     kept = motion.kept
     tangents = motion.tangents
     last = motion.last
-    growth = records.growth
-    section = records.section
-    sums = records.sums
-    extremes = records.extremes
+    growth = motion.growth
+    section = motion.section
+    sums = motion.sums
+    extremes = motion.extremes
     watched = system.watched
     p = extremes.shape[1]
     seen = work(p)
@@ -195,7 +179,7 @@ def batch_loop(span, system, columns, table, laws, motion, records):
     m = counted.size
     t = tangents.shape[0]
     rows = 2 * n + m + 1
-    own = laws.kind.size > 0
+    own = acting.laws.kind.size > 0
     carrying = system.carried.shape[0] > 0
     at_begin = work(2 * system.carried.shape[0])
     at_end = work(2 * system.carried.shape[0])
@@ -211,13 +195,13 @@ def batch_loop(span, system, columns, table, laws, motion, records):
     moved = work(t * rows).reshape(t, rows, BATCH)
     moved_ahead = work(t * rows).reshape(t, rows, BATCH)
     weighed = work(t * 2 * n).reshape(t, 2 * n, BATCH)
-    blocks = work(2 * laws.block_first[-1]).reshape(2, laws.block_first[-1], BATCH)
+    blocks = work(2 * acting.laws.block_first[-1]).reshape(2, acting.laws.block_first[-1], BATCH)
     along = TangentWork(
         d, blocks, work(t * 2 * n).reshape(t, 2 * n, BATCH), work(t * m), work(t * m), work(t * m * DONE)
     )
     step_begin = work(m * STEP_BEGIN).reshape(m, STEP_BEGIN, BATCH)
     ends = work(m * 4).reshape(m, 4, BATCH)
-    condition = np.zeros((BATCH, laws.state_first[-1]))
+    condition = np.zeros((BATCH, acting.laws.state_first[-1]))
     space = np.zeros(SPACE)
     used = work(m)
     impulse = work(m)
@@ -235,14 +219,14 @@ def batch_loop(span, system, columns, table, laws, motion, records):
                     at = 2 * step + (number + 1) // 2
                     read_table(table, at, now)
                     if own:
-                        schedule_laws(laws, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
-                product(across, stage, d)
+                        schedule_laws(acting, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
+                product(across, stage, 0, d)
                 contacts(columns, now, weight_of(number, h), d, F, found, used)
                 if own:
-                    force_laws(laws, condition, d, F, found, blocks, space)
+                    force_laws(acting, condition, d, F, found, blocks, space)
                 if number == 0 and counting:
                     count(counted, now, d, F, found, last, sums)
-                    product(watched, stage, seen)
+                    product(watched, stage, 0, seen)
                     widen(seen, extremes, p)
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
@@ -251,13 +235,13 @@ def batch_loop(span, system, columns, table, laws, motion, records):
                     elif number == 1:
                         for j in range(m):
                             put_of(step_begin, j, MIDDLE, of(now, j, STIFFNESS))
-                    tangent_stage(number, h, system, columns, laws, found, kept, moved, moved_ahead, tangents, along)
+                    tangent_stage(number, h, system, columns, acting, found, kept, moved, moved_ahead, tangents, along)
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if jumping or t:
-                product(across, stage, d)
+                product(across, stage, 0, d)
             if t and keep_end(columns, now, d, step_begin, ends):
                 switch_tangents(h, system, columns, step_begin, ends, moved, tangents, along)
-                product(across, stage, d)
+                product(across, stage, 0, d)
             if jumping:
                 missing(jumps, values, now, d, used, kept, impulse)
                 add_impulses(per_force, impulse, stage, 0, state, 0)
@@ -270,5 +254,4 @@ def batch_loop(span, system, columns, table, laws, motion, records):
         if carrying:
             keep_speed(state, system.carried, at_begin, 2.0 * np.pi * turns, at_end)
             copy_rows(state, 0, stage, 0, 2 * n)
-        for j in range(2 * m):
-            put(section, 2 * m * period + j, slope_of(j, across.first, across.column, across.value, state, 0))
+        product(across, state, 0, section[period])

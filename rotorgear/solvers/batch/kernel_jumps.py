@@ -12,8 +12,8 @@ which the sides meet are put right. Tangents follow with s(x_1) T_1 - s(x_0) T_0
 
 from __future__ import annotations
 
-from rotorgear.solvers.batch.columns import CLOSING, ERROR, NEVER
-from rotorgear.solvers.batch.kernel_parts import CLEARANCE, DEPTH, GROWTH, IN_V, PER_DEPTH, C, of, put_of
+from rotorgear.solvers.batch.columns import CLEARANCE, CLOSING, DEPTH, ERROR, NEVER, PER_DEPTH, C
+from rotorgear.solvers.batch.kernel_parts import GROWTH, IN_V, of, put_of
 from rotorgear.solvers.contact.gap_contact import momentum
 from rotorgear.solvers.contact.vectors import fill, formula, get, put, where_positive
 from rotorgear.solvers.time.compiled import compiled

@@ -2,13 +2,13 @@
 
 The laws work in SI: displacements of the systems are metres already, velocities are multiplied and forces divided by powers of
 the rad/s of the fastest excitation, whose radian is the unit of time of a batch. There are as many rows of parameters as systems;
-what fills the batch up after those repeats the last one, and takes its answers over.
+places of the batch beyond them repeat the last system, and take its answers over.
 """
 
 from __future__ import annotations
 
 from rotorgear.solvers.batch.kernel_parts import SIDE
-from rotorgear.solvers.contact.vectors import BATCH, fill, get, put
+from rotorgear.solvers.contact.vectors import fill, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 _MOST_COMPONENTS = 6
@@ -17,14 +17,15 @@ SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
 
 
 @compiled(inner=True)
-def schedule_laws(laws, time, state):
+def schedule_laws(acting, time, state):
     """Fill the state (w, s) of the laws of all systems at a time in radians of the fastest excitation."""
+    laws = acting.laws
     schedules = laws.schedules
     kind = laws.kind
     parameters = laws.parameters
     parameters_first = laws.parameters_first
     state_first = laws.state_first
-    clock = laws.clock
+    clock = acting.clock
     for w in range(parameters.shape[0] if kind.size else 0):
         angle = time * clock[0, w]
         speed = clock[1, w] * clock[0, w]
@@ -39,20 +40,21 @@ def schedule_laws(laws, time, state):
 
 
 @compiled(inner=True)
-def force_laws(laws, state, d, F, found, tangents, work):
+def force_laws(acting, state, d, F, found, tangents, work):
     """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w), and the sides
     that touch to found (m, 4, w).
 
     work: SPACE numbers.
     """
+    laws = acting.laws
     forces = laws.forces
     kind = laws.kind
-    place = laws.place
+    place = acting.place
     parameters = laws.parameters
     parameters_first = laws.parameters_first
     state_first = laws.state_first
     block_first = laws.block_first
-    clock = laws.clock
+    clock = acting.clock
     systems = parameters.shape[0]
     for i in range(kind.size):
         a = place[0, i]
@@ -85,7 +87,7 @@ def force_laws(laws, state, d, F, found, tangents, work):
             for j in range(k * k):
                 tangents[0, block_first[i] + j, w] = in_d[j] / (rate * rate)
                 tangents[1, block_first[i] + j, w] = in_v[j] / rate
-        for w in range(systems, BATCH):
+        for w in range(systems, F.shape[1]):
             for j in range(k):
                 F[a + j, w] = F[a + j, systems - 1]
                 found[a + j, SIDE, w] = found[a + j, SIDE, systems - 1]
@@ -95,11 +97,11 @@ def force_laws(laws, state, d, F, found, tangents, work):
 
 
 @compiled(fast=True, inner=True)
-def laws_along(laws, tangents, d, out, at):
+def laws_along(acting, tangents, d, out, at):
     """Forces of the laws along a tangent's displacements and velocities d (2 m, w), to the rows of out from `at` on."""
-    kind = laws.kind
-    place = laws.place
-    block_first = laws.block_first
+    kind = acting.laws.kind
+    place = acting.place
+    block_first = acting.laws.block_first
     size = tangents.shape[1]
     for i in range(kind.size):
         a = place[0, i]

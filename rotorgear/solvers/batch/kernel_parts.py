@@ -5,16 +5,25 @@ Every array has the systems as its last axis of BATCH entries, and is read by ro
 
 from __future__ import annotations
 
-from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
+from rotorgear.solvers.batch.columns import (
+    CLEARANCE,
+    ERROR,
+    FORCE,
+    FORCE_SHARE,
+    OWN_LAW,
+    PER_DEPTH,
+    PRESCRIBED,
+    SLOPE,
+    STIFFNESS,
+    C,
+    K,
+)
 from rotorgear.solvers.contact.gap_contact import gap_contact, tied_contact
 from rotorgear.solvers.contact.kinds import BILATERAL
 from rotorgear.solvers.contact.vectors import fill, formula, get, larger, put, smaller, where_positive
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import schedule_all
 
-# Values of a column: k, c, clearance, 1/depth of regularisation, prescribed force, depth of regularisation.
-K, C, CLEARANCE, PER_DEPTH, FORCE, DEPTH = range(6)
-VALUES = 6
 # What a contact leaves: its tangents in displacement and velocity, the side that touches, and the part of the tangent in
 # displacement that comes from the growth of the damping with depth.
 IN_D, IN_V, SIDE, GROWTH = range(4)
@@ -62,16 +71,22 @@ def read_table(table, at, out):
 
 
 @compiled(fast=True, inner=True)
-def product(matrix, x, out):
-    """out = A x for a sparse matrix with values by system."""
+def row_product(i, first, column, value, x, at):
+    """Row i of a sparse matrix with values by system, times rows of x from `at` on."""
+    total = fill(0.0)
+    for p in range(first[i], first[i + 1]):
+        total += get(value, p) * get(x, at + column[p])
+    return total
+
+
+@compiled(fast=True, inner=True)
+def product(matrix, x, at, out):
+    """out = A x for a sparse matrix with values by system, and rows of x from `at` on."""
     first = matrix.first
     column = matrix.column
     value = matrix.value
     for i in range(out.shape[0]):
-        total = fill(0.0)
-        for p in range(first[i], first[i + 1]):
-            total += get(value, p) * get(x, column[p])
-        put(out, i, total)
+        put(out, i, row_product(i, first, column, value, x, at))
 
 
 @compiled(fast=True, inner=True)
@@ -87,7 +102,7 @@ def contacts(columns, table, weight, d, F, found, used):
     for j in range(kind.size):
         if kind[j] == OWN_LAW:
             continue
-        prescribed = of(values, j, FORCE) * of(table, j, PUSH)
+        prescribed = of(values, j, FORCE) * of(table, j, FORCE_SHARE)
         if kind[j] == PRESCRIBED:
             put(F, j, prescribed)
             continue

@@ -15,8 +15,8 @@ Leine and Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems 
 
 from __future__ import annotations
 
-from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, PRESCRIBED, SLOPE, STIFFNESS
-from rotorgear.solvers.batch.kernel_parts import CLEARANCE, GROWTH, IN_D, IN_V, PER_DEPTH, C, K, of
+from rotorgear.solvers.batch.columns import CLEARANCE, ERROR, OWN_LAW, PER_DEPTH, PRESCRIBED, SLOPE, STIFFNESS, C, K
+from rotorgear.solvers.batch.kernel_parts import GROWTH, IN_D, IN_V, of
 from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, PENETRATION
 from rotorgear.solvers.contact.vectors import BATCH, get, put
 from rotorgear.solvers.time.compiled import compiled
@@ -134,6 +134,7 @@ def keep_end(columns, table, d, step_begin, ends):
 
     They are the approach, its rate, what holding has changed by (-1, 0, 1), and the share of the stiffness.
     """
+    values = columns.values
     changed = 0.0
     for j in range(columns.kind.size):
         if not tangent_jumps(columns.kind[j], columns.mode[j]):
@@ -142,16 +143,8 @@ def keep_end(columns, table, d, step_begin, ends):
         for w in range(BATCH):
             x = d[2 * j, w] - table[j, ERROR, w]
             rate = d[2 * j + 1, w] - table[j, SLOPE, w]
-            values = columns.values
-            now = holds_at(
-                x,
-                rate,
-                values[j, K, w] * table[j, STIFFNESS, w],
-                values[j, C, w],
-                values[j, CLEARANCE, w],
-                values[j, PER_DEPTH, w],
-                clamped,
-            )
+            k = values[j, K, w] * table[j, STIFFNESS, w]
+            now = holds_at(x, rate, k, values[j, C, w], values[j, CLEARANCE, w], values[j, PER_DEPTH, w], clamped)
             change = (1.0 if now else 0.0) - step_begin[j, HOLDS, w]
             ends[j, 0, w] = x
             ends[j, 1, w] = rate

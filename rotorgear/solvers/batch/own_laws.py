@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.solvers.batch.arguments import ActingLaws
+from rotorgear.solvers.time.contact_equilibrium import FAR, held_and_unheld
 from rotorgear.solvers.time.kernel_time import DISSIPATED, ENERGIES
 from rotorgear.solvers.time.local_forces import LocalForces, gather
 from rotorgear.solvers.time.local_system import LocalSystem, evaluated
 
 # Times in a period of the fastest excitation at which tangents are looked at.
 _SAMPLES = 64
-_FAR = 1e-2  # m or rad, by which a displacement is changed to see whether a law answers
 # Times in a common period over which the power of laws is averaged: a prime number, so that they meet all phases of any cycle.
 _TIMES = 257
 _PRESSED = 1e-6  # m or rad: contacts without a load are looked at as if pressed together, or apart, by this
@@ -40,22 +39,6 @@ def own_laws(forces: LocalForces, own: np.ndarray, turn: float) -> OwnLaws:
     return OwnLaws(gather(tuple(forces.laws[i] for i in chosen)), place.reshape(-1, 2).T.copy(), turn)
 
 
-def acting_laws(own: OwnLaws, parameters: np.ndarray, clock: np.ndarray) -> ActingLaws:
-    """The laws as the kernels take them, with the parameters and the clock of one system or of a batch."""
-    of = own.forces
-    return ActingLaws(
-        of.schedules,
-        of.forces,
-        of.kind,
-        own.place,
-        parameters,
-        of.parameters_first,
-        of.state_first,
-        of.block_first,
-        clock,
-    )
-
-
 def steepest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> list[tuple[np.ndarray, np.ndarray]]:
     """Stiffness and damping (m, m) of the laws at rest beyond their reference, where stiffest and most damped in a period.
 
@@ -66,32 +49,24 @@ def steepest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> 
     laws = local.forces
     d = local.B.T @ q
     still = np.zeros(local.m)
-    stiffness = _of_laws(own, laws.reference_stiffness)
-    damping = _of_laws(own, laws.reference_damping)
     found = []
     for i in range(_SAMPLES):
         _, in_d, in_v, _ = evaluated(local, d, still, period * i / _SAMPLES)
-        found.append((_blocks(laws, own, in_d) - stiffness, _blocks(laws, own, in_v) - damping))
+        stiffness = _of_laws(own, laws.matrix(in_d) - laws.reference_stiffness)
+        found.append((stiffness, _of_laws(own, laws.matrix(in_v) - laws.reference_damping)))
     most = {max(range(_SAMPLES), key=lambda i: float(np.abs(found[i][part]).sum())) for part in (0, 1)}
     return [found[i] for i in sorted(most)]
 
 
-@dataclass(frozen=True)
-class Taken:
-    """What laws take of the power of the prescribed motion at rest, on average over a common period.
+def taken_at_rest(
+    local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """What laws such as friction take of the power of the prescribed motion, on average over the common `period` in s.
 
-    Attributes:
-        power: in W. push: (m,) mean forces of the laws that take some. damping: (m, m) mean damping of all laws beyond their
-        reference.
+    Returns:
+        About the displacements q (n,): the power in W, (m,) mean forces of the laws that take some, and (m, m) mean damping of
+        all laws beyond their reference.
     """
-
-    power: float
-    push: np.ndarray
-    damping: np.ndarray
-
-
-def taken_at_rest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> Taken:
-    """What laws such as friction take about the displacements q (n,); `period` is the common one in s."""
     laws = local.forces
     d = local.B.T @ q
     still = np.zeros(local.m)
@@ -110,16 +85,7 @@ def taken_at_rest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float
                     push[a : a + k] += F[a : a + k] / _TIMES
         if power > 0.0:
             break
-    return Taken(power, push, _blocks(laws, own, in_v) - _of_laws(own, laws.reference_damping))
-
-
-def _blocks(laws: LocalForces, own: OwnLaws, flat: np.ndarray) -> np.ndarray:
-    """Tangents (m, m) of the own laws from the flat blocks of all."""
-    found = np.zeros((laws.m, laws.m))
-    for a, k in own.place.T:
-        at = int(laws.block_first[int(np.searchsorted(laws.first, a))])
-        found[a : a + k, a : a + k] = flat[at : at + k * k].reshape(k, k)
-    return found
+    return power, push, _of_laws(own, laws.matrix(in_v) - laws.reference_damping)
 
 
 def _of_laws(own: OwnLaws, A: np.ndarray) -> np.ndarray:
@@ -142,13 +108,9 @@ def not_held(local: LocalSystem, q: np.ndarray, own: OwnLaws, free: np.ndarray) 
     at_rest = evaluated(local, d, still, 0.0)[0]
     acts = np.zeros(local.m, dtype=bool)
     for j in np.concatenate([np.arange(a, a + k) for a, k in own.place.T]):
-        for far in (-_FAR, _FAR):
+        for far in (-FAR, FAR):
             moved = d.copy()
             moved[j] += far
             acts[j] |= bool(np.any(evaluated(local, moved, still, 0.0)[0] != at_rest))
     seen = local.B[:, np.flatnonzero(acts)].T @ free
-    if not seen.size:
-        return free
-    _, sizes, right = np.linalg.svd(seen)
-    held = int(np.count_nonzero(sizes > 1e-9 * max(1e-300, float(np.linalg.norm(free)))))
-    return np.asarray(free @ right[held:].T)
+    return held_and_unheld(seen, free)[1] if seen.size else free

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.solvers.batch.arguments import BatchMotion, BatchRecords, BatchSpan, BatchSystem, ColumnValues
-from rotorgear.solvers.batch.columns import ERROR, NEVER
-from rotorgear.solvers.batch.own_laws import acting_laws
+from rotorgear.solvers.batch.arguments import ActingLaws, BatchMotion, BatchSystem
+from rotorgear.solvers.batch.columns import ERROR, FORCE, NEVER
 from rotorgear.solvers.batch.small_system import SmallSystem
 from rotorgear.solvers.time.arguments import SparseRows
 from rotorgear.solvers.time.statistics import STATISTICS
@@ -21,7 +20,7 @@ _REGISTER = 64  # bytes of the widest vector registers
 
 
 @dataclass(frozen=True)
-class Plan:
+class BatchPlan:
     """How long: steps in a period of the fastest excitation, common periods that settle and count, tangents to follow.
 
     The tangents are followed over the last `warm` of the periods that settle, so that they find the direction of most growth.
@@ -93,7 +92,7 @@ def run_block(
     systems: Sequence[SmallSystem],
     starts: Sequence[Start],
     tables: Sequence[np.ndarray],
-    plan: Plan,
+    plan: BatchPlan,
     go_on: Callable[[], bool] = lambda: True,
 ) -> list[Orbit]:
     """Run up to BATCH systems of one kind side by side.
@@ -112,92 +111,121 @@ def run_block(
     if not 0 < count <= BATCH:
         raise ValueError(f"{count} systems in a block, expected 1 to {BATCH}")
     filled = [*systems, *[systems[-1]] * (BATCH - count)]
-    first = systems[0]
-    c = first.columns
-    m = c.kind.size
-    jumps = np.max([s.columns.jumps for s in filled], axis=0)
-    columns = ColumnValues(
-        c.kind, c.mode, jumps, c.counted, bool(np.any(jumps != NEVER)), _stacked([s.columns.values for s in filled])
-    )
-    system = _matrices(filled)
-    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (BATCH - count)]
-    pushed = any(np.any(s.columns.push) for s in systems)
-    table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
-    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
-    laws = acting_laws(first.own, parameters, _stacked([np.array([s.own.turn, s.w]) for s in filled]))
     begins = [*starts, *[starts[-1]] * (BATCH - count)]
+    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (BATCH - count)]
+    first = systems[0]
+    m = first.columns.kind.size
+    jumps = np.max([s.columns.jumps for s in filled], axis=0)
+    values = _stacked([s.columns.values for s in filled])
+    columns = first.columns._replace(jumps=jumps, jumping=bool(np.any(jumps != NEVER)), values=values)
+    system = _matrices(filled)
+    pushed = any(np.any(s.columns.values[:, FORCE]) for s in systems)
+    table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
+    acting = acting_laws(systems)
     x = [
-        s.B.T @ begin.z - wide[i % len(wide)][0, :, ERROR]
-        for i, (s, begin) in enumerate(zip(filled, begins, strict=True))
+        s.B.T @ start.z - wide[i % len(wide)][0, :, ERROR]
+        for i, (s, start) in enumerate(zip(filled, begins, strict=True))
     ]
-    kept = aligned((m, KEPT, BATCH))
-    keep_start(columns.values, _stacked(x), kept)
     # Random tangents, the same for all systems and runs.
     tangents = np.random.default_rng(1).standard_normal((plan.tangents, 2 * first.n))
-    motion = BatchMotion(
-        _stacked([np.concatenate([s.z, s.dz]) for s in begins]),
-        kept,
-        _stacked([tangents] * BATCH),
-        aligned((m, BATCH)),
-    )
-    sums = blank_sums(m)
     extremes = aligned((2, first.W.shape[1], BATCH))
     extremes[0] = np.inf
     extremes[1] = -np.inf
+    begin = BatchMotion(
+        state=_stacked([np.concatenate([s.z, s.dz]) for s in begins]),
+        kept=aligned((m, KEPT, BATCH)),
+        tangents=_stacked([tangents] * BATCH),
+        last=aligned((m, BATCH)),
+        growth=aligned((0, 0, BATCH)),
+        section=aligned((0, 0, BATCH)),
+        sums=blank_sums(m),
+        extremes=extremes,
+    )
+    keep_start(columns.values, _stacked(x), begin.kept)
 
-    def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> BatchMotion:
         growth = aligned((periods, len(followed), BATCH))
         section = aligned((periods, 2 * m, BATCH))
         stride = plan.stride(first.turns)
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            batch_loop(
-                BatchSpan(first.turns, plan.steps, begun + p, counting),
-                system,
-                columns,
-                table,
-                laws,
-                motion._replace(tangents=followed),
-                BatchRecords(growth[p : p + stride], section[p : p + stride], sums, extremes),
-            )
-        return growth, section
+            rows = slice(p, p + stride)
+            motion = begin._replace(tangents=followed, growth=growth[rows], section=section[rows])
+            batch_loop(first.turns, plan.steps, begun + p, counting, system, columns, table, acting, motion)
+        return begin._replace(growth=growth, section=section)
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
     with np.errstate(all="ignore"):
-        run(0, plan.settle - warm, False, motion.tangents[:0])
-        run(plan.settle - warm, warm, False, motion.tangents)
-        growth, section = run(plan.settle, plan.count, True, motion.tangents)
-    return [_orbit(filled[i], i, growth, section, sums, extremes, motion.state, plan) for i in range(count)]
+        run(0, plan.settle - warm, False, begin.tangents[:0])
+        run(plan.settle - warm, warm, False, begin.tangents)
+        end = run(plan.settle, plan.count, True, begin.tangents)
+    return [_orbit(filled[i], i, end, plan) for i in range(count)]
 
 
-def _orbit(
-    system: SmallSystem,
-    number: int,
-    growth: np.ndarray,
-    section: np.ndarray,
-    sums: np.ndarray,
-    extremes: np.ndarray,
-    state: np.ndarray,
-    plan: Plan,
-) -> Orbit:
+def acting_laws(systems: Sequence[SmallSystem]) -> ActingLaws:
+    """The laws of systems of one kind that act by functions of their own, as the kernels take them."""
+    own = systems[0].own
+    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
+    clock = np.array([[s.own.turn for s in systems], [s.w for s in systems]])
+    return ActingLaws(own.forces.arguments()._replace(parameters=parameters), own.place, clock)
+
+
+def _orbit(system: SmallSystem, number: int, motion: BatchMotion, plan: BatchPlan) -> Orbit:
     """One system of a batch, with forces in N and velocities in m/s."""
     from rotorgear.solvers.batch.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
 
-    found = sums[:, :, number].copy()
+    sums = motion.sums[:, :, number].copy()
     n = system.n
-    moved = section[:, :, number].reshape(len(section), len(sums), 2).copy()
+    moved = motion.section[:, :, number].reshape(len(motion.section), len(sums), 2).copy()
     for row in (F_MIN, F_MAX, F_SUM):
-        found[:, row] *= system.w**2
-    found[:, F_SQUARES] *= system.w**4
+        sums[:, row] *= system.w**2
+    sums[:, F_SQUARES] *= system.w**4
     moved[:, :, 1] *= system.w
-    end = Start(state[:n, number].copy(), state[n:, number].copy())
+    end = Start(motion.state[:n, number].copy(), motion.state[n:, number].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
-    own = growth[..., number].copy()
+    growth = motion.growth[..., number].copy()
+    extremes = motion.extremes[:, :, number].T.copy()
     # Two displacements are watched of each contact.
-    unknown = np.full((extremes.shape[1] // 2, len(STATISTICS)), np.nan)
-    ends = extremes[:, :, number].T.copy()
-    return Orbit(moved, own, found, ends, end, finite, np.zeros(own.shape[1]), plan.settle, error=unknown)
+    unknown = np.full((len(extremes) // 2, len(STATISTICS)), np.nan)
+    return Orbit(moved, growth, sums, extremes, end, finite, np.zeros(growth.shape[1]), plan.settle, error=unknown)
+
+
+def trajectory(
+    system: SmallSystem, start: Start, table: np.ndarray, steps: int, periods: int, every: int = 1, begun: int = 0
+) -> np.ndarray:
+    """Run one system on from a state over common periods, by the steps of `run_block`.
+
+    Args:
+        table: of what depends on time, (2 turns steps + 1, m, 4).
+        steps: in a period of the fastest excitation. periods: common ones. every: steps between two records.
+        begun: common periods before the start, for laws that go on from one to the next, such as rolling elements.
+
+    Returns:
+        Displacement in m, velocity in m/s and force in N of each local displacement, (periods turns steps / every, m, 3); the
+        first record is the state to start from.
+
+    Raises:
+        ValueError: `every` does not divide the steps of a common period.
+    """
+    from rotorgear.solvers.batch.kernel_trajectory import trajectory
+
+    length, rest = divmod(system.turns * steps, every)
+    if rest:
+        raise ValueError(f"{system.turns * steps} steps in a common period are no multiple of {every}")
+    out = np.empty((periods * length, system.columns.kind.size, 3))
+    trajectory(
+        steps,
+        every,
+        begun * system.turns * steps,
+        tuple(np.ascontiguousarray(x, dtype=float) for x in (system.K, system.D, system.B, system.load)),
+        system.columns,
+        np.ascontiguousarray(table),
+        acting_laws([system]),
+        np.concatenate([start.z, start.dz]),
+        out,
+    )
+    return out * np.array([1.0, system.w, system.w**2])
 
 
 def blank_sums(m: int) -> np.ndarray:

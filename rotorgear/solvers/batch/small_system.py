@@ -12,7 +12,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.batch.columns import Columns
-from rotorgear.solvers.batch.own_laws import OwnLaws, Taken, not_held, steepest, taken_at_rest
+from rotorgear.solvers.batch.own_laws import OwnLaws, not_held, steepest, taken_at_rest
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.solvers.time.local_system import LocalSystem
 
@@ -132,7 +132,7 @@ def small_system(
     rigid = np.linalg.qr(L.T @ free)[0].T if free.size else np.zeros((0, local.n))
     carried = np.zeros((0, local.n))
     if len(rigid) and own.forces.laws:
-        carried = _carried(rigid, damped, B, taken_at_rest(local, rest.q, own, turns * 2.0 * np.pi / w))
+        carried = _carried(rigid, damped, B, *taken_at_rest(local, rest.q, own, turns * 2.0 * np.pi / w))
     # All |eigenvalues| of z'' = -K z - D z'.
     zero = np.zeros((local.n, local.n))
     matrices = [np.block([[zero, np.eye(local.n)], [-(k / w**2), -(c / w)]]) for k, c in linear]
@@ -159,7 +159,9 @@ def small_system(
     )
 
 
-def _carried(rigid: np.ndarray, D: np.ndarray, B: np.ndarray, taken: Taken) -> np.ndarray:
+def _carried(
+    rigid: np.ndarray, D: np.ndarray, B: np.ndarray, power: float, push: np.ndarray, damping: np.ndarray
+) -> np.ndarray:
     """Motions without strain (r, n) whose speed the drive keeps; orthonormal, (c, n).
 
     A law that acts against sliding, such as friction, takes power P from such a motion, which it pushes by f. A drag c on it
@@ -169,18 +171,17 @@ def _carried(rigid: np.ndarray, D: np.ndarray, B: np.ndarray, taken: Taken) -> n
 
     Args:
         rigid: orthonormal motions without strain, (r, n). D: damping, (n, n), and B: directions of the laws, (n, m), about the
-        mean state. taken: by laws of their own.
+        mean state. power, push, damping: of laws of their own, see `taken_at_rest`.
     """
-    if not taken.power > 0.0:
+    if not power > 0.0:
         return np.zeros((0, len(D)))
-    pushes = B @ taken.push
-    drags, turned = np.linalg.eigh(
-        rigid @ (0.5 * (D + D.T) + B @ (0.5 * (taken.damping + taken.damping.T)) @ B.T) @ rigid.T
-    )
+    pushes = B @ push
+    drag = 0.5 * (D + D.T) + B @ (0.5 * (damping + damping.T)) @ B.T
+    drags, turned = np.linalg.eigh(rigid @ drag @ rigid.T)
     along = turned.T @ rigid
-    push = along @ pushes
-    felt = np.abs(push) > _FELT * np.linalg.norm(pushes)
-    return np.asarray(along[felt & (push**2 > _SLOWER * np.maximum(drags, 0.0) * taken.power)])
+    f = along @ pushes
+    felt = np.abs(f) > _FELT * np.linalg.norm(pushes)
+    return np.asarray(along[felt & (f**2 > _SLOWER * np.maximum(drags, 0.0) * power)])
 
 
 def refuse_large(n: int) -> None:

@@ -100,12 +100,8 @@ def _newton(
         now = equations.linear(z[:-1], float(z[-1]))
         off = float(normal @ (z - guess))
         size = float(np.hypot(np.linalg.norm(now.residual), off))
-        A = np.empty((z.size, z.size))
-        A[:-1, :-1] = now.in_y
-        A[:-1, -1] = now.in_p
-        A[-1] = normal
         try:
-            step = np.linalg.solve(A, np.append(now.residual, off))
+            step = np.linalg.solve(_bordered(now, normal), np.append(now.residual, off))
         except np.linalg.LinAlgError:
             raise ConvergenceError("singular equations") from None
         length = float(np.linalg.norm(step))
@@ -134,15 +130,16 @@ def _newton(
     raise ConvergenceError(f"Newton's method did not converge in {_ITERATIONS} iterations")
 
 
+def _bordered(now: Linear, row: np.ndarray) -> np.ndarray:
+    """The derivatives of the equations, with a row below them, (N + 1, N + 1)."""
+    return np.vstack([np.column_stack([now.in_y, now.in_p]), row])
+
+
 def tangent_of(now: Linear, towards: np.ndarray) -> np.ndarray:
     """Unit tangent (N + 1,) at a solution, in the sense of `towards`."""
-    A = np.empty((towards.size, towards.size))
-    A[:-1, :-1] = now.in_y
-    A[:-1, -1] = now.in_p
-    A[-1] = towards
     right = np.zeros(towards.size)
     right[-1] = 1.0
-    found = np.linalg.solve(A, right)
+    found = np.linalg.solve(_bordered(now, towards), right)
     return np.asarray(found / np.linalg.norm(found))
 
 

@@ -12,38 +12,34 @@ the jump (Euler and Maclaurin), and are taken off: tangents then change continuo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.solvers.periodic.plant import Plant
-from rotorgear.solvers.periodic.samples import Samples, sampled
+from rotorgear.solvers.periodic.samples import Samples, answered
 from rotorgear.solvers.periodic.switches import switches_of
 
 
 @dataclass(frozen=True)
-class Grid:
+class HarmonicGrid:
     """H harmonics at N instants of a base period, which comes `order` times in a turn of the reference."""
 
     harmonics: int
     instants: int
     order: float
 
+    @property
+    def doubled(self) -> HarmonicGrid:
+        """Twice the harmonics and instants."""
+        return replace(self, harmonics=2 * self.harmonics, instants=2 * self.instants)
+
     def frequency(self, speed: float) -> float:
         """Of the base period, rad/s."""
         return self.order * abs(speed)
 
 
-@dataclass(frozen=True)
-class Balance:
-    """Coefficients u (H + 1, m) of the rest of the local forces, and their derivatives (H + 1, m, 2 H + 1, m)."""
-
-    u: np.ndarray
-    tangent: np.ndarray
-
-
-def coefficients(y: np.ndarray, grid: Grid, m: int) -> np.ndarray:
+def coefficients(y: np.ndarray, grid: HarmonicGrid, m: int) -> np.ndarray:
     """c (H + 1, m) from unknowns: all real parts, then the imaginary ones of h = 1 ... H."""
     H = grid.harmonics
     c = y[: (H + 1) * m].reshape(H + 1, m).astype(complex)
@@ -65,14 +61,15 @@ def synthesised(c: np.ndarray, w: float, instants: int) -> tuple[np.ndarray, np.
     return np.fft.irfft(half, instants, axis=0), np.fft.irfft(rate, instants, axis=0)
 
 
-def samples_of(c: np.ndarray, plant: Plant, grid: Grid, instants: int) -> Samples:
+def samples_of(c: np.ndarray, plant: Plant, grid: HarmonicGrid, instants: int) -> Samples:
     """The motion of coefficients and the answers of the laws at equally spaced instants of its period."""
     w = grid.frequency(plant.speed)
-    return sampled(*synthesised(c, w, instants), plant.forces, plant.speed, 2.0 * np.pi / w)
+    t = 2.0 * np.pi / w * np.arange(instants) / instants
+    return answered(t, *synthesised(c, w, instants), plant.forces, plant.speed)
 
 
-def balance(c: np.ndarray, plant: Plant, grid: Grid, *, tangents: bool = True) -> Balance:
-    """Coefficients of u = k d + c d' - F along a motion, and their derivatives by those of the motion."""
+def balance(c: np.ndarray, plant: Plant, grid: HarmonicGrid, *, tangents: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients u (H + 1, m) of u = k d + c d' - F along a motion c, and their derivatives (H + 1, m, 2 H + 1, m) by c."""
     H = grid.harmonics
     N = grid.instants
     m = plant.m
@@ -84,16 +81,16 @@ def balance(c: np.ndarray, plant: Plant, grid: Grid, *, tangents: bool = True) -
     rest = now.d @ k.T + now.v @ damping.T - now.F
     spectrum = np.fft.rfft(rest, axis=0)[: H + 1] / N
     switches = switches_of(c, now, plant, w)
-    spectrum -= switches.of_forces(H, m)
+    spectrum -= switches.of_forces(H)
     u = 2.0 * spectrum
     u[0] *= 0.5
     u[0] = u[0].real
     if not tangents:
-        return Balance(u, np.zeros((0, m, 0, m), complex))
-    a, b, flat = pairs(laws.first)
-    in_d = np.fft.fft(k[a, b] - now.Kd[:, flat], axis=0) / N
-    in_v = np.fft.fft(damping[a, b] - now.Kv[:, flat], axis=0) / N
-    more_d, more_v = switches.of_tangents(2 * H, flat)
+        return u, np.zeros((0, m, 0, m), complex)
+    a, b = laws.places
+    in_d = np.fft.fft(k[a, b] - now.Kd, axis=0) / N
+    in_v = np.fft.fft(damping[a, b] - now.Kv, axis=0) / N
+    more_d, more_v = switches.of_tangents(2 * H)
     both = np.arange(-2 * H, 2 * H + 1)
     in_d[both] -= more_d
     in_v[both] -= more_v
@@ -111,16 +108,4 @@ def balance(c: np.ndarray, plant: Plant, grid: Grid, *, tangents: bool = True) -
     for i in range(len(a)):
         tangent[:, a[i], : H + 1, b[i]] = real[:, :, i]
         tangent[:, a[i], H + 1 :, b[i]] = imaginary[:, 1:, i]
-    return Balance(u, tangent)
-
-
-def pairs(first: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rows, columns and places among the flat blocks of all tangents that laws have."""
-    a: list[int] = []
-    b: list[int] = []
-    for start, stop in pairwise(first):
-        for i in range(start, stop):
-            for j in range(start, stop):
-                a.append(i)
-                b.append(j)
-    return np.array(a, int), np.array(b, int), np.arange(len(a))
+    return u, tangent

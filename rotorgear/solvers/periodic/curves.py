@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg as la
 
 from rotorgear.solvers.periodic.arclength import Linear
-from rotorgear.solvers.periodic.samples import Cycle
+from rotorgear.solvers.periodic.samples import MotionCycle
 from rotorgear.solvers.periodic.shooting import ShootingOrbits
 from rotorgear.solvers.periodic.special import DOUBLING, Orbits
 
@@ -36,7 +36,7 @@ class Differentiable(Orbits, Protocol):
     def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """r (N,) and its derivative by y (N, N); smooth ones for differences in a parameter."""
 
-    def cycle(self, y: np.ndarray, p: float) -> Cycle:
+    def cycle(self, y: np.ndarray, p: float) -> MotionCycle:
         """A period of a solution."""
 
     def doubled(self) -> Self:
@@ -56,16 +56,6 @@ class Here(NamedTuple):
     g: float
 
 
-class Slopes(NamedTuple):
-    """Where (z, q) and at which g they were last known: derivatives of r by p and q (N,), and of g by (z, q) (N + 2,)."""
-
-    at: np.ndarray
-    g: float
-    in_p: np.ndarray
-    in_q: np.ndarray
-    slope: np.ndarray
-
-
 class SpecialCurve:
     """Equations of special points of one kind: unknowns (y, p), (N + 1,), the second parameter q as the one to walk along.
 
@@ -82,13 +72,13 @@ class SpecialCurve:
         self._views: dict[float, tuple[Differentiable, Differentiable]] = {}
         self._settle = True
         self._last: tuple[tuple[bytes, float], Here] | None = None
-        self._slopes: Slopes | None = None
+        # The last point (z, q), g there, and slopes: of r by p and q (N,), and of g by (z, q) (N + 2,).
+        self._slopes: tuple[np.ndarray, float, np.ndarray, np.ndarray, np.ndarray] | None = None
         self._age = 0
         own, other = self._view(q)
         self._map = self._doubling and isinstance(own, ShootingOrbits)
-        marks = (
-            np.asarray(own.twice(np.arange(1.0, y.size + 1.0), other)) if self._doubling else np.arange(1.0, y.size + 1)
-        )
+        marks = np.arange(1.0, y.size + 1.0)
+        marks = np.asarray(own.twice(marks, other)) if self._doubling else marks
         rows = np.flatnonzero(np.round(marks))
         # Place of each unknown of y among those that A takes.
         self._places = rows[np.argsort(marks[rows])]
@@ -115,7 +105,7 @@ class SpecialCurve:
         return self._view(q)[0]
 
     def prepare_at(self, q: float) -> None:
-        """From the next point on."""
+        """Make the equations exact again at the next point."""
         self._settle = True
 
     def _equations(
@@ -129,7 +119,7 @@ class SpecialCurve:
         return r, J, self._of(J)
 
     def _of(self, J: np.ndarray) -> np.ndarray:
-        """A of the derivative of the equations that it belongs to."""
+        """A from the derivative of its equations: the same, or the monodromy matrix plus one."""
         return J + 2.0 * np.eye(len(J)) if self._map else J
 
     def _bordered(self, A: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -147,7 +137,7 @@ class SpecialCurve:
         return v[:n], w[:n], float(v[n])
 
     def _at(self, z: np.ndarray, q: float) -> Here:
-        """All that belongs to a point; that of the last one is kept, for a step of Newton's method ends where the next begins."""
+        """What is known of a point; that of the last one is kept: a step of Newton's method ends where the next begins."""
         key = (z.tobytes(), q)
         if self._last is None or self._last[0] != key or self._settle:
             y = z[:-1]
@@ -181,17 +171,14 @@ class SpecialCurve:
         here = self._at(z, q)
         now = np.append(here.r, here.g)
         at = np.append(z, q)
-        last = self._slopes
         self._age += 1
-        if last is None or self._age <= _ANEW or self._age % _RENEWED == 0:
+        if self._slopes is None or self._age <= _ANEW or self._age % _RENEWED == 0:
             in_p, in_q, slope = self._differences(z, q, here)
         else:
-            in_p = last.in_p
-            in_q = last.in_q
-            moved = at - last.at
-            missed = here.g - last.g - float(last.slope @ moved)
-            slope = last.slope + missed * moved / float(moved @ moved)
-        self._slopes = Slopes(at, here.g, in_p, in_q, slope)
+            then, g, in_p, in_q, slope = self._slopes
+            moved = at - then
+            slope = slope + (here.g - g - float(slope @ moved)) * moved / float(moved @ moved)
+        self._slopes = (at, here.g, in_p, in_q, slope)
         full = np.vstack([np.column_stack([here.in_y, in_p]), slope[:-1]])
         return Linear(now, full, np.append(in_q, slope[-1]))
 

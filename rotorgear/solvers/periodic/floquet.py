@@ -16,10 +16,10 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.solvers.periodic.balance import pairs
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import Samples, answered
 from rotorgear.solvers.periodic.switches import Switches
+from rotorgear.solvers.time.contact_equilibrium import FAR, held_and_unheld
 from rotorgear.solvers.time.exponential import phi_functions
 
 # Instants whose tangents make the mean of a step.
@@ -30,7 +30,6 @@ _LEAST = 24
 # Share of a vector left without the motions R that is rounding.
 _ROUNDING = 1e-6
 _MOST = 120
-_FAR = 1e-2  # m or rad, by which a displacement is changed to see whether a law answers
 
 
 @dataclass(frozen=True)
@@ -55,13 +54,9 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
     R = plant.free
     n = M.shape[0]
     if n <= _ALL:
-        dense = M.toarray()
-        stiff = K.toarray()
-        w2, V = la.eigh(stiff, dense)
+        w2, V = la.eigh(K.toarray(), M.toarray())
         V = _free_of(V, R, M) if R.shape[1] else V
         count = n - R.shape[1]
-        highest = float(np.sqrt(max(w2[-1], 0.0)))
-        complete = True
     else:
         from rotorgear.solvers.eigen.eigen import lowest_modes
 
@@ -74,20 +69,18 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
             wanted = min(2 * wanted, _MOST, n)
         V = np.asarray(found.vectors[:, found.rigid_count :])
         count = V.shape[1]
-        highest = float(np.sqrt(max(w2[-1], 0.0)))
         V = _free_of(np.hstack([V, plant.static.X]), R, M)
-        complete = False
+    highest = float(np.sqrt(max(w2[-1], 0.0)))
+    complete = n <= _ALL
     if not R.shape[1] or not _tied(plant, R):
         return ModalBasis(V, complete, highest, count)
     # First those of the motions R that no law answers with a force wherever they are, then the others.
     m = plant.m
-    moved = np.vstack([np.zeros((1, m)), _FAR * np.eye(m), -_FAR * np.eye(m)])
+    moved = np.vstack([np.zeros((1, m)), FAR * np.eye(m), -FAR * np.eye(m)])
     F = answered(np.zeros(len(moved)), moved, np.zeros_like(moved), plant.forces, plant.speed).F
     acts = np.any(F[0] != F, axis=1)[1:].reshape(2, m).any(axis=0)
-    _, sizes, right = np.linalg.svd(plant.B.T[acts] @ R)
-    held = int(np.count_nonzero(sizes > 1e-9 * np.linalg.norm(R)))
-    unheld = R @ right[held:].T
-    return ModalBasis(np.hstack([unheld, R @ right[:held].T, V]), complete, highest, count, unheld.shape[1])
+    held, unheld = held_and_unheld(plant.B.T[acts] @ R, R)
+    return ModalBasis(np.hstack([unheld, held, V]), complete, highest, count, unheld.shape[1])
 
 
 def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
@@ -119,13 +112,13 @@ def _tied(plant: Plant, R: np.ndarray) -> bool:
     loose = max(np.abs(D - own).max(initial=0.0), np.abs(other - own_other).max(initial=0.0)) > 1e-9 * scale * size
     # A torque that does not depend on the motion moves nothing else.
     now = answered(np.zeros(1), np.zeros((1, plant.m)), np.zeros((1, plant.m)), plant.forces, plant.speed)
-    a, b, flat = pairs(plant.forces.first)
+    a, b = plant.forces.places
     felt = np.zeros(plant.m, bool)
     for tangent, reference in (
         (now.Kd, plant.forces.reference_stiffness),
         (now.Kv, plant.forces.reference_damping),
     ):
-        np.logical_or.at(felt, b, (tangent[0, flat] != 0.0) | (reference[a, b] != 0.0))
+        np.logical_or.at(felt, b, (tangent[0] != 0.0) | (reference[a, b] != 0.0))
     seen = np.abs(plant.B.T @ R).max(axis=1, initial=0.0) * felt
     return bool(loose or seen.max(initial=0.0) > 1e-9 * np.abs(plant.B).max(initial=0.0) * size)
 
@@ -226,14 +219,14 @@ def _means(plant: Plant, fine: Samples, switches: Switches) -> np.ndarray:
     N = len(fine.t) // FINER
     cells = np.floor(switches.phase / switches.spacing).astype(int)
     missed = (0.5 - switches.theta)[:, None]
-    a, b, flat = pairs(plant.forces.first)
+    a, b = plant.forces.places
     S = np.zeros((N, m, 2 * m))
     for place, reference, tangent, jump in (
         (0, plant.forces.reference_stiffness, fine.Kd, switches.in_d),
         (m, plant.forces.reference_damping, fine.Kv, switches.in_v),
     ):
-        values = reference[a, b] - tangent[:, flat]
+        values = reference[a, b] - tangent
         ends = 0.5 * (values + np.roll(values, -1, axis=0))
-        np.add.at(ends, cells, missed * jump[:, flat])
+        np.add.at(ends, cells, missed * jump)
         S[:, a, place + b] = ends.reshape(N, FINER, -1).mean(axis=1)
     return S

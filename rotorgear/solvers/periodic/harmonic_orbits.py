@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.solvers.periodic.arclength import Linear
-from rotorgear.solvers.periodic.balance import Grid, balance, coefficients, samples_of, synthesised, unknowns
+from rotorgear.solvers.periodic.balance import HarmonicGrid, balance, coefficients, samples_of, synthesised, unknowns
 from rotorgear.solvers.periodic.floquet import FINER, ModalBasis, basis_of, multipliers
 from rotorgear.solvers.periodic.plant import Plant, PlantAt
 from rotorgear.solvers.periodic.receptances import Receptances
-from rotorgear.solvers.periodic.samples import Cycle
+from rotorgear.solvers.periodic.samples import MotionCycle, answered, spectrum
 from rotorgear.solvers.periodic.switches import switches_of
 
 # Step of a difference in the parameter, as a share of the range.
@@ -34,15 +34,14 @@ class HarmonicOrbits:
     method = "harmonic balance"
 
     def __init__(
-        self, plant_at: PlantAt, grid: Grid, scale: np.ndarray, receptances: Receptances | None = None
+        self, plant_at: PlantAt, grid: HarmonicGrid, scale: np.ndarray, receptances: Receptances | None = None
     ) -> None:
         self._plant_at = plant_at
         self.grid = grid
         self.scale = scale
         self._receptances = receptances or Receptances(grid.harmonics, grid.order)
-        # Receptances (H + 1, m, m) at values settled on, and the watched displacements (H, p, m) of unit forces there.
+        # Receptances (H + 1, m, m) at values that are kept, and the watched displacements (H, p, m) of unit forces there.
         self._kept: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self._last: tuple[bytes, float, np.ndarray] | None = None
         self._basis: ModalBasis | None = None
         self._basis_of: Plant | None = None
 
@@ -58,11 +57,11 @@ class HarmonicOrbits:
         plant = self._plant_at(p)
         own = self._receptances
         if own.holds_for(plant, p):
-            self._settle(p, own.near(plant), own.watched(plant))
+            self._keep(p, own.near(plant), own.watched(plant))
         else:
             self._solve_at(p)
 
-    def _settle(self, p: float, R: np.ndarray, watched: np.ndarray) -> None:
+    def _keep(self, p: float, R: np.ndarray, watched: np.ndarray) -> None:
         if len(self._kept) > _MOST_KEPT:
             self._kept.clear()
         self._kept[p] = (R, watched)
@@ -71,7 +70,7 @@ class HarmonicOrbits:
         """Displacements (H, n, m) of unit local forces at a value."""
         plant = self._plant_at(p)
         X = self._receptances.exact(plant, p)[:, :, : plant.m]
-        self._settle(p, self._receptances.with_static(plant, plant.B.T @ X), plant.watched.T @ X)
+        self._keep(p, self._receptances.with_static(plant, plant.B.T @ X), plant.watched.T @ X)
         return X
 
     def _receptance(self, p: float) -> np.ndarray:
@@ -90,59 +89,46 @@ class HarmonicOrbits:
         return coefficients(y, self.grid, self.scale.size) * self.scale
 
     def unknowns(self, c: np.ndarray) -> np.ndarray:
-        """Unknowns of coefficients."""
-        return unknowns(c / self.scale)
+        """Unknowns of coefficients (h, m): harmonics that these do not have are zero."""
+        wide = np.zeros((self.grid.harmonics + 1, c.shape[1]), complex)
+        wide[: len(c)] = c
+        return unknowns(wide / self.scale)
 
     def start(self, p: float) -> np.ndarray:
         """Unknowns of the static state at a value."""
-        plant = self._plant_at(p)
-        c = np.zeros((self.grid.harmonics + 1, plant.m), complex)
-        c[0] = static_displacements(plant)
-        return self.unknowns(c)
+        return self.unknowns(static_displacements(self._plant_at(p))[None])
 
     def from_samples(self, d: np.ndarray) -> np.ndarray:
         """Unknowns of displacements (N, m) over a period."""
-        c = np.fft.rfft(d, axis=0)[: self.grid.harmonics + 1] / len(d)
-        c[1:] *= 2.0
-        full = np.zeros((self.grid.harmonics + 1, d.shape[1]), complex)
-        full[: len(c)] = c
-        return self.unknowns(full)
+        return self.unknowns(spectrum(d, self.grid.harmonics))
 
     def residual(self, y: np.ndarray, p: float) -> np.ndarray:
         """c - d0 - R u over the scale."""
-        plant = self._plant_at(p)
-        c = self.coefficients(y)
-        found = balance(c, plant, self.grid, tangents=False)
-        return self._rest(c, plant, self._receptance(p), found.u)
+        return self._rest(self.coefficients(y), self._plant_at(p), self._receptance(p))
 
-    def _rest(self, c: np.ndarray, plant: Plant, R: np.ndarray, u: np.ndarray) -> np.ndarray:
+    def _rest(self, c: np.ndarray, plant: Plant, R: np.ndarray, u: np.ndarray | None = None) -> np.ndarray:
+        """The residual of coefficients c with receptances R; u (H + 1, m) where it is known."""
+        u = balance(c, plant, self.grid, tangents=False)[0] if u is None else u
         rest = c - np.einsum("hab,hb->ha", R, u)
         rest[0] -= plant.static.d
         return unknowns(rest / self.scale)
 
     def linear(self, y: np.ndarray, p: float) -> Linear:
         """The residual and its derivatives; that by the parameter by a difference."""
-        plant = self._plant_at(p)
         c = self.coefficients(y)
-        R = self._receptance(p)
-        found = balance(c, plant, self.grid)
-        rest = self._rest(c, plant, R, found.u)
+        residual, in_y = self.values(y, p)
         # Between exact solutions the rational form is smooth: both ends of the difference come from it.
-        ends = [self._smooth_rest(c, value) for value in (p - _DIFFERENCE, p + _DIFFERENCE)]
-        return Linear(rest, self._derivative(R, found.tangent), (ends[1] - ends[0]) / (2.0 * _DIFFERENCE))
-
-    def _smooth_rest(self, c: np.ndarray, p: float) -> np.ndarray:
-        plant = self._plant_at(p)
-        u = balance(c, plant, self.grid, tangents=False).u
-        return self._rest(c, plant, self._receptances.near(plant), u)
+        plants = (self._plant_at(value) for value in (p - _DIFFERENCE, p + _DIFFERENCE))
+        before, after = (self._rest(c, plant, self._receptances.near(plant)) for plant in plants)
+        return Linear(residual, in_y, (after - before) / (2.0 * _DIFFERENCE))
 
     def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """The residual and its derivative by y; smooth ones by receptances between exact ones, for differences in p."""
         plant = self._plant_at(p)
         c = self.coefficients(y)
         R = self._receptances.near(plant) if smooth else self._receptance(p)
-        found = balance(c, plant, self.grid)
-        return self._rest(c, plant, R, found.u), self._derivative(R, found.tangent)
+        u, tangent = balance(c, plant, self.grid)
+        return self._rest(c, plant, R, u), self._derivative(R, tangent)
 
     def _derivative(self, R: np.ndarray, tangent: np.ndarray) -> np.ndarray:
         H = self.grid.harmonics
@@ -156,7 +142,7 @@ class HarmonicOrbits:
 
     def _modes(self, plant: Plant) -> ModalBasis:
         """The basis of the map over a period: that of the last plant where inertia and stiffness are the same."""
-        from rotorgear.solvers.time.local_system import acceleration
+        from rotorgear.solvers.time.local_system import contact_rates
 
         if self._basis is None or self._basis_of is None or self._basis_of.K is not plant.K:
             contact = plant.forces.reference_stiffness
@@ -165,9 +151,7 @@ class HarmonicOrbits:
             alive = np.linalg.eigvalsh(0.5 * (R + R.T)).max(initial=0.0)
             w = self.grid.frequency(plant.speed)
             # The highest frequency at which a contact alone would vibrate on the inertia it meets.
-            k = np.diag(contact) if alive > 0.0 else np.zeros(plant.m)
-            squares = [k[j] * float(b @ acceleration(plant.M, b)) for j, b in enumerate(plant.B.T) if k[j] > 0.0]
-            own = float(np.sqrt(max(squares, default=0.0)))
+            own = float(contact_rates(plant.M, plant.B, contact).max(initial=0.0)) if alive > 0.0 else 0.0
             self._basis = basis_of(plant, max(_BASES * w, _CONTACTS * own))
             self._basis_of = plant
         return self._basis
@@ -184,14 +168,14 @@ class HarmonicOrbits:
         switches = switches_of(c, fine, plant, self.grid.frequency(plant.speed))
         return multipliers(plant, self._modes(plant), fine, switches)
 
-    def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> Cycle:
+    def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> MotionCycle:
         """A period of a solution; `prepare_at` has been at its value."""
         plant = self._plant_at(p)
         grid = self.grid
         c = self.coefficients(y)
         self.prepare_at(p)
         moved = self._kept[p][1]
-        u = balance(c, plant, grid, tangents=False).u
+        u, _ = balance(c, plant, grid, tangents=False)
         W = plant.watched
         seen = np.zeros((grid.harmonics + 1, W.shape[1]), complex)
         seen[0] = W.T @ (plant.static.q + plant.static.X @ u[0].real)
@@ -202,13 +186,13 @@ class HarmonicOrbits:
         laws = plant.forces
         turn = 1j * w * np.arange(grid.harmonics + 1)[:, None]
         force = c @ laws.reference_stiffness.T + turn * (c @ laws.reference_damping.T) - u
-        return Cycle(2.0 * np.pi / w, samples_of(c, plant, grid, N), *synthesised(seen, w, N), c, force)
+        return MotionCycle(2.0 * np.pi / w, samples_of(c, plant, grid, N), *synthesised(seen, w, N), c, force)
 
     def state(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and velocities (n,) of a solution at the begin of its period."""
         X = self._solve_at(p)
         plant = self._plant_at(p)
-        u = balance(self.coefficients(y), plant, self.grid, tangents=False).u
+        u, _ = balance(self.coefficients(y), plant, self.grid, tangents=False)
         q = np.einsum("hnm,hm->hn", X, u[1:])
         turn = 1j * self.grid.frequency(plant.speed) * np.arange(1, len(u))[:, None]
         static = plant.static.q + plant.static.X @ u[0].real
@@ -216,24 +200,15 @@ class HarmonicOrbits:
 
     def finer(self) -> HarmonicOrbits:
         """The same motions with twice the harmonics and instants."""
-        grid = replace(self.grid, harmonics=2 * self.grid.harmonics, instants=2 * self.grid.instants)
-        return HarmonicOrbits(self._plant_at, grid, self.scale)
+        return HarmonicOrbits(self._plant_at, self.grid.doubled, self.scale)
 
     def lifted(self, y: np.ndarray, finer: HarmonicOrbits) -> np.ndarray:
-        """The unknowns of a motion in the finer equations: harmonics that these do not have are zero."""
-        c = self.coefficients(y)
-        wide = np.zeros((finer.grid.harmonics + 1, c.shape[1]), complex)
-        wide[: len(c)] = c
-        return finer.unknowns(wide)
+        """The unknowns of a motion in the finer equations."""
+        return finer.unknowns(self.coefficients(y))
 
     def doubled(self) -> HarmonicOrbits:
         """The same with twice the period."""
-        grid = replace(
-            self.grid,
-            harmonics=2 * self.grid.harmonics,
-            instants=2 * self.grid.instants,
-            order=0.5 * self.grid.order,
-        )
+        grid = replace(self.grid.doubled, order=0.5 * self.grid.order)
         if self._receptances.twice is None:
             self._receptances.twice = Receptances(grid.harmonics, grid.order)
         return HarmonicOrbits(self._plant_at, grid, self.scale, self._receptances.twice)
@@ -249,24 +224,13 @@ class HarmonicOrbits:
 def static_displacements(plant: Plant) -> np.ndarray:
     """Local displacements (m,) in the equilibrium of the mean laws."""
     from rotorgear.solvers.sparse.newton import local_equilibrium
-    from rotorgear.solvers.time.local_forces import gather
 
-    mean = replace(
-        gather(tuple(law.mean() for law in plant.forces.laws)),
-        reference_stiffness=plant.forces.reference_stiffness,
-        reference_damping=plant.forces.reference_damping,
-    )
+    mean = plant.forces.mean
     static = plant.static
 
     def tangent(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        from rotorgear.solvers.periodic.balance import pairs
-        from rotorgear.solvers.periodic.samples import answered
-
         now = answered(np.zeros(1), d[None], np.zeros((1, d.size)), mean, plant.speed)
-        K = np.zeros((d.size, d.size))
-        a, b, flat = pairs(mean.first)
-        K[a, b] = now.Kd[0, flat]
-        return now.F[0], K
+        return now.F[0], mean.matrix(now.Kd[0])
 
     found = local_equilibrium(static.d, static.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
     return np.asarray(found.d if found.converged else static.d)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from rotorgear.solvers.time.arguments import Answer
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import force_all, schedule_all
+from rotorgear.solvers.time.kernel_contact import contact_work, force_all, schedule_all
 from rotorgear.solvers.time.kernel_time import ENERGIES, SIDE
 
 # Changes of piece that are looked for in one cell.
@@ -25,39 +25,14 @@ class Harmonic(NamedTuple):
     spacing: float
 
 
-class PieceWork(NamedTuple):
-    """d, v (m,), state and answer of the laws at one instant."""
-
-    d: np.ndarray
-    v: np.ndarray
-    state: np.ndarray
-    answer: Any
-
-
-class FoundSwitches(NamedTuple):
-    """Room for switches: cell and law, theta (r,), answers F (4, r, m), Kd and Kv (4, r, blocks) beside."""
-
-    cell: np.ndarray
-    law: np.ndarray
-    theta: np.ndarray
-    F: np.ndarray
-    Kd: np.ndarray
-    Kv: np.ndarray
-
-
 @compiled
-def laws_at(laws, instants, answer):
-    """Fill the answer of all laws, r rows, at r instants with d and v (r, m)."""
+def laws_at(laws, speed, t, d, v, answer):
+    """Fill the answer of all laws, r rows, at times t (r,) with d and v (r, m), at a constant speed of the reference."""
     state = np.zeros(laws.state_first[-1])
-    for i in range(instants.angle.size):
-        schedule_all(laws, instants.angle[i], instants.speed[i], instants.time[i], state)
-        force_all(
-            laws,
-            state,
-            instants.d[i],
-            instants.v[i],
-            Answer(answer.F[i], answer.Kd[i], answer.Kv[i], answer.energy[i]),
-        )
+    for i in range(t.size):
+        schedule_all(laws, speed * t[i], speed, t[i], state)
+        row = Answer(answer.F[i], answer.Kd[i], answer.Kv[i], answer.energy[i])
+        force_all(laws, state, d[i], v[i], row)
 
 
 @compiled(entry=False)
@@ -98,20 +73,21 @@ def law_at(laws, motion, phase, law, full, work):
 
 
 @compiled
-def switches_in(laws, motion, cells, index, full, bisections, beside, found):
+def switches_in(laws, motion, cells, index, full, bisections, beside):
     """Find where law index[e] comes from one piece to another in each cell, one after the other, and its answers beside.
 
-    `found` is filled: cell and law of each switch, theta in the cell, and F, Kd and Kv at -1, -2, 1 and 2 times `beside` from it.
-    Returns the number of switches; no more than there is room for.
+    Returns:
+        Of e switches, MOST_IN_CELL a cell at most: cell and law, theta in the cell (e,), and the answers at -1, -2, 1 and 2 times
+        `beside` from it, F (4, e, m), Kd and Kv (4, e, blocks).
     """
-    m = motion.real.shape[1]
-    blocks = laws.block_first[-1]
-    work = PieceWork(
-        np.zeros(m),
-        np.zeros(m),
-        np.zeros(laws.state_first[-1]),
-        Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size)),
-    )
+    room = MOST_IN_CELL * cells.size
+    cell = np.zeros(room, np.int64)
+    switching = np.zeros(room, np.int64)
+    place = np.zeros(room)
+    F = np.zeros((4, room, laws.first[-1]))
+    Kd = np.zeros((4, room, laws.block_first[-1]))
+    Kv = np.zeros((4, room, laws.block_first[-1]))
+    work = contact_work(laws)
     number = 0
     for i in range(cells.size):
         law = index[i]
@@ -120,7 +96,7 @@ def switches_in(laws, motion, cells, index, full, bisections, beside, found):
         last = law_at(laws, motion, begin + motion.spacing, law, full[law], work)
         low = 0.0
         for _ in range(MOST_IN_CELL):
-            if piece == last or number == found.theta.size:
+            if piece == last:
                 break
             high = 1.0
             following = last
@@ -133,16 +109,16 @@ def switches_in(laws, motion, cells, index, full, bisections, beside, found):
                     high = middle
                     following = now
             theta = 0.5 * (low + high)
-            found.cell[number] = cells[i]
-            found.law[number] = law
-            found.theta[number] = theta
+            cell[number] = cells[i]
+            switching[number] = law
+            place[number] = theta
             for k in range(4):
                 away = (-1.0, -2.0, 1.0, 2.0)[k] * beside
                 law_at(laws, motion, begin + (theta + away) * motion.spacing, law, full[law], work)
-                found.F[k, number] = work.answer.F
-                found.Kd[k, number] = work.answer.Kd
-                found.Kv[k, number] = work.answer.Kv
+                F[k, number] = work.answer.F
+                Kd[k, number] = work.answer.Kd
+                Kv[k, number] = work.answer.Kv
             number += 1
             piece = following
             low = high
-    return number
+    return cell[:number], switching[:number], place[:number], F[:, :number], Kd[:, :number], Kv[:, :number]

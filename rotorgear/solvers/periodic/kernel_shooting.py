@@ -10,17 +10,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.time.arguments import Answer
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import ENERGIES, force_all, schedule_all
+from rotorgear.solvers.time.kernel_contact import contact_work, force_all, schedule_all
 from rotorgear.solvers.time.kernel_time import set_row
 
 _STAGES = 7
 _SMALLEST = 1e-13
+# Matrix, nodes and differences of both orders of the method.
+_A = np.zeros((_STAGES, _STAGES))
+_A[1, :1] = (1 / 5,)
+_A[2, :2] = (3 / 40, 9 / 40)
+_A[3, :3] = (44 / 45, -56 / 15, 32 / 9)
+_A[4, :4] = (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729)
+_A[5, :5] = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
+_A[6, :6] = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
+_NODE = np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0])
+_E = _A[6] - np.array([5179 / 57600, 0.0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40])
 
 
 @compiled(entry=False)
-def rates(small, laws, tau, x, work, out):
+def rates(small, laws, tau, x, work, push, out):
     """Rates (2 n, 1 + c) of state and tangents x over tau; the first column is the state."""
     n = small.K.shape[0]
     m = small.C.shape[1]
@@ -42,7 +51,7 @@ def rates(small, laws, tau, x, work, out):
     for c in range(columns):
         if c == 0:
             for i in range(m):
-                work.push[i] = answer.F[i]
+                push[i] = answer.F[i]
         else:
             for law in range(laws.kind.size):
                 first = laws.first[law]
@@ -57,26 +66,25 @@ def rates(small, laws, tau, x, work, out):
                             a += small.E[first + r, j] * x[j, c]
                             b += small.E[first + r, j] * x[n + j, c]
                         total += answer.Kd[block + i * k + r] * a + answer.Kv[block + i * k + r] * small.w * b
-                    work.push[first + i] = total
+                    push[first + i] = total
         for i in range(n):
             total = small.f[i] if c == 0 else 0.0
             for j in range(n):
                 total -= small.K[i, j] * x[j, c] + small.D[i, j] * x[n + j, c]
             for j in range(m):
-                total -= small.C[i, j] * work.push[j]
+                total -= small.C[i, j] * push[j]
             out[i, c] = x[n + i, c]
             out[n + i, c] = total
 
 
 @compiled
-def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
+def flow(small, laws, x, outputs, tolerance, kept, most):
     """Advance state and tangents x (2 n, 1 + c) in place through times `outputs`, and keep the state there.
 
     Returns the steps, or -1 where they are too many or numbers are none.
     """
-    A = tableau.A
-    e = tableau.e
-    node = tableau.c
+    work = contact_work(laws)
+    push = np.zeros(laws.first[-1])
     rows, columns = x.shape
     k = np.zeros((_STAGES, rows, columns))
     trial = np.empty((rows, columns))
@@ -85,7 +93,7 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
     set_row(kept, 0, x[:, 0])
     number = 1
     h = 0.01
-    rates(small, laws, tau, x, work, k[0])
+    rates(small, laws, tau, x, work, push, k[0])
     steps = 0
     while number < outputs.size:
         if steps > most:
@@ -98,9 +106,9 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
                 for c in range(columns):
                     total = 0.0
                     for s in range(stage):
-                        total += A[stage, s] * k[s, i, c]
+                        total += _A[stage, s] * k[s, i, c]
                     trial[i, c] = x[i, c] + step * total
-            rates(small, laws, tau + node[stage] * step, trial, work, k[stage])
+            rates(small, laws, tau + _NODE[stage] * step, trial, work, push, k[stage])
         # The last stage is at the end of the step: first same as last.
         error = 0.0
         for c in range(columns):
@@ -109,7 +117,7 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
             for i in range(rows):
                 total = 0.0
                 for s in range(_STAGES):
-                    total += e[s] * k[s, i, c]
+                    total += _E[s] * k[s, i, c]
                 off = max(off, abs(step * total))
                 size = max(size, abs(trial[i, c]))
             error = max(error, off / size)
@@ -132,9 +140,3 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
         else:
             h = step * max(0.1, 0.9 * scaled ** (-0.2))
     return steps
-
-
-@compiled
-def shooting_answer(m, blocks, laws):
-    """Arrays for the laws' answers."""
-    return Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws))

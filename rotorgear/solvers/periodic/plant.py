@@ -25,10 +25,10 @@ _FREE = 1e-9
 
 @dataclass(frozen=True)
 class Plant:
-    """One value of a parameter: M, C, K, G sparse (n, n), B (n, m), load f (n,), laws, speed in rad/s, watched W (n, p).
+    """The structure at one value of a parameter.
 
-    `C` and `gyroscopic` make D = C + speed G; G is None where nothing gyrates. `free`: (n, r), M-orthonormal motions without
-    strain.
+    M, C, K, G sparse (n, n), B (n, m), load f (n,), laws, speed in rad/s, watched W (n, p). `C` and `gyroscopic` make
+    D = C + speed G; G is None where nothing gyrates. `free`: (n, r), M-orthonormal motions without strain.
     """
 
     M: sp.csc_array
@@ -105,8 +105,7 @@ class Plants:
             self._places = system.B
         else:
             C = old.C if _alike(old.C, C) else C
-            G = system.G
-            G = old.gyroscopic if G is not None and old.gyroscopic is not None and _alike(old.gyroscopic, G) else G
+            G = old.gyroscopic if _alike(old.gyroscopic, system.G) else system.G
             plant = Plant(
                 old.M, C, G, old.K, old.B, system.load, system.forces, speed, system.watched_vectors, old.free
             )
@@ -118,7 +117,9 @@ class Plants:
         return plant
 
 
-def _alike(A: sp.csc_array, B: sp.csc_array) -> bool:
+def _alike(A: sp.csc_array | None, B: sp.csc_array | None) -> bool:
     if A is B:
         return True
+    if A is None or B is None:
+        return False
     return A.nnz == B.nnz and np.array_equal(A.indices, B.indices) and np.array_equal(A.data, B.data)

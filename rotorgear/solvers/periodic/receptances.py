@@ -40,7 +40,6 @@ class Receptances:
         # By the solutions left out and whether watched places are in it.
         self._bases: dict[tuple[int, bool], tuple[np.ndarray, np.ndarray]] = {}
         self._small: dict[tuple[int, bool], tuple[Plant, list[np.ndarray], np.ndarray | None]] = {}
-        self.exact_solutions = 0
         # Those of half the frequencies, where a motion of twice the period asked for them.
         self.twice: Receptances | None = None
 
@@ -61,7 +60,6 @@ class Receptances:
         w = self.frequencies(plant)
         B = np.hstack([plant.B, plant.watched]).astype(complex)
         n, m = B.shape
-        self.exact_solutions += 1
         X = np.empty((len(w), n, m), complex)
         Y = np.empty_like(X)
         if n <= _DENSE or _full(plant.D):

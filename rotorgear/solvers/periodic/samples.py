@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.solvers.time.arguments import Answer, Instants, Laws
+from rotorgear.solvers.time.arguments import Answer, Laws
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.statistics import PeriodicCurve
 
@@ -52,17 +52,12 @@ def answered(t: np.ndarray, d: np.ndarray, v: np.ndarray, forces: LocalForces, s
     d = np.ascontiguousarray(d, dtype=float)
     v = np.ascontiguousarray(v, dtype=float)
     t = np.ascontiguousarray(t, dtype=float)
-    laws_at(arguments_of(forces), Instants(speed * t, np.full(r, speed), t, d, v), answer)
+    laws_at(arguments_of(forces), speed, t, d, v, answer)
     return Samples(t, d, v, answer.F, answer.Kd, answer.Kv, answer.energy.reshape(r, laws, 4))
 
 
-def sampled(d: np.ndarray, v: np.ndarray, forces: LocalForces, speed: float, period: float) -> Samples:
-    """The answers at equally spaced instants of a period."""
-    return answered(period * np.arange(len(d)) / len(d), d, v, forces, speed)
-
-
 @dataclass(frozen=True)
-class Cycle:
+class MotionCycle:
     """A period T in s; the motion at N instants; watched displacements and rates (N, p); coefficients of d and F (H + 1, m)."""
 
     period: float

@@ -16,7 +16,7 @@ from rotorgear.solvers.periodic.arclength import Linear
 from rotorgear.solvers.periodic.floquet import basis_of, sorted_by_size
 from rotorgear.solvers.periodic.harmonic_orbits import static_displacements
 from rotorgear.solvers.periodic.plant import Plant, PlantAt
-from rotorgear.solvers.periodic.samples import Cycle, answered, arguments_of, spectrum
+from rotorgear.solvers.periodic.samples import MotionCycle, answered, arguments_of, spectrum
 
 # Relative tolerance of the flow and its derivative, and the one that tells its error: no less, for rounding.
 TOLERANCE = 1e-11
@@ -38,37 +38,6 @@ class Small(NamedTuple):
     f: np.ndarray
     w: float
     speed: float
-
-
-class Work(NamedTuple):
-    """Arrays of the kernel: state of the laws, d, v, push (m,), answer."""
-
-    state: np.ndarray
-    d: np.ndarray
-    v: np.ndarray
-    push: np.ndarray
-    answer: object
-
-
-class Tableau(NamedTuple):
-    """Of a Runge-Kutta method: matrix, weights, differences of both orders, nodes."""
-
-    A: np.ndarray
-    b: np.ndarray
-    e: np.ndarray
-    c: np.ndarray
-
-
-def _dormand_prince() -> Tableau:
-    A = np.zeros((7, 7))
-    A[1, :1] = (1 / 5,)
-    A[2, :2] = (3 / 40, 9 / 40)
-    A[3, :3] = (44 / 45, -56 / 15, 32 / 9)
-    A[4, :4] = (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729)
-    A[5, :5] = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
-    A[6, :6] = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
-    fourth = np.array([5179 / 57600, 0.0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40])
-    return Tableau(A, A[6].copy(), A[6] - fourth, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]))
 
 
 class ShootingOrbits:
@@ -95,7 +64,6 @@ class ShootingOrbits:
         self.instants = instants
         self.periods = periods
         self.tolerance = TOLERANCE
-        self._tableau = _dormand_prince()
         first = plant_at(0.5)
         basis = basis_of(first, np.inf)
         self._V = basis.V
@@ -103,7 +71,7 @@ class ShootingOrbits:
         moved = np.abs(first.B.T @ self._V)
         used = moved.max(axis=1) > 0.0
         self._size = float(np.median(scale[used] / moved[used].max(axis=1))) if np.any(used) else 1.0
-        self._known: dict[tuple[bytes, float, int], tuple[np.ndarray, np.ndarray]] = {}
+        self._known: dict[tuple[bytes, float], np.ndarray] = {}
 
     @property
     def size(self) -> int:
@@ -134,75 +102,62 @@ class ShootingOrbits:
             plant.speed,
         )
 
-    def _run(self, y: np.ndarray, p: float, columns: int, outputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """State and tangents at the end, (2 n, 1 + columns), and the states at the outputs (r, 2 n)."""
-        from rotorgear.solvers.periodic.kernel_shooting import flow, shooting_answer
+    def _run(
+        self, y: np.ndarray, p: float, outputs: np.ndarray, *, tangents: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """State at the end beside its tangents, (2 n, 1 + 2 n) or (2 n, 1), and the states at the outputs (r, 2 n)."""
+        from rotorgear.solvers.periodic.kernel_shooting import flow
 
         plant = self._plant_at(p)
-        laws = plant.forces
-        small = self._small(plant)
-        rows = self.size
-        x = np.zeros((rows, 1 + columns))
-        x[:, 0] = y
-        if columns:
-            x[:, 1:] = np.eye(rows)
-        kept = np.zeros((len(outputs), rows))
-        blocks = int(laws.block_first[-1])
-        work = Work(
-            np.zeros(int(laws.state_first[-1])),
-            np.zeros(plant.m),
-            np.zeros(plant.m),
-            np.zeros(plant.m),
-            shooting_answer(plant.m, blocks, len(laws.laws)),
-        )
-        steps = flow(
-            small, arguments_of(laws), self._tableau, x, work, outputs, self.tolerance, kept, _MOST_STEPS * self.periods
-        )
+        x = np.column_stack([y, np.eye(self.size)]) if tangents else y[:, None].copy()
+        kept = np.zeros((len(outputs), self.size))
+        most = _MOST_STEPS * self.periods
+        steps = flow(self._small(plant), arguments_of(plant.forces), x, outputs, self.tolerance, kept, most)
         if steps < 0 or not np.all(np.isfinite(x)):
             raise ConvergenceError("the motion over a period can't be integrated")
         return x, kept
 
-    def _mapped(self, y: np.ndarray, p: float, columns: int) -> np.ndarray:
-        key = (y.tobytes(), p, columns)
+    def _mapped(self, y: np.ndarray, p: float) -> np.ndarray:
+        """The state after a period beside its derivative by the one at its begin, (2 n, 1 + 2 n)."""
+        key = (y.tobytes(), p)
         if key not in self._known:
-            found = self._run(y, p, columns, np.array([0.0, 2.0 * np.pi * self.periods]))[0]
             if len(self._known) > 16:
                 self._known.clear()
-            self._known[key] = (found[:, 0], found[:, 1:])
-        return np.column_stack(self._known[key])
+            self._known[key] = self._run(y, p, self._period, tangents=True)[0]
+        return self._known[key]
+
+    @property
+    def _period(self) -> np.ndarray:
+        return np.array([0.0, 2.0 * np.pi * self.periods])
 
     def residual(self, y: np.ndarray, p: float) -> np.ndarray:
         """phi_T(x) - x."""
-        return self._closed(self._mapped(y, p, self.size)[:, 0] - y, y)
+        return self._closed(self._mapped(y, p)[:, 0] - y, y)
 
     def linear(self, y: np.ndarray, p: float) -> Linear:
         """The residual, its derivative by the unknowns, and the one by the parameter, by a central difference."""
-        here = self._mapped(y, p, self.size)
-        ends = [self._run(y, p + by, 0, np.array([0.0, 2.0 * np.pi * self.periods]))[0][:, 0] for by in _BOTH]
-        slope = (ends[1] - ends[0]) / (2.0 * _DIFFERENCE)
-        slope[self._turning] = slope[: self._unheld]
-        slope[: self._unheld] = 0.0
-        return Linear(*self._equations(here, y), slope)
+        residual, in_y = self.values(y, p)
+        before, after = (self._run(y, p + by, self._period)[0][:, 0] for by in (-_DIFFERENCE, _DIFFERENCE))
+        slope = (after - before) / (2.0 * _DIFFERENCE)
+        return Linear(residual, in_y, self._closed(slope, np.zeros(self.size)))
 
-    @property
-    def _turning(self) -> slice:
-        """Velocities of the motions that nothing holds in their place."""
+    def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """The residual and its derivative by the unknowns; `smooth` changes nothing, for nothing is approximated."""
+        here = self._mapped(y, p)
+        one = np.eye(self.size)
+        return self._closed(here[:, 0] - y, y), self._closed(here[:, 1:] - one, one)
+
+    def _closed(self, change: np.ndarray, begin: np.ndarray) -> np.ndarray:
+        """The residual, or a derivative of it, from that of the change over a period, phi_T(x) - x, and of the begin x.
+
+        Motions that nothing holds in their place begin at zero and end there: these conditions stand where that place and its
+        rate would.
+        """
         n = self._V.shape[1]
-        return slice(n, n + self._unheld)
-
-    def _closed(self, change: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """The residual from the change over a period, phi_T(x) - x; of motions that nothing holds, where they begin and end."""
         closed = change.copy()
-        closed[self._turning] = change[: self._unheld]
-        closed[: self._unheld] = y[: self._unheld]
+        closed[n : n + self._unheld] = change[: self._unheld]
+        closed[: self._unheld] = begin[: self._unheld]
         return closed
-
-    def _equations(self, here: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The residual and its derivative from the mapped state with its tangents."""
-        J = here[:, 1:] - np.eye(self.size)
-        J[self._turning] = J[: self._unheld]
-        J[: self._unheld] = np.eye(self.size)[: self._unheld]
-        return self._closed(here[:, 0] - y, y), J
 
     def along(self, plant_at: PlantAt) -> ShootingOrbits:
         """The same for other plants of the same structure."""
@@ -222,17 +177,9 @@ class ShootingOrbits:
         """The unknowns of a motion in the finer equations: the same."""
         return y
 
-    def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """The residual and its derivative by the unknowns; `smooth` changes nothing, for nothing is approximated."""
-        return self._equations(self._mapped(y, p, self.size), y)
-
-    def monodromy(self, y: np.ndarray, p: float) -> np.ndarray:
-        """Derivative of the map over a period, (2 n, 2 n)."""
-        return np.asarray(self._mapped(y, p, self.size)[:, 1:])
-
     def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
         """Floquet multipliers of a solution, without those of 1 of motions that nothing holds in their place."""
-        return sorted_by_size(np.linalg.eigvals(self.monodromy(y, p)[self._unheld :, self._unheld :]))
+        return sorted_by_size(np.linalg.eigvals(self._mapped(y, p)[self._unheld :, 1 + self._unheld :]))
 
     def start(self, p: float) -> np.ndarray:
         """Unknowns of the static state at a value."""
@@ -250,18 +197,18 @@ class ShootingOrbits:
         own = np.linalg.solve(self._V.T @ (plant.M @ self._V), rows)
         return np.concatenate([own[:, 0] / self._size, own[:, 1] / (self._size * w)])
 
-    def motion(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
-        """Displacements and velocities (n,) of unknowns."""
+    def state(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and velocities (n,) of a solution at the begin of its period."""
         n = self._V.shape[1]
         w = self.order * abs(self._plant_at(p).speed)
         return self._V @ (self._size * y[:n]), self._V @ (self._size * w * y[n:])
 
-    def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> Cycle:
+    def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> MotionCycle:
         """A period of a solution."""
         plant = self._plant_at(p)
         N = (instants or self.instants) * self.periods
         outputs = 2.0 * np.pi * self.periods * np.arange(N + 1) / N
-        states = self._run(y, p, 0, outputs)[1][:-1]
+        states = self._run(y, p, outputs)[1][:-1]
         n = self._V.shape[1]
         w = self.order * abs(plant.speed)
         q = self._size * states[:, :n]
@@ -269,7 +216,7 @@ class ShootingOrbits:
         E = self._V.T @ plant.B
         at = answered(outputs[:-1] / w, q @ E, v @ E, plant.forces, plant.speed)
         H = self.harmonics * self.periods
-        return Cycle(
+        return MotionCycle(
             2.0 * np.pi * self.periods / w,
             at,
             q @ (self._V.T @ plant.watched),
@@ -285,6 +232,3 @@ class ShootingOrbits:
     def twice(self, y: np.ndarray, other: ShootingOrbits) -> np.ndarray:
         """The unknowns of one motion in the equations of twice its period: the same state."""
         return y.copy()
-
-
-_BOTH = (-_DIFFERENCE, _DIFFERENCE)

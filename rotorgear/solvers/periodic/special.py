@@ -8,6 +8,7 @@ is bracketed along the chord (Brent), each time on the branch itself. Seydel (20
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -59,7 +60,7 @@ class Special:
 
 
 def kinds_between(a: Certified, b: Certified) -> list[str]:
-    """What lies between two neighbours of a branch."""
+    """Kinds of special points between two neighbours of a branch."""
     found = []
     left = _outside(b.multipliers) - _outside(a.multipliers)
     if a.node.tangent[-1] * b.node.tangent[-1] < 0.0:
@@ -82,19 +83,19 @@ def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified 
     chord = b.node.z - a.node.z
     length = float(np.linalg.norm(chord))
     normal = chord / length
-    nodes: dict[float, Node] = {0.0: a.node, 1.0: b.node}
-    known: dict[float, Certified] = {0.0: a, 1.0: b}
 
+    @cache
     def node_at(share: float) -> Node:
-        if share not in nodes:
-            nodes[share] = corrected(orbits, a.node.z + share * chord, normal, normal)
-        return nodes[share]
+        if share in (0.0, 1.0):
+            return b.node if share else a.node
+        return corrected(orbits, a.node.z + share * chord, normal, normal)
 
+    @cache
     def certified(share: float) -> Certified:
-        if share not in known:
-            node = node_at(share)
-            known[share] = Certified(node, orbits.multipliers(node.y, node.p))
-        return known[share]
+        if share in (0.0, 1.0):
+            return b if share else a
+        node = node_at(share)
+        return Certified(node, orbits.multipliers(node.y, node.p))
 
     def test(share: float) -> float:
         if kind == FOLD:

@@ -41,25 +41,19 @@ class Switches:
     rate_in_d: np.ndarray
     rate_in_v: np.ndarray
 
-    def of_forces(self, harmonics: int, m: int) -> np.ndarray:
+    def of_forces(self, harmonics: int) -> np.ndarray:
         """What the mean of u e^{-i h w t} over the instants has too much, (H + 1, m)."""
-        if not self.phase.size:
-            return np.zeros((harmonics + 1, m), complex)
         return self._too_much(np.arange(harmonics + 1), self.force, self.rate)
 
-    def of_tangents(self, harmonics: int, flat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same for tangents in d and v, for h from -H to H, (2 H + 1, pairs) each."""
-        if not self.phase.size:
-            nothing = np.zeros((2 * harmonics + 1, flat.size), complex)
-            return nothing, nothing
+    def of_tangents(self, harmonics: int) -> tuple[np.ndarray, np.ndarray]:
+        """The same for tangents in d and v, for h from -H to H, (2 H + 1, blocks) each."""
         h = np.arange(-harmonics, harmonics + 1)
-        return (
-            self._too_much(h, self.in_d[:, flat], self.rate_in_d[:, flat]),
-            self._too_much(h, self.in_v[:, flat], self.rate_in_v[:, flat]),
-        )
+        return self._too_much(h, self.in_d, self.rate_in_d), self._too_much(h, self.in_v, self.rate_in_v)
 
     def _too_much(self, h: np.ndarray, jump: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Error of the mean of g e^{-i h p}, (len(h), k), of jumps of g and of its rate over phase (e, k)."""
+        if not self.phase.size:
+            return np.zeros((h.size, jump.shape[1]), complex)
         s = self.spacing
         turned = np.exp(-1j * np.outer(h, self.phase))
         first = (self.theta - 0.5)[:, None]
@@ -71,7 +65,7 @@ class Switches:
 
 def switches_of(c: np.ndarray, now: Samples, plant: Plant, w: float) -> Switches:
     """Find where laws come from one smooth piece to another between the instants of a motion with coefficients c (H + 1, m)."""
-    from rotorgear.solvers.periodic.kernel_instants import MOST_IN_CELL, FoundSwitches, Harmonic, switches_in
+    from rotorgear.solvers.periodic.kernel_instants import Harmonic, switches_in
 
     forces = plant.forces
     spacing = 2.0 * np.pi / len(now.t)
@@ -89,27 +83,16 @@ def switches_of(c: np.ndarray, now: Samples, plant: Plant, w: float) -> Switches
         nothing = np.zeros((0, m))
         tangents = np.zeros((0, blocks))
         return Switches(np.zeros(0), np.zeros(0), spacing, nothing, nothing, tangents, tangents, tangents, tangents)
-    room = MOST_IN_CELL * cells.size
-    found = FoundSwitches(
-        np.zeros(room, np.int64),
-        np.zeros(room, np.int64),
-        np.zeros(room),
-        np.zeros((4, room, m)),
-        np.zeros((4, room, blocks)),
-        np.zeros((4, room, blocks)),
-    )
     motion = Harmonic(np.ascontiguousarray(c.real), np.ascontiguousarray(c.imag), w, plant.speed, spacing)
-    e = switches_in(arguments_of(forces), motion, cells, laws, full, _BISECTIONS, _BESIDE, found)
-    theta = found.theta[:e]
-    law = found.law[:e]
+    cell, law, theta, F, Kd, Kv = switches_in(arguments_of(forces), motion, cells, laws, full, _BISECTIONS, _BESIDE)
     numbers = np.arange(len(forces.laws))
     own = np.repeat(numbers, np.diff(forces.first)) == law[:, None]
     own_block = np.repeat(numbers, np.diff(forces.block_first)) == law[:, None]
     step = _BESIDE * spacing
-    force, rate = _jumps(found.F[:, :e], own, step)
-    in_d, rate_in_d = _jumps(found.Kd[:, :e], own_block, step)
-    in_v, rate_in_v = _jumps(found.Kv[:, :e], own_block, step)
-    return Switches((found.cell[:e] + theta) * spacing, theta, spacing, force, rate, in_d, in_v, rate_in_d, rate_in_v)
+    force, rate = _jumps(F, own, step)
+    in_d, rate_in_d = _jumps(Kd, own_block, step)
+    in_v, rate_in_v = _jumps(Kv, own_block, step)
+    return Switches((cell + theta) * spacing, theta, spacing, force, rate, in_d, in_v, rate_in_d, rate_in_v)
 
 
 def _jumps(beside: np.ndarray, own: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:

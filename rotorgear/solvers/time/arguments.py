@@ -25,30 +25,13 @@ class Laws(NamedTuple):
     extents: np.ndarray
 
 
-class Instants(NamedTuple):
-    """r instants at which one law is evaluated: angle and speed of the reference and time (r,), d and v (r, k)."""
-
-    angle: np.ndarray
-    speed: np.ndarray
-    time: np.ndarray
-    d: np.ndarray
-    v: np.ndarray
-
-
 class Answer(NamedTuple):
-    """What laws answer: forces (m,), tangents in d and v (sum of k*k,) and energies (4 l,); of instants with r rows each."""
+    """What laws answer: forces (m,), tangents in d and v (sum of k*k,) and energies (4 l,); of r instants with r rows each."""
 
     F: np.ndarray
     Kd: np.ndarray
     Kv: np.ndarray
     energy: np.ndarray
-
-
-class Compliance(NamedTuple):
-    """What a local force of the step's end takes from d and v there: d = d_free - Ad F, v = v_free - Av F; (m, m)."""
-
-    Ad: np.ndarray
-    Av: np.ndarray
 
 
 class ContactWork(NamedTuple):
@@ -79,23 +62,6 @@ class ContactWork(NamedTuple):
     ended: Answer
 
 
-class Span(NamedTuple):
-    """`steps` steps of h seconds after the `begun` first ones, every `every`-th recorded."""
-
-    steps: int
-    every: int
-    begun: int
-    h: float
-
-
-class Turning(NamedTuple):
-    """Prescribed rotation of the reference: speeds and angles at times, (k,); see solvers/time/local_system.py."""
-
-    times: np.ndarray
-    speeds: np.ndarray
-    angles: np.ndarray
-
-
 class Gathered(NamedTuple):
     """Statistics of g quantities over the steps that count; see solvers/time/kernel_time.py.
 
@@ -113,8 +79,11 @@ class Gathered(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """What the local forces carry from step to step; see `State`."""
+    """What a run carries from step to step; see `MotionState`."""
 
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
     F: np.ndarray
     before: np.ndarray
     d: np.ndarray
@@ -125,155 +94,108 @@ class Carried(NamedTuple):
 
 
 class Kept(NamedTuple):
-    """r recorded steps: q, v, a (r, n), local d and F (r, m), energies of each law (r, l, 3): stored, put in, dissipated."""
+    """r recorded steps: the motion, local d and F (r, m), energies of each law (r, l, 3): stored, put in, dissipated.
 
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
+    The motion is q, v and a, (r, n) each; of the exponential integrator z (r, 2 nz), real parts first, r and r' (r, 2 nr), and
+    u (r, m).
+    """
+
+    motion: tuple[np.ndarray, ...]
     d: np.ndarray
     F: np.ndarray
     energy: np.ndarray
 
 
-class Weights(NamedTuple):
-    """The four numbers of a generalised-alpha method."""
-
-    am: float
-    af: float
-    beta: float
-    gamma: float
-
-
 class SparseRows(NamedTuple):
-    """Sparse matrix: row i has `value` at `column`, from first[i] to first[i + 1]."""
+    """Sparse matrix: row i has `value` at `column`, from first[i] to first[i + 1]; of one by columns, those of its transpose."""
 
     first: np.ndarray
     column: np.ndarray
     value: np.ndarray
 
 
-class Structure(NamedTuple):
-    """K, D and M in one pattern by rows, first (n + 1,) and column, and the constant load (n,)."""
-
-    first: np.ndarray
-    column: np.ndarray
-    K: np.ndarray
-    D: np.ndarray
-    M: np.ndarray
-    load: np.ndarray
-
-
-class Observing(NamedTuple):
-    """Rows of p channels on q, v, a (p, n) and on the local forces (p, m)."""
-
-    q: SparseRows
-    v: SparseRows
-    a: SparseRows
-    F: SparseRows
-
-
 class Triangles(NamedTuple):
-    """SuperLU's factors by columns (first, row, value) without their diagonals, 1/diag(U), and both orders."""
+    """SuperLU's factors by columns without their diagonals, 1/diag(U), and both orders."""
 
-    Lp: np.ndarray
-    Li: np.ndarray
-    Lx: np.ndarray
-    Up: np.ndarray
-    Ui: np.ndarray
-    Ux: np.ndarray
+    L: SparseRows
+    U: SparseRows
     diagonal: np.ndarray
     row_place: np.ndarray
     column_place: np.ndarray
 
 
 class NewmarkStep(NamedTuple):
-    """Of one step: S factored, B^T and W^T by rows, P = S^-1 B (n, m), the compliance, and rows of the channels."""
+    """A method of the generalised-alpha family, ready for steps of h seconds.
 
+    Attributes:
+        h: s. whole: whether forces are those of the whole step. am, af, beta, gamma: of the method.
+        rotation: (3, k) see `Rotation.table`. tolerance: of the local forces.
+        first, column: pattern by rows of K, D and M. load: (n,), constant. S: factored.
+        Bt, Wt: B^T and W^T. P: (1 - af) S^-1 B, (n, m). channels: rows (p, n) on q, v and a, and (p, m) on the local forces.
+        Ad, Av: (m, m), what a force of the step takes from d and v at its end, d = d_free - Ad F, v = v_free - Av F.
+    """
+
+    h: float
+    whole: bool
+    am: float
+    af: float
+    beta: float
+    gamma: float
+    rotation: np.ndarray
+    tolerance: float
+    first: np.ndarray
+    column: np.ndarray
+    K: np.ndarray
+    D: np.ndarray
+    M: np.ndarray
+    load: np.ndarray
     S: Triangles
     Bt: SparseRows
     Wt: SparseRows
     P: np.ndarray
-    compliance: Compliance
-    observing: Observing
+    channels: tuple[SparseRows, ...]
+    Ad: np.ndarray
+    Av: np.ndarray
 
 
-class Motion(NamedTuple):
-    """Displacements, velocities and accelerations, (n,)."""
-
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-
-
-class ModalStep(NamedTuple):
-    """Of one step in nz complex modes, real and imaginary parts.
+class ExponentialStep(NamedTuple):
+    """The exponential integrator, ready for steps of h seconds, in nz complex modes: real parts, then imaginary ones.
 
     Attributes:
-        er, ei: e^(s h), (nz,). Gr, Gi: e Q, (m, nz). gr, gi: of the load, (nz,). Qr, Qi: Q, (m, nz).
-        Cr, Ci: (m, nz) rows that give d, then (p, nz) those that give the watched displacements and the channels.
-        Vr, Vi: (m, nz) rows that give v.
-    """
-
-    er: np.ndarray
-    ei: np.ndarray
-    Gr: np.ndarray
-    Gi: np.ndarray
-    gr: np.ndarray
-    gi: np.ndarray
-    Qr: np.ndarray
-    Qi: np.ndarray
-    Cr: np.ndarray
-    Ci: np.ndarray
-    Vr: np.ndarray
-    Vi: np.ndarray
-
-
-class RigidStep(NamedTuple):
-    """Motions without stiffness and damping: local displacements of each (nr, m), what p watched displacements and channels get
-    of the motions and of their velocities (nr, p), and loads (nr,)."""
-
-    B: np.ndarray
-    W: np.ndarray
-    Wv: np.ndarray
-    load: np.ndarray
-
-
-class Reference(NamedTuple):
-    """The linear reference k d + c v of the local forces, (m, m), which the modes hold.
-
-    Attributes:
-        Z: (m, m), turns d without the rest u of the step into d without its local forces.
-        A: (m, m), what the rest of the step adds to d, and Av to v, by modes and rigid motions.
+        h: s. rotation: (3, k) see `Rotation.table`. tolerance: of the local forces.
+        e: e^(s h), and g: of the load, (2, nz). Q: (2, m, nz) and G: e Q. C: (2, m, nz) rows that give d, then (2, p, nz) those
+        that give the watched displacements and the channels. V: (2, m, nz) rows that give v.
+        B: (nr, m) local displacements of motions without stiffness and damping, load: (nr,) on them; W, Wv: (nr, p), what
+        watched displacements and channels get of these motions and of their velocities.
+        k, c: (m, m), the linear reference k d + c v of the local forces, which the modes hold.
+        Z: (m, m), turns d without the rest u of the step into d without its local forces. Ad, Av: as in `NewmarkStep`.
+        Ud, Uv: (m, m), what the rest of the step adds to d and to v, by modes and rigid motions.
         watched: (p, m) what the rest of the step adds to watched displacements and channels by the modes; late: (p, m) what the
         rest at the step's end adds to channels that hold accelerations; forced: (p, m) what local forces there add.
         constant: (p,) of channels, by the load.
     """
 
-    Z: np.ndarray
-    compliance: Compliance
-    A: np.ndarray
-    Av: np.ndarray
+    h: float
+    rotation: np.ndarray
+    tolerance: float
+    e: np.ndarray
+    g: np.ndarray
+    Q: np.ndarray
+    G: np.ndarray
+    C: np.ndarray
+    V: np.ndarray
+    B: np.ndarray
+    load: np.ndarray
+    W: np.ndarray
+    Wv: np.ndarray
     k: np.ndarray
     c: np.ndarray
+    Z: np.ndarray
+    Ad: np.ndarray
+    Av: np.ndarray
+    Ud: np.ndarray
+    Uv: np.ndarray
     watched: np.ndarray
     late: np.ndarray
     forced: np.ndarray
     constant: np.ndarray
-
-
-class ModalMotion(NamedTuple):
-    """y = z - Q u (nz,), motions without stiffness r and their rates (nr,), and the rest u (m,) of local forces."""
-
-    yr: np.ndarray
-    yi: np.ndarray
-    r0: np.ndarray
-    r1: np.ndarray
-    u: np.ndarray
-
-
-class ModalKept(NamedTuple):
-    """Recorded z (r, 2 nz), real parts first, r and r' (r, 2 nr), and u (r, m)."""
-
-    z: np.ndarray
-    rigid: np.ndarray
-    u: np.ndarray

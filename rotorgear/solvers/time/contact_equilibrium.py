@@ -14,13 +14,15 @@ import scipy.sparse as sp
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.sparse.newton import local_equilibrium
 from rotorgear.solvers.sparse.nullspace import in_comparable_units, inertia_relief, support_dofs
-from rotorgear.solvers.time.local_forces import LocalLaw, gather
+from rotorgear.solvers.time.local_forces import LocalLaw
 from rotorgear.solvers.time.local_system import LocalSystem, local_tangent
 
 # What of the loads on a free motion may be left, relative to the sum of their absolute parts: torques come with six digits.
 _BALANCED = 1e-6
 # The same of all loads on a motion that they hardly touch: rounding of the motion.
 _TOUCHED = 1e-8
+# By how much a displacement is changed to see whether a law answers to it, m or rad.
+FAR = 1e-2
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,13 @@ def free_motions(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
         count = min(2 * count, M.shape[0])
 
 
+def held_and_unheld(seen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Motions without strain `free` (n, r) in two sets: what moves the places `seen` (a, r) along them, and what does not."""
+    _, sizes, right = np.linalg.svd(seen)
+    held = int(np.count_nonzero(sizes > 1e-9 * max(1e-300, float(np.linalg.norm(free)))))
+    return free @ right[:held].T, free @ right[held:].T
+
+
 def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibrium:
     """Return the static state at t = 0, at rest relative to the prescribed rotation; `free`: its free motions, where known."""
     K = system.stiffness_about
@@ -65,10 +74,8 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
     found = local_equilibrium(
         np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), extents=forces.extents
     )
-    if not found.converged:
-        return Equilibrium(q0, False, R, found.force)
-    q = q0 + X @ (k @ found.d - found.force)
-    return Equilibrium(q, True, R, found.force)
+    q = q0 + X @ (k @ found.d - found.force) if found.converged else q0
+    return Equilibrium(q, found.converged, R, found.force)
 
 
 def forces_at_rest(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
@@ -77,8 +84,7 @@ def forces_at_rest(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.nda
     `free`: the free motions of the system, where they are known. Both are expanded about the same stiffness, on which nothing
     depends.
     """
-    forces = replace(gather(laws), reference_stiffness=system.forces.reference_stiffness)
-    found = equilibrium(replace(system, forces=forces), free)
+    found = equilibrium(replace(system, forces=system.forces.with_laws(laws)), free)
     return found.force if found.converged else np.full(system.m, np.nan)
 
 
@@ -96,9 +102,7 @@ def unbalanced(system: LocalSystem, R: np.ndarray, force: np.ndarray | None = No
     if not R.shape[1]:
         return False
     if force is None:
-        force = local_tangent(
-            replace(system, forces=gather(tuple(law.mean() for law in system.forces.laws))), np.zeros(system.m), 0.0
-        )[0]
+        force, _ = local_tangent(replace(system, forces=system.forces.mean), np.zeros(system.m), 0.0)
     units = in_comparable_units(np.ones((system.n, 1)), system.stiffness_about, system.M)
     motions = R * units
     motions = motions @ np.linalg.inv(motions[support_dofs(motions)])

@@ -7,8 +7,7 @@ Equations I (Springer 1993), II.5.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
@@ -16,8 +15,8 @@ from scipy.integrate import DOP853
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.sparse.factor import factor_general
-from rotorgear.solvers.time.arguments import Kept, Turning
-from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
+from rotorgear.solvers.time.arguments import Kept
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper
 
 MOST_DOFS = 600
 # Evaluations of the forces that a run may take, at some 0.1 ms each and once more for the error estimate: a minute.
@@ -29,7 +28,7 @@ _FINEST = 1e-13
 
 
 @dataclass(frozen=True)
-class Explicit:
+class Explicit(Integrator):
     """Dormand and Prince's method of order 8; `relative` is the tolerance of a step."""
 
     relative: float = 1e-11
@@ -38,15 +37,6 @@ class Explicit:
     def name(self) -> str:
         """What it is, in words."""
         return f"explicit Runge-Kutta of order 8, tolerance {self.relative:.0e}"
-
-    @property
-    def keeps_energy(self) -> bool:
-        """To its tolerance."""
-        return True
-
-    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
-        """None: all damping is in D."""
-        return np.zeros((0, system.n))
 
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> ExplicitStepper:
         """Factor the inertia.
@@ -81,40 +71,17 @@ def check_length(system: LocalSystem, time: float) -> None:
         )
 
 
-@dataclass
-class ExplicitStepper:
+class ExplicitStepper(Stepper):
     """The method made ready for one system and speed; `h` is the time between the instants at which forces are recorded."""
 
-    system: LocalSystem
-    h: float
-    speed: float
-    relative: float
-    _inverse: tuple[np.ndarray, ...] = field(init=False)
-    _laws: list[tuple[Any, ...]] = field(init=False)
-
-    def __post_init__(self) -> None:
-        s = self.system
-        factor = factor_general(s.M)
-        dense = (s.K.toarray(), s.velocity_terms(self.speed).toarray(), s.B.toarray(), s.load[:, None])
+    def __init__(self, system: LocalSystem, h: float, speed: float, relative: float) -> None:
+        super().__init__(system, h)
+        self._relative = relative
+        self._rotation = system.rotation.table
+        self._Bt = system.B.T.tocsr()
+        factor = factor_general(system.M)
+        dense = (system.K.toarray(), system.velocity_terms(speed).toarray(), system.B.toarray(), system.load[:, None])
         self._inverse = tuple(np.ascontiguousarray(factor.solve(A)) if A.size else A for A in dense)
-        # Of each law its functions and its parts of the arrays of all. Laws are called one by one from Python at each stage,
-        # since numba takes microseconds to look at arrays, but milliseconds for the tuple of all laws' functions.
-        forces = s.forces
-        self._laws = [
-            (
-                forces.schedules[forces.kind[i]],
-                forces.forces[forces.kind[i]],
-                forces.parameters[forces.parameters_first[i] : forces.parameters_first[i + 1]],
-                np.zeros(forces.state_first[i + 1] - forces.state_first[i]),
-                slice(forces.first[i], forces.first[i + 1]),
-                np.zeros((2, forces.block_first[i + 1] - forces.block_first[i])),
-            )
-            for i in range(len(forces.laws))
-        ]
-        self._Bt = s.B.T.tocsr()
-
-    def start(self, state: State) -> None:
-        """Any consistent state will do."""
 
     def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
         n = self.system.n
@@ -128,24 +95,16 @@ class ExplicitStepper:
         """Forces (m,) and energies (4 l,)."""
         from rotorgear.solvers.time.kernel_time import rotation_at
 
-        rotation = self.system.rotation
-        angle, speed = rotation_at(t, Turning(rotation.times, rotation.speeds, rotation.angles))
-        F = np.zeros(self.system.m)
-        energy = np.zeros(4 * len(self._laws))
-        d = np.ascontiguousarray(self._Bt @ q)
-        v = np.ascontiguousarray(self._Bt @ v)
-        for i, (schedule, force, parameters, state, rows, tangents) in enumerate(self._laws):
-            schedule(angle, speed, t, parameters, state)
-            force(parameters, state, d[rows], v[rows], F[rows], tangents[0], tangents[1], energy[4 * i : 4 * i + 4])
+        angle, speed = rotation_at(t, self._rotation)
+        F, _, _, energy = self.system.forces.answer(angle, speed, t, self._Bt @ q, self._Bt @ v)
         return F, energy
 
-    def advance(self, state: State, steps: int, every: int) -> Records:
-        """Advance a state in place by some steps and record every `every`-th."""
-        kept = blank_records(steps, every, self.system.n, self.system)
+    def loop(self, state: MotionState, steps: int, every: int, kept: Kept) -> tuple[int, int, int]:
+        """Advance a state in place and record; returns steps done, status and evaluations of the forces."""
         begin = state.step * self.h
         end = (state.step + steps) * self.h
         y = np.concatenate([state.q, state.v])
-        solver = DOP853(self._slope, begin, y, end, rtol=self.relative, atol=self.relative * self._sizes(state))
+        solver = DOP853(self._slope, begin, y, end, rtol=self._relative, atol=self._relative * self._sizes(state))
         done = 0
         status = 0
         with np.errstate(all="ignore"):
@@ -158,13 +117,9 @@ class ExplicitStepper:
                 while done < steps and (state.step + done + 1) * self.h <= solver.t * (1.0 + 1e-14):
                     done += 1
                     self._look(state, kept, done, every, dense((state.step + done) * self.h))
-        r = done // every
-        t = (state.step + every * np.arange(1, r + 1)) * self.h
-        state.step += done
-        fields = PlainFields(kept.q[:r], kept.v[:r], kept.a[:r])
-        return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], fields, done, status, solver.nfev)
+        return done, status, solver.nfev
 
-    def _sizes(self, state: State) -> np.ndarray:
+    def _sizes(self, state: MotionState) -> np.ndarray:
         """Sizes (2n,) that errors of displacements and velocities are taken relative to."""
         s = self.system
         ratio = np.abs(s.stiffness_about.diagonal()) / s.M.diagonal()
@@ -174,9 +129,9 @@ class ExplicitStepper:
         far = max(_size(state.q), _size(s.load) / stiffest if stiffest else 0.0, 1e-12, _size(state.v) / typical)
         return np.concatenate([np.full(s.n, far), np.full(s.n, far * typical)])
 
-    def _look(self, state: State, kept: Kept, number: int, every: int, y: np.ndarray) -> None:
+    def _look(self, state: MotionState, kept: Kept, number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
-        from rotorgear.solvers.time.kernel_time import gather
+        from rotorgear.solvers.time.kernel_time import gather, record_forces, take_account
 
         n = self.system.n
         t = (state.step + number) * self.h
@@ -186,26 +141,15 @@ class ExplicitStepper:
         F, energy = self._local_forces(state.q, state.v, t)
         state.before[:] = state.F
         state.F[:] = F
-        powers = energy.reshape(-1, 4)
-        state.sums += self.h * powers[:, 1:3]
-        now = powers[:, 3].astype(np.int64)
-        rows = np.arange(now.size)
-        state.events[rows, np.where(now > 0, 0, np.where(now < 0, 2, 1))] += 1
-        state.events[:, 3] += (now == 0) & (state.last != 0)
-        state.last[:] = now
-        d = self.system.B.T @ state.q
-        state.d[:] = d
-        values = self.system.gathered_values(state.q, state.v, state.a, d, F)
+        take_account(energy, self.h, state.carried)
+        state.d[:] = self.system.B.T @ state.q
+        values = self.system.gathered_values(state.q, state.v, state.a, state.d, F)
         gather(state.gathered, values, F.size, False)
         if number % every == 0:
             r = number // every - 1
-            kept.q[r] = state.q
-            kept.v[r] = state.v
-            kept.a[r] = state.a
-            kept.d[r] = d
-            kept.F[r] = F
-            kept.energy[r, :, 0] = powers[:, 0]
-            kept.energy[r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]
+            for array, now in zip(kept.motion, (state.q, state.v, state.a), strict=True):
+                array[r] = now
+            record_forces(r, F, energy, 0.5 * self.h, state.carried, kept)
 
 
 def _size(x: np.ndarray) -> float:

@@ -14,24 +14,18 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.eigen.complex_modes import ComplexModes, complex_modes
-from rotorgear.solvers.time.arguments import (
-    Compliance,
-    ModalKept,
-    ModalMotion,
-    ModalStep,
-    Reference,
-    RigidStep,
-    Span,
-    Turning,
-)
-from rotorgear.solvers.time.local_system import LocalSystem, Records, State, blank_records, contact_rates
+from rotorgear.solvers.time.arguments import ExponentialStep, Kept
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Records, Stepper, contact_rates
 
+# Modal coordinates y by their parts, motions without stiffness and their rates, and the rest of the local forces, as states
+# name them.
+_MOTION = ("yr", "yi", "r0", "r1", "u")
 # Radians of a contact's vibration in a step above which it stays out of the modes.
 _RESOLVED = 0.8
 
 
 @dataclass(frozen=True)
-class Exponential:
+class Exponential(Integrator):
     """Method with all modes, or `modes` real modes and the residual attachment vectors."""
 
     modes: int | None = None
@@ -43,11 +37,6 @@ class Exponential:
     def name(self) -> str:
         """What it is, in words."""
         return "exponential, " + ("all complex modes" if self.modes is None else f"{self.modes} modes with residuals")
-
-    @property
-    def keeps_energy(self) -> bool:
-        """Local forces do the work by which their potential changes over a step."""
-        return True
 
     def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
         """Rows Y (b, n) of the damping by modes: it dissipates |Y v|^2; none where no mode has its own ratio."""
@@ -71,7 +60,8 @@ class Exponential:
 
     def _resolved(self, system: LocalSystem, h: float) -> LocalSystem:
         """The system with those contacts out of the reference that the step does not resolve."""
-        fast = contact_rates(system) * h > _RESOLVED
+        laws = system.forces
+        fast = contact_rates(system.M, system.B.toarray(), laws.reference_stiffness) * h > _RESOLVED
         if not np.any(fast):
             return system
         known = next(
@@ -79,13 +69,9 @@ class Exponential:
         )
         if known is None:
             held = np.where(fast[:, None] | fast[None, :], 0.0, 1.0)
-            laws = system.forces
-            forces = replace(
-                laws,
-                reference_stiffness=laws.reference_stiffness * held,
-                reference_damping=laws.reference_damping * held,
-            )
-            known = replace(system, forces=forces)
+            k = laws.reference_stiffness * held
+            c = laws.reference_damping * held
+            known = replace(system, forces=replace(laws, reference_stiffness=k, reference_damping=c))
             self._without.append((system, fast, known))
         return known
 
@@ -99,19 +85,15 @@ class Exponential:
         return found
 
 
-class ExponentialStepper:
+class ExponentialStepper(Stepper):
     """The method made ready for one system, step and speed."""
 
     def __init__(self, modes: ComplexModes, system: LocalSystem, h: float, tolerance: float) -> None:
-        self.h = h
-        self._system = system
+        super().__init__(system, h)
         self.modes = modes
-        self._tolerance = tolerance
         B = system.B.toarray()
-        m = system.m
         s = modes.s
-        e = np.exp(modes.s * h)
-        first, _ = phi_functions(modes.s * h)
+        first, _ = phi_functions(s * h)
         gain = modes.gains @ (modes.basis.T @ B)
         self._Q = (h * first)[:, None] * gain
         push = modes.gains @ (modes.basis.T @ system.load)
@@ -119,79 +101,71 @@ class ExponentialStepper:
         V = C * s
         Br = modes.rigid.T @ B
         A = np.real(C @ self._Q) + 0.5 * h * h * Br.T @ Br
-        k_ref = system.forces.reference_stiffness
-        c_ref = system.forces.reference_damping
-        linear = np.eye(m) - A @ (0.5 * k_ref + c_ref / h)
-        self._rigid_load = modes.rigid.T @ system.load
+        k = system.forces.reference_stiffness
+        c = system.forces.reference_damping
+        linear = np.eye(system.m) - A @ (0.5 * k + c / h)
+        rigid_load = modes.rigid.T @ system.load
         self._mobile = modes.basis @ (modes.basis.T @ B) + modes.rigid @ Br
-        self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ self._rigid_load
+        self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ rigid_load
         seen = system.observed_rows
         W = system.watched_vectors.T
-        p = len(W)
-        none = np.zeros((p, m))
+        none = np.zeros((len(W), system.m))
         watched = np.vstack(
             [W @ modes.shapes, sum(Y @ (modes.shapes * s**power) for power, Y in enumerate((seen.q, seen.v, seen.a)))]
         )
-        rotation = system.rotation
-        self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
-        self._modal = ModalStep(
-            *_parts(e),
-            *_parts((e[:, None] * self._Q).T),
-            *_parts(h * first * push),
-            *_parts(self._Q.T),
-            *_parts(np.vstack([C, watched])),
-            *_parts(V),
-        )
-        self._rigid = RigidStep(
-            np.ascontiguousarray(Br),
-            np.ascontiguousarray(modes.rigid.T @ np.vstack([W, seen.q]).T),
-            np.ascontiguousarray(modes.rigid.T @ np.vstack([0.0 * W, seen.v]).T),
-            self._rigid_load,
-        )
-        self._reference = Reference(
+        e = np.exp(s * h)
+        self._step = ExponentialStep(
+            h=float(h),
+            rotation=system.rotation.table,
+            tolerance=float(tolerance),
+            e=_parts(e),
+            g=_parts(h * first * push),
+            Q=_parts(self._Q.T),
+            G=_parts((e[:, None] * self._Q).T),
+            C=_parts(np.vstack([C, watched])),
+            V=_parts(V),
+            B=np.ascontiguousarray(Br),
+            load=rigid_load,
+            W=np.ascontiguousarray(modes.rigid.T @ np.vstack([W, seen.q]).T),
+            Wv=np.ascontiguousarray(modes.rigid.T @ np.vstack([0.0 * W, seen.v]).T),
+            k=k,
+            c=c,
             Z=np.ascontiguousarray(np.linalg.inv(linear)),
-            compliance=Compliance(np.ascontiguousarray(np.linalg.solve(linear, A)), np.zeros((m, m))),
-            A=np.ascontiguousarray(A),
-            Av=np.ascontiguousarray(np.real(V @ self._Q)),
-            k=k_ref,
-            c=c_ref,
+            Ad=np.ascontiguousarray(np.linalg.solve(linear, A)),
+            Av=np.zeros((system.m, system.m)),
+            Ud=np.ascontiguousarray(A),
+            Uv=np.ascontiguousarray(np.real(V @ self._Q)),
             watched=np.ascontiguousarray(np.real(watched @ self._Q)),
             late=np.vstack([none, seen.a @ self._mobile]),
             forced=np.vstack([none, seen.F]),
-            constant=np.concatenate([np.zeros(p), seen.a @ self._pushed]),
+            constant=np.concatenate([np.zeros(len(W)), seen.a @ self._pushed]),
         )
         self._laws = system.forces.arguments()
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
 
-    def start(self, state: State) -> None:
+    def start(self, state: MotionState) -> None:
         """Take displacements and velocities over into modal coordinates."""
         if state.step == 0:
             state.sums[:] = 0.0  # energies of whole steps have no half step before the first
         modes = self.modes
-        system = self._system
+        system = self.system
         if "yr" in state.inner and state.inner["yr"].size == modes.s.size:
             return
-        weighted = modes.basis.T @ (system.M @ np.column_stack([state.q, state.v]))
-        z = self._on_modes(weighted)
+        weighted = system.M @ np.column_stack([state.q, state.v])
         laws = system.forces
         u = (
             laws.reference_stiffness @ (system.B.T @ state.q)
             + laws.reference_damping @ (system.B.T @ state.v)
             - state.F
         )
-        y = z - self._Q @ u
-        rigid = modes.rigid.T @ (system.M @ np.column_stack([state.q, state.v]))
-        state.inner = {
-            "yr": y.real.copy(),
-            "yi": y.imag.copy(),
-            "r0": rigid[:, 0].copy(),
-            "r1": rigid[:, 1].copy(),
-            "u": u,
-        }
+        y = self._on_modes(modes.basis.T @ weighted) - self._Q @ u
+        rigid = modes.rigid.T @ weighted
+        motion = (y.real.copy(), y.imag.copy(), rigid[:, 0].copy(), rigid[:, 1].copy(), u)
+        state.inner = dict(zip(_MOTION, motion, strict=True))
 
     def _on_modes(self, coordinates: np.ndarray) -> np.ndarray:
         """z (nz,) with the given basis coordinates and velocities (b, 2), by least squares on the modes themselves."""
-        X = self.modes.basis.T @ (self._system.M @ self.modes.shapes)
+        X = self.modes.basis.T @ (self.system.M @ self.modes.shapes)
         real = np.vstack([np.hstack([X.real, -X.imag]), np.hstack([(X * self.modes.s).real, -(X * self.modes.s).imag])])
         scale = np.abs(self.modes.s).max(initial=1.0)
         real[coordinates.shape[0] :] /= scale
@@ -201,86 +175,60 @@ class ExponentialStepper:
         found = np.linalg.lstsq(real, right, rcond=None)[0]
         return np.asarray(found[: self.modes.s.size] + 1j * found[self.modes.s.size :])
 
-    def advance(self, state: State, steps: int, every: int) -> Records:
-        """Advance a state in place by some steps and record every `every`-th."""
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Of both parts of z, of r and r' of the motions without stiffness, and of u."""
+        return 2 * self.modes.s.size, 2 * self.modes.rigid.shape[1], self.system.m
+
+    def loop(self, state: MotionState, steps: int, every: int, kept: Kept) -> tuple[int, int, int]:
+        """Advance a state in place and record; returns steps done, status and linear solutions."""
         from rotorgear.solvers.time.kernel_exponential import exponential_loop
 
-        system = self._system
-        inner = state.inner
-        nz = self.modes.s.size
-        nr = self.modes.rigid.shape[1]
-        kept = blank_records(steps, every, 0, system)
-        r = steps // every
-        modal = ModalKept(z=np.zeros((r, 2 * nz)), rigid=np.zeros((r, 2 * nr)), u=np.zeros((r, system.m)))
+        motion = tuple(state.inner[name] for name in _MOTION)
         done, status, solutions = exponential_loop(
-            Span(steps, every, state.step, self.h),
-            self._turning,
-            self._modal,
-            self._rigid,
-            self._reference,
-            self._laws,
-            ModalMotion(inner["yr"], inner["yi"], inner["r0"], inner["r1"], inner["u"]),
-            state.carried,
-            self._tolerance,
-            modal,
-            kept,
+            self._step, self._laws, steps, every, state.step, motion, state.carried, kept
         )
-        count = done // every
-        t = (state.step + every * np.arange(1, count + 1)) * self.h
-        state.step += done
-        fields = ModalFields(self, modal.z[:count], modal.rigid[:count], modal.u[:count])
-        if count and count * every == done:
-            state.q, state.v, state.a = (fields.last(kind) for kind in "qva")
-        return Records(t, kept.d[:count], kept.F[:count], kept.energy[:count], fields, done, status, solutions)
+        return done, status, solutions
 
-    def projected(self, kind: str, Y: np.ndarray) -> tuple[np.ndarray, ...]:
-        """What gives Y q, Y v or Y a from modal coordinates, rigid ones, u and the load."""
+    def advance(self, state: MotionState, steps: int, every: int) -> Records:
+        """Advance a state in place; q, v and a follow where the last step was recorded."""
+        records = super().advance(state, steps, every)
+        if records.t.size and records.t.size * every == records.done:
+            state.q, state.v, state.a = (self._last(kind, *records.motion) for kind in "qva")
+        return records
+
+    def rows(self, kind: str, Y: np.ndarray, *motion: np.ndarray) -> np.ndarray:
+        """Y q, Y v or Y a, (r, p), of a recorded motion."""
+        z, rigid, u = motion
         key = (kind, id(Y))
         if key not in self._rows:
             power = "qva".index(kind)
             shapes = Y @ (self.modes.shapes * self.modes.s**power)
             R = Y @ self.modes.rigid
             nothing = np.zeros_like(R)
-            rigid = (np.hstack([R, nothing]), np.hstack([nothing, R]), np.hstack([nothing, nothing]))[power]
-            mobile = Y @ self._mobile if kind == "a" else np.zeros((Y.shape[0], self._system.m))
+            moved = (np.hstack([R, nothing]), np.hstack([nothing, R]), np.hstack([nothing, nothing]))[power]
+            mobile = Y @ self._mobile if kind == "a" else np.zeros((Y.shape[0], self.system.m))
             constant = Y @ self._pushed if kind == "a" else np.zeros(Y.shape[0])
-            self._rows[key] = (Y, np.hstack([shapes.real, -shapes.imag]).T.copy(), rigid.T, mobile.T, constant)
-        return self._rows[key][1:]
+            # Y is kept, so that its id stays its own.
+            self._rows[key] = (Y, np.hstack([shapes.real, -shapes.imag]).T.copy(), moved.T, mobile.T, constant)
+        _, by_z, by_rigid, by_u, constant = self._rows[key]
+        return np.asarray(z @ by_z + rigid @ by_rigid + u @ by_u + constant)
 
-
-@dataclass(frozen=True)
-class ModalFields:
-    """Recorded modal coordinates, from which any rows of q, v and a follow."""
-
-    stepper: ExponentialStepper
-    z: np.ndarray
-    rigid: np.ndarray
-    u: np.ndarray
-
-    def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
-        """Y q, Y v or Y a at the recorded steps, (r, p); `kind` is "q", "v" or "a"."""
-        shapes, rigid, mobile, constant = self.stepper.projected(kind, Y)
-        return np.asarray(self.z @ shapes + self.rigid @ rigid + self.u @ mobile + constant)
-
-    def chosen(self, which: np.ndarray) -> ModalFields:
-        """Those of some records."""
-        return ModalFields(self.stepper, self.z[which], self.rigid[which], self.u[which])
-
-    def last(self, kind: str) -> np.ndarray:
+    def _last(self, kind: str, z: np.ndarray, rigid: np.ndarray, u: np.ndarray) -> np.ndarray:
         """q, v or a of the last record, (n,)."""
-        modes = self.stepper.modes
+        modes = self.modes
         power = "qva".index(kind)
         nz = modes.s.size
         nr = modes.rigid.shape[1]
-        z = self.z[-1, :nz] + 1j * self.z[-1, nz:]
-        x = np.real(modes.shapes @ (modes.s**power * z))
+        x = np.real(modes.shapes @ (modes.s**power * (z[-1, :nz] + 1j * z[-1, nz:])))
         if power < 2:
-            return np.asarray(x + modes.rigid @ self.rigid[-1, power * nr : (power + 1) * nr])
-        return np.asarray(x + self.stepper._mobile @ self.u[-1] + self.stepper._pushed)
+            return np.asarray(x + modes.rigid @ rigid[-1, power * nr : (power + 1) * nr])
+        return np.asarray(x + self._mobile @ u[-1] + self._pushed)
 
 
-def _parts(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return np.ascontiguousarray(A.real), np.ascontiguousarray(A.imag)
+def _parts(A: np.ndarray) -> np.ndarray:
+    """Real and imaginary part, (2, ...)."""
+    return np.ascontiguousarray(np.stack([A.real, A.imag]))
 
 
 def phi_functions(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -166,20 +166,11 @@ def force_all(laws, state, d, v, answer, conserving=False):
 
 
 @compiled
-def evaluate_instants(schedules, forces, parameters, state, instants, answer):
-    """Fill the answer of one law, the first of the functions, to d and v at r instants."""
-    for i in range(instants.angle.size):
-        schedules[0](instants.angle[i], instants.speed[i], instants.time[i], parameters, state)
-        forces[0](
-            parameters,
-            state,
-            instants.d[i],
-            instants.v[i],
-            answer.F[i],
-            answer.Kd[i],
-            answer.Kv[i],
-            answer.energy[i],
-        )
+def evaluate_instants(schedules, forces, parameters, state, angle, speed, time, d, v, answer):
+    """Fill the answer of one law, the first of the functions, to d and v (r, k) at r instants."""
+    for i in range(angle.size):
+        schedules[0](angle[i], speed[i], time[i], parameters, state)
+        forces[0](parameters, state, d[i], v[i], answer.F[i], answer.Kd[i], answer.Kv[i], answer.energy[i])
 
 
 @compiled(entry=False)
@@ -212,42 +203,42 @@ def solve_small(A, b, n):
 
 
 @compiled(entry=False)
-def blank_answer(laws, m):
+def blank_answer(laws):
     """Arrays for an answer of all laws."""
+    m = laws.first[-1]
     blocks = laws.block_first[-1]
     return Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size))
 
 
 @compiled(entry=False)
-def contact_work(laws, m):
+def contact_work(laws):
     """Arrays for `contact_step`."""
+    m = laws.first[-1]
     return ContactWork(
         np.zeros(laws.state_first[-1]),
         np.empty(m),
         np.empty(m),
         np.empty(m),
         np.empty(m),
-        blank_answer(laws, m),
+        blank_answer(laws),
         np.empty(m),
         np.empty(m),
         np.empty((m, m)),
         np.empty(m),
         np.empty(m),
         np.zeros(m),
-        blank_answer(laws, m),
-        blank_answer(laws, m),
-        blank_answer(laws, m),
+        blank_answer(laws),
+        blank_answer(laws),
+        blank_answer(laws),
     )
 
 
 @compiled(entry=False)
-def answer_to(laws, compliance, work, F, h):
+def answer_to(laws, Ad, Av, work, F, h):
     """Fill d, v and the answer of the laws to forces F: at the step's end, or of the whole step of h > 0.
 
     Returns the largest difference between answer and F, its bound by rounding, and the largest force; NaN where one is none.
     """
-    Ad = compliance.Ad
-    Av = compliance.Av
     d = work.d
     v = work.v
     d_free = work.d_free
@@ -301,15 +292,13 @@ def answer_to(laws, compliance, work, F, h):
 
 
 @compiled(entry=False)
-def contact_step(laws, compliance, work, F, tolerance, h):
+def contact_step(laws, Ad, Av, work, F, tolerance, h):
     """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and the answer in `work` are filled.
 
     With h > 0, F are the forces of the whole step from work.begin on. Returns the number of linear solutions, or FAILED or
     NOT_FINITE.
     """
     kind = laws.kind
-    Ad = compliance.Ad
-    Av = compliance.Av
     answer = work.answer
     Kd = answer.Kd
     Kv = answer.Kv
@@ -320,7 +309,7 @@ def contact_step(laws, compliance, work, F, tolerance, h):
     block_first = laws.block_first
     m = F.size
     per_d = 0.5 if h > 0.0 else 1.0
-    worst, floor, size = answer_to(laws, compliance, work, F, h)
+    worst, floor, size = answer_to(laws, Ad, Av, work, F, h)
     for iteration in range(_ITERATIONS):
         if np.isnan(worst):
             return NOT_FINITE
@@ -349,7 +338,7 @@ def contact_step(laws, compliance, work, F, tolerance, h):
             guess[i] = F[i]
             J[0, i] = step[i]  # the direction: step is filled anew with each residual
             F[i] += step[i]
-        worst, floor, size = answer_to(laws, compliance, work, F, h)
+        worst, floor, size = answer_to(laws, Ad, Av, work, F, h)
         share = 1.0
         for _ in range(_HALVINGS):
             # The first solutions may overshoot: from one side of a kink to the other they end the iteration.
@@ -358,19 +347,19 @@ def contact_step(laws, compliance, work, F, tolerance, h):
             share *= 0.5
             for i in range(m):
                 F[i] = guess[i] + share * J[0, i]
-            worst, floor, size = answer_to(laws, compliance, work, F, h)
-    return one_by_one(laws, compliance, work, F, tolerance, h)
+            worst, floor, size = answer_to(laws, Ad, Av, work, F, h)
+    return one_by_one(laws, Ad, Av, work, F, tolerance, h)
 
 
 @compiled(entry=False)
-def one_by_one(laws, compliance, work, F, tolerance, h):
+def one_by_one(laws, Ad, Av, work, F, tolerance, h):
     """The forces of `contact_step` one after the other, by bisection."""
     m = F.size
     for i in range(m):
         if not np.isfinite(F[i]):
             F[i] = 0.0
     for number in range(_ROUNDS):
-        worst, floor, size = answer_to(laws, compliance, work, F, h)
+        worst, floor, size = answer_to(laws, Ad, Av, work, F, h)
         if np.isnan(worst):
             return NOT_FINITE
         if worst <= tolerance * size + floor:
@@ -379,7 +368,7 @@ def one_by_one(laws, compliance, work, F, tolerance, h):
             return _ITERATIONS + number
         moved = 0.0
         for i in range(m):
-            answer_to(laws, compliance, work, F, h)
+            answer_to(laws, Ad, Av, work, F, h)
             low = F[i]
             old = low
             gap = work.step[i]
@@ -389,7 +378,7 @@ def one_by_one(laws, compliance, work, F, tolerance, h):
                 if middle in (low, high):
                     break
                 F[i] = middle
-                answer_to(laws, compliance, work, F, h)
+                answer_to(laws, Ad, Av, work, F, h)
                 if (work.step[i] > 0.0) == (gap > 0.0):
                     low = middle
                 else:
@@ -398,6 +387,6 @@ def one_by_one(laws, compliance, work, F, tolerance, h):
             moved = max(moved, abs(F[i] - old))
         # A damper that sets in over less than the rounding of d jumps: its force lies within the jump, and no answer meets it.
         if moved <= tolerance * size + floor:
-            answer_to(laws, compliance, work, F, h)
+            answer_to(laws, Ad, Av, work, F, h)
             return _ITERATIONS + number
     return FAILED

@@ -13,32 +13,26 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import (
-    blank_answer,
-    contact_step,
-    contact_work,
-    force_all,
-    schedule_all,
-)
-from rotorgear.solvers.time.kernel_time import gather, record_whole, rotation_at, take_energies, take_events
+from rotorgear.solvers.time.kernel_contact import blank_answer, contact_step, contact_work, force_all, schedule_all
+from rotorgear.solvers.time.kernel_time import gather, record_forces, rotation_at, take_account
 
 _BLOCK = 256
 
 
 @compiled(fast=True, inner=True)
-def modal_pass(modal, u, yr, yi, out):
+def modal_pass(step, u, yr, yi, out):
     """y <- e y + G u + g and out = Re(C y), block by block so that y stays in the fast cache.
 
     Slices whose index starts at 0, and several rows at once: only so do the loops become vector instructions.
     """
-    er = modal.er
-    ei = modal.ei
-    gr = modal.gr
-    gi = modal.gi
-    Gr = modal.Gr
-    Gi = modal.Gi
-    Cr = modal.Cr
-    Ci = modal.Ci
+    er = step.e[0]
+    ei = step.e[1]
+    gr = step.g[0]
+    gi = step.g[1]
+    Gr = step.G[0]
+    Gi = step.G[1]
+    Cr = step.C[0]
+    Ci = step.C[1]
     nz = yr.size
     m = u.size
     rows = out.size
@@ -108,46 +102,51 @@ def modal_pass(modal, u, yr, yi, out):
 
 
 @compiled
-def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carried, tolerance, kept_modal, kept):
-    """Advance `motion` and `carried` in place over a span and record; returns steps done, status and linear solutions."""
-    h = span.h
-    yr = motion.yr
-    yi = motion.yi
-    r0 = motion.r0
-    r1 = motion.r1
-    u = motion.u
+def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
+    """Advance the motion and `carried` in place by steps after the `begun` first ones, and record every `every`-th.
+
+    `motion`: both parts of y = z - Q u (nz,), motions without stiffness r and their rates (nr,), and the rest u (m,).
+
+    Returns:
+        Steps done, status and linear solutions.
+    """
+    h = step.h
+    yr, yi, r0, r1, u = motion
     F = carried.F
     before = carried.before
     begin = carried.d
     gathered = carried.gathered
-    B = rigid.B
-    load = rigid.load
-    watched = reference.watched
-    late = reference.late
-    forced = reference.forced
-    Z = reference.Z
-    A = reference.A
-    Av = reference.Av
-    k_ref = reference.k
-    c_ref = reference.c
-    Qr = modal.Qr
-    Qi = modal.Qi
+    B = step.B
+    load = step.load
+    watched = step.watched
+    late = step.late
+    forced = step.forced
+    Z = step.Z
+    Ud = step.Ud
+    Uv = step.Uv
+    k_ref = step.k
+    c_ref = step.c
+    Qr = step.Q[0]
+    Qi = step.Q[1]
+    Vr = step.V[0]
+    Vi = step.V[1]
+    z, rigid, rest = kept.motion
     m = F.size
     nr = r0.size
     nz = yr.size
-    work = contact_work(laws, m)
-    at_end = blank_answer(laws, m)
+    work = contact_work(laws)
+    at_end = blank_answer(laws)
     d = work.d
-    out = np.empty(modal.Cr.shape[0])
+    out = np.empty(step.C.shape[1])
     free = np.zeros(m)
     u_before = np.empty(m)
     seen = np.zeros(gathered.level.size)
     solutions = 0
-    for number in range(1, span.steps + 1):
-        t = (span.begun + number) * h
-        angle, speed = rotation_at(t - 0.5 * h, turning)
+    for number in range(1, steps + 1):
+        t = (begun + number) * h
+        angle, speed = rotation_at(t - 0.5 * h, step.rotation)
         schedule_all(laws, angle, speed, t - 0.5 * h, work.state)
-        modal_pass(modal, u, yr, yi, out)
+        modal_pass(step, u, yr, yi, out)
         for i in range(m):
             free[i] = out[i]
         for k in range(nr):
@@ -161,7 +160,7 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
                 held = 0.0
                 for k in range(m):
                     held += (0.5 * k_ref[j, k] - c_ref[j, k] / h) * begin[k]
-                free[i] += A[i, j] * held
+                free[i] += Ud[i, j] * held
         for i in range(m):
             x = 0.0
             for j in range(m):
@@ -172,7 +171,7 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
             u_before[i] = u[i]
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
         force_all(laws, work.state, work.begin, work.zeros, work.begun, True)
-        code = contact_step(laws, reference.compliance, work, F, tolerance, h)
+        code = contact_step(laws, step.Ad, step.Av, work, F, step.tolerance, h)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
@@ -187,50 +186,49 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
                 total += B[k, j] * u[j]
             r0[k] += 0.5 * h * h * total
             r1[k] += h * total
-        take_energies(work.answer.energy, h, carried)
-        take_events(work.answer.energy, carried)
+        take_account(work.answer.energy, h, carried)
         for i in range(m):
             begin[i] = d[i]
             seen[i] = F[i]
             seen[m + i] = d[i]
         for i in range(len(watched)):
-            x = out[m + i] + reference.constant[i]
+            x = out[m + i] + step.constant[i]
             for j in range(m):
                 x += watched[i, j] * u[j] + late[i, j] * (1.5 * u[j] - 0.5 * u_before[j])
                 x += forced[i, j] * (1.5 * F[j] - 0.5 * before[j])
             for k in range(nr):
-                x += rigid.W[k, i] * r0[k] + rigid.Wv[k, i] * r1[k]
+                x += step.W[k, i] * r0[k] + step.Wv[k, i] * r1[k]
             seen[2 * m + i] = x
         gather(gathered, seen, m, True)
-        if number % span.every == 0:
-            r = number // span.every - 1
+        if number % every == 0:
+            r = number // every - 1
             for j in range(nz):
                 real = yr[j]
                 imaginary = yi[j]
                 for i in range(m):
                     real += Qr[i, j] * u[i]
                     imaginary += Qi[i, j] * u[i]
-                kept_modal.z[r, j] = real
-                kept_modal.z[r, nz + j] = imaginary
+                z[r, j] = real
+                z[r, nz + j] = imaginary
             for k in range(nr):
-                kept_modal.rigid[r, k] = r0[k]
-                kept_modal.rigid[r, nr + k] = r1[k]
+                rigid[r, k] = r0[k]
+                rigid[r, nr + k] = r1[k]
             for i in range(m):
                 total = 0.0
                 for j in range(nz):
-                    total += modal.Vr[i, j] * yr[j] - modal.Vi[i, j] * yi[j]
+                    total += Vr[i, j] * yr[j] - Vi[i, j] * yi[j]
                 for j in range(m):
-                    total += Av[i, j] * u[j]
+                    total += Uv[i, j] * u[j]
                 for k in range(nr):
                     total += B[k, i] * r1[k]
                 work.v[i] = total
-            angle, speed = rotation_at(t, turning)
+            angle, speed = rotation_at(t, step.rotation)
             schedule_all(laws, angle, speed, t, work.state)
             force_all(laws, work.state, d, work.v, at_end)
             for i in range(m):
                 total = -at_end.F[i]
                 for j in range(m):
                     total += k_ref[i, j] * d[j] + c_ref[i, j] * work.v[j]
-                kept_modal.u[r, i] = total
-            record_whole(r, at_end, work, carried, kept)
-    return span.steps, 0, solutions
+                rest[r, i] = total
+            record_forces(r, at_end.F, at_end.energy, 0.0, carried, kept)
+    return steps, 0, solutions

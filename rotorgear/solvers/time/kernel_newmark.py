@@ -1,15 +1,15 @@
-"""Compiled: the loops of the generalised-alpha family, with one constant factorisation and condensed contact.
+"""Compiled: the loop of the generalised-alpha family, with one constant factorisation and condensed contact.
 
     q1 = q + h v + h^2 (1/2 - beta) a + beta h^2 a1         v1 = v + h (1 - gamma) a + gamma h a1
     M [(1-am) a1 + am a] + D [(1-af) v1 + af v] + K [(1-af) q1 + af q] + B [(1-af) F1 + af F] = f
     S a1 = rhs - (1-af) B F1,   S = (1-am) M + (1-af) gamma h D + (1-af) beta h^2 K
 
-am = af = 0 is Newmark's method, am = 0 Hilber, Hughes and Taylor's. F1 acts through the m columns P = S^-1 B only, so that
+am = af = 0 is Newmark's method, am = 0 Hilber, Hughes and Taylor's. F1 acts through the m columns P = (1-af) S^-1 B only, so that
 Newton's method runs on m x m systems. Chung and Hulbert, J. Applied Mechanics 60 (1993) 371.
 
 Average acceleration (beta 1/4, gamma 1/2) holds in the mean over a step, with local forces that do the work of their potential:
 
-    q1 = q + h v + h^2/2 a         v1 = v + h a
+    q1 = q + h v + h^2/2 a         v1 = v + h a         (beta 1/2, gamma 1 on the mean a)
     M a + D (v + v1)/2 + K (q + q1)/2 + B F = f         S a = rhs - B F,   S = M + h/2 D + h^2/4 K
 
 F is the force of the whole step (kernel_contact.py). For linear systems this is Newmark's method. Without damping and prescribed
@@ -21,97 +21,106 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import (
-    blank_answer,
-    contact_step,
-    contact_work,
-    force_all,
-    schedule_all,
-)
+from rotorgear.solvers.time.kernel_contact import blank_answer, contact_step, contact_work, force_all, schedule_all
 from rotorgear.solvers.time.kernel_time import (
     add_rows,
     gather,
     inertia_products,
     lu_solve,
     record_forces,
-    record_whole,
     rotation_at,
+    set_row,
     subtract_products,
     take_account,
-    take_energies,
-    take_events,
 )
 
 
 @compiled(entry=False)
-def observe(step, F, d, q, v, a, F_end, seen):
-    """Fill what statistics are gathered of: local forces, displacements, watched ones, and channels at the step's end."""
+def observe(step, carried, a, F, seen):
+    """Fill what is gathered: local forces and displacements, watched ones, and channels with a and F at the end of the step."""
     m = F.size
     for j in range(m):
-        seen[j] = F[j]
-        seen[m + j] = d[j]
+        seen[j] = carried.F[j]
+        seen[m + j] = carried.d[j]
     seen[2 * m :] = 0.0
-    add_rows(step.Wt, q, seen, 2 * m)
+    add_rows(step.Wt, carried.q, seen, 2 * m)
     channels = 2 * m + step.Wt.first.size - 1
-    add_rows(step.observing.q, q, seen, channels)
-    add_rows(step.observing.v, v, seen, channels)
-    add_rows(step.observing.a, a, seen, channels)
-    add_rows(step.observing.F, F_end, seen, channels)
+    add_rows(step.channels[0], carried.q, seen, channels)
+    add_rows(step.channels[1], carried.v, seen, channels)
+    add_rows(step.channels[2], a, seen, channels)
+    add_rows(step.channels[3], F, seen, channels)
 
 
 @compiled
-def newmark_loop(span, weights, turning, structure, step, laws, motion, carried, tolerance, kept):
-    """Advance `motion` and `carried` in place over a span and record; returns steps done, status and linear solutions."""
-    h = span.h
-    am = weights.am
-    af = weights.af
-    beta = weights.beta
-    gamma = weights.gamma
-    q = motion.q
-    v = motion.v
-    a = motion.a
-    F = carried.F
-    before = carried.before
-    load = structure.load
+def newmark_loop(step, laws, steps, every, begun, carried, kept):
+    """Advance `carried` in place by steps after the `begun` first ones, and record every `every`-th.
+
+    Of whole steps accelerations and local forces are means, which channels and records take on to the step's end.
+
+    Returns:
+        Steps done, status and linear solutions.
+    """
+    h = step.h
+    whole = step.whole
+    am = step.am
+    af = step.af
+    beta = step.beta
+    gamma = step.gamma
+    load = step.load
     Bt_first = step.Bt.first
     Bt_column = step.Bt.column
     Bt_value = step.Bt.value
-    gathered = carried.gathered
     factors = step.S
-    compliance = step.compliance
     P = step.P
+    q = carried.q
+    v = carried.v
+    a = carried.a
+    F = carried.F
+    before = carried.before
+    begin = carried.d
+    gathered = carried.gathered
     n = q.size
     m = F.size
-    work = contact_work(laws, m)
-    state = work.state
+    work = contact_work(laws)
     d_free = work.d_free
     v_free = work.v_free
-    energy = work.answer.energy
+    at_end = blank_answer(laws)
     Ma = np.zeros(n)
+    qp = np.empty(n)
+    vp = np.empty(n)
     qm = np.empty(n)
     vm = np.empty(n)
     rhs = np.empty(n)
     permuted = np.empty(n)
     a_free = np.empty(n)
+    a_end = np.empty(n)
+    F_end = np.empty(m)
     seen = np.zeros(gathered.level.size)
+    # Place of the equations in the step, and the length over which local forces do their work: 0 where they are those of its end.
+    back = 0.5 * h if whole else 0.0
+    length = h if whole else 0.0
+    old = h * h * (0.5 - beta)
+    new = h * (1.0 - gamma)
     solutions = 0
-    for number in range(1, span.steps + 1):
-        t = (span.begun + number) * h
-        angle, speed = rotation_at(t, turning)
-        schedule_all(laws, angle, speed, t, state)
-        old = h * h * (0.5 - beta)
-        new = h * (1.0 - gamma)
+    for number in range(1, steps + 1):
+        t = (begun + number) * h
+        angle, speed = rotation_at(t - back, step.rotation)
+        schedule_all(laws, angle, speed, t - back, work.state)
         for i in range(n):
-            qp = q[i] + h * v[i] + old * a[i]
-            vp = v[i] + new * a[i]
-            qm[i] = (1.0 - af) * qp + af * q[i]
-            vm[i] = (1.0 - af) * vp + af * v[i]
             rhs[i] = load[i]
-            q[i] = qp
-            v[i] = vp
-        subtract_products(structure, qm, vm, rhs)
+            if whole:
+                qp[i] = q[i] + h * v[i]
+                vp[i] = v[i]
+                qm[i] = q[i] + 0.5 * h * v[i]
+                vm[i] = v[i]
+            else:
+                qp[i] = q[i] + h * v[i] + old * a[i]
+                vp[i] = v[i] + new * a[i]
+                qm[i] = (1.0 - af) * qp[i] + af * q[i]
+                vm[i] = (1.0 - af) * vp[i] + af * v[i]
+        subtract_products(step, qm, vm, rhs)
         if am != 0.0:
-            inertia_products(structure, a, Ma)
+            inertia_products(step, a, Ma)
             for i in range(n):
                 rhs[i] -= am * Ma[i]
         if af != 0.0:
@@ -124,89 +133,15 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
             y = 0.0
             for p in range(Bt_first[j], Bt_first[j + 1]):
                 i = Bt_column[p]
-                x += Bt_value[p] * (q[i] + beta * h * h * a_free[i])
-                y += Bt_value[p] * (v[i] + gamma * h * a_free[i])
+                x += Bt_value[p] * (qp[i] + beta * h * h * a_free[i])
+                y += Bt_value[p] * (vp[i] + gamma * h * a_free[i])
             d_free[j] = x
             v_free[j] = y
-            F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
-        code = contact_step(laws, compliance, work, F, tolerance, 0.0)
-        if code < 0:
-            return number - 1, code, solutions
-        solutions += code
-        for i in range(n):
-            total = a_free[i]
-            for j in range(m):
-                total -= (1.0 - af) * P[i, j] * F[j]
-            a[i] = total
-            q[i] += beta * h * h * total
-            v[i] += gamma * h * total
-        take_account(energy, h, carried)
-        for j in range(m):
-            carried.d[j] = work.d[j]
-        observe(step, F, work.d, q, v, a, F, seen)
-        gather(gathered, seen, m, False)
-        if number % span.every == 0:
-            r = number // span.every - 1
-            kept.q[r] = q
-            kept.v[r] = v
-            kept.a[r] = a
-            record_forces(r, h, work, carried, kept)
-    return span.steps, 0, solutions
-
-
-@compiled
-def average_loop(span, weights, turning, structure, step, laws, motion, carried, tolerance, kept):
-    """Advance `motion` and `carried` in place over a span and record; returns steps done, status and linear solutions.
-
-    `weights` are those of the general loop. Accelerations and channels at a step's end go on from the means of two steps.
-    """
-    h = span.h
-    q = motion.q
-    v = motion.v
-    a = motion.a
-    F = carried.F
-    before = carried.before
-    begin = carried.d
-    load = structure.load
-    Bt = step.Bt
-    gathered = carried.gathered
-    P = step.P
-    n = q.size
-    m = F.size
-    work = contact_work(laws, m)
-    at_end = blank_answer(laws, m)
-    qm = np.empty(n)
-    vm = np.empty(n)
-    rhs = np.empty(n)
-    permuted = np.empty(n)
-    a_free = np.empty(n)
-    a_end = np.empty(n)
-    F_end = np.empty(m)
-    seen = np.zeros(gathered.level.size)
-    solutions = 0
-    for number in range(1, span.steps + 1):
-        t = (span.begun + number) * h
-        angle, speed = rotation_at(t - 0.5 * h, turning)
-        schedule_all(laws, angle, speed, t - 0.5 * h, work.state)
-        for i in range(n):
-            qm[i] = q[i] + 0.5 * h * v[i]
-            vm[i] = v[i]
-            rhs[i] = load[i]
-        subtract_products(structure, qm, vm, rhs)
-        lu_solve(step.S, rhs, permuted, a_free)
-        for j in range(m):
-            x = 0.0
-            y = 0.0
-            for p in range(Bt.first[j], Bt.first[j + 1]):
-                i = Bt.column[p]
-                x += Bt.value[p] * (q[i] + h * v[i] + 0.5 * h * h * a_free[i])
-                y += Bt.value[p] * (v[i] + h * a_free[i])
-            work.d_free[j] = x
-            work.v_free[j] = y
             work.begin[j] = begin[j]
             F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
-        force_all(laws, work.state, work.begin, work.zeros, work.begun, True)
-        code = contact_step(laws, step.compliance, work, F, tolerance, h)
+        if whole:
+            force_all(laws, work.state, work.begin, work.zeros, work.begun, True)
+        code = contact_step(laws, step.Ad, step.Av, work, F, step.tolerance, length)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
@@ -214,26 +149,33 @@ def average_loop(span, weights, turning, structure, step, laws, motion, carried,
             total = a_free[i]
             for j in range(m):
                 total -= P[i, j] * F[j]
-            q[i] += h * v[i] + 0.5 * h * h * total
-            v[i] += h * total
-            a_end[i] = 1.5 * total - 0.5 * a[i]
+            if whole:
+                q[i] += h * v[i] + beta * h * h * total
+                v[i] += gamma * h * total
+                a_end[i] = 1.5 * total - 0.5 * a[i]
+            else:
+                q[i] = qp[i] + beta * h * h * total
+                v[i] = vp[i] + gamma * h * total
+                a_end[i] = total
             a[i] = total
-        take_energies(work.answer.energy, h, carried)
-        take_events(work.answer.energy, carried)
+        take_account(work.answer.energy, h, carried)
         for j in range(m):
             begin[j] = work.d[j]
-            F_end[j] = 1.5 * F[j] - 0.5 * before[j]
-        observe(step, F, work.d, q, v, a_end, F_end, seen)
-        gather(gathered, seen, m, True)
-        if number % span.every == 0:
-            r = number // span.every - 1
-            kept.q[r] = q
-            kept.v[r] = v
-            kept.a[r] = a_end
-            angle, speed = rotation_at(t, turning)
-            schedule_all(laws, angle, speed, t, work.state)
-            work.v[:] = 0.0
-            add_rows(Bt, v, work.v, 0)
-            force_all(laws, work.state, work.d, work.v, at_end)
-            record_whole(r, at_end, work, carried, kept)
-    return span.steps, 0, solutions
+            F_end[j] = 1.5 * F[j] - 0.5 * before[j] if whole else F[j]
+        observe(step, carried, a_end, F_end, seen)
+        gather(gathered, seen, m, whole)
+        if number % every == 0:
+            r = number // every - 1
+            set_row(kept.motion[0], r, q)
+            set_row(kept.motion[1], r, v)
+            set_row(kept.motion[2], r, a_end)
+            if whole:
+                angle, speed = rotation_at(t, step.rotation)
+                schedule_all(laws, angle, speed, t, work.state)
+                work.v[:] = 0.0
+                add_rows(step.Bt, v, work.v, 0)
+                force_all(laws, work.state, work.d, work.v, at_end)
+                record_forces(r, at_end.F, at_end.energy, 0.0, carried, kept)
+            else:
+                record_forces(r, F, work.answer.energy, 0.5 * h, carried, kept)
+    return steps, 0, solutions

@@ -22,11 +22,11 @@ _ITERATIONS = 4
 
 
 @compiled
-def rotation_at(t, turning):
-    """Angle and speed of the reference at a time; see solvers/time/local_system.py."""
-    times = turning.times
-    speeds = turning.speeds
-    angles = turning.angles
+def rotation_at(t, rotation):
+    """Angle and speed of the reference at a time, from times, speeds and angles (3, k); see solvers/time/local_system.py."""
+    times = rotation[0]
+    speeds = rotation[1]
+    angles = rotation[2]
     k = times.size
     if k == 1 or t <= times[0]:
         return angles[0] + speeds[0] * (t - times[0]), speeds[0]
@@ -39,12 +39,12 @@ def rotation_at(t, turning):
 
 
 @compiled(fast=True, inner=True)
-def subtract_products(structure, q, v, out):
+def subtract_products(step, q, v, out):
     """Subtract K q + D v from out."""
-    first = structure.first
-    column = structure.column
-    K = structure.K
-    D = structure.D
+    first = step.first
+    column = step.column
+    K = step.K
+    D = step.D
     for i in range(out.size):
         total = 0.0
         for p in range(first[i], first[i + 1]):
@@ -53,11 +53,11 @@ def subtract_products(structure, q, v, out):
 
 
 @compiled(fast=True, inner=True)
-def inertia_products(structure, x, out):
+def inertia_products(step, x, out):
     """out = M x."""
-    first = structure.first
-    column = structure.column
-    M = structure.M
+    first = step.first
+    column = step.column
+    M = step.M
     for i in range(out.size):
         total = 0.0
         for p in range(first[i], first[i + 1]):
@@ -84,12 +84,12 @@ def lu_solve(factors, b, y, x):
     diagonal = factors.diagonal
     row_place = factors.row_place
     column_place = factors.column_place
-    Lp = factors.Lp
-    Li = factors.Li
-    Lx = factors.Lx
-    Up = factors.Up
-    Ui = factors.Ui
-    Ux = factors.Ux
+    Lp = factors.L.first
+    Li = factors.L.column
+    Lx = factors.L.value
+    Up = factors.U.first
+    Ui = factors.U.column
+    Ux = factors.U.value
     n = b.size
     for i in range(n):
         y[row_place[i]] = b[i]
@@ -111,25 +111,12 @@ def lu_solve(factors, b, y, x):
 @compiled
 def take_account(energy, h, carried):
     """Sum up energies put in and dissipated; count steps on the front side, apart and on the back, and contact losses."""
-    take_energies(energy, h, carried)
-    take_events(energy, carried)
-
-
-@compiled(entry=False)
-def take_energies(energy, h, carried):
-    """Sum up energies put in and dissipated."""
     sums = carried.sums
-    for law in range(carried.last.size):
-        sums[law, 0] += h * energy[ENERGIES * law + POWER_IN]
-        sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
-
-
-@compiled(entry=False)
-def take_events(energy, carried):
-    """Count steps on the front side, apart and on the back, and contact losses."""
     last = carried.last
     events = carried.events
     for law in range(last.size):
+        sums[law, 0] += h * energy[ENERGIES * law + POWER_IN]
+        sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
         now = int(energy[ENERGIES * law + SIDE])
         if now > 0:
             events[law, 0] += 1
@@ -146,7 +133,7 @@ def take_events(energy, carried):
 def gather(gathered, values, forces, whole):
     """Take the values (g,) of a step into their statistics; the first `forces` of them, if `whole`, are means of the step.
 
-    No curve through forces crosses zero: sides that meet don't pull before.
+    A curve through forces is not continued across zero: a contact does not pull before it closes.
     """
     recent = gathered.recent
     sums = gathered.sums
@@ -210,24 +197,12 @@ def set_row(rows, r, values):
         rows[r, i] = values[i]
 
 
-@compiled(entry=False)
-def record_forces(r, h, work, carried, kept):
-    """Record local displacements, forces and energies at a step's end, whose sums follow the trapezoidal rule."""
-    set_row(kept.d, r, work.d)
-    set_row(kept.F, r, carried.F)
-    energy = work.answer.energy
+@compiled
+def record_forces(r, F, energy, ahead, carried, kept):
+    """Record local displacements, forces and energies at a step's end, from sums that reach `ahead` seconds beyond it."""
+    set_row(kept.d, r, carried.d)
+    set_row(kept.F, r, F)
     for law in range(carried.last.size):
         kept.energy[r, law, 0] = energy[ENERGIES * law + STORED]
-        kept.energy[r, law, 1] = carried.sums[law, 0] - 0.5 * h * energy[ENERGIES * law + POWER_IN]
-        kept.energy[r, law, 2] = carried.sums[law, 1] - 0.5 * h * energy[ENERGIES * law + DISSIPATED]
-
-
-@compiled(entry=False)
-def record_whole(r, answer, work, carried, kept):
-    """Record local displacements, and the answer of the laws at a step's end, where sums are over whole steps."""
-    set_row(kept.d, r, work.d)
-    set_row(kept.F, r, answer.F)
-    for law in range(carried.last.size):
-        kept.energy[r, law, 0] = answer.energy[ENERGIES * law + STORED]
-        kept.energy[r, law, 1] = carried.sums[law, 0]
-        kept.energy[r, law, 2] = carried.sums[law, 1]
+        kept.energy[r, law, 1] = carried.sums[law, 0] - ahead * energy[ENERGIES * law + POWER_IN]
+        kept.energy[r, law, 2] = carried.sums[law, 1] - ahead * energy[ENERGIES * law + DISSIPATED]

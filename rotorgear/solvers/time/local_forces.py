@@ -7,8 +7,9 @@ energy = [stored, power put in by what is prescribed, power dissipated, contact:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -128,6 +129,64 @@ class LocalForces:
         """Displacements (m,) that change the forces by the size of what cancels in them."""
         return np.concatenate([*(law.extents for law in self.laws), np.zeros(0)])
 
+    def with_laws(self, laws: tuple[LocalLaw, ...]) -> LocalForces:
+        """Other laws of the same displacements, about the same linear reference."""
+        return replace(
+            gather(laws), reference_stiffness=self.reference_stiffness, reference_damping=self.reference_damping
+        )
+
+    @property
+    def mean(self) -> LocalForces:
+        """The laws without anything that varies in time, about the same linear reference."""
+        return self.with_laws(tuple(law.mean() for law in self.laws))
+
+    @cached_property
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns (b,) among the m displacements that the entries of the flat tangents belong to."""
+        both = [(i, j) for a, b in pairwise(self.first) for i in range(a, b) for j in range(a, b)]
+        rows, columns = np.array(both, dtype=int).reshape(-1, 2).T
+        return rows, columns
+
+    def matrix(self, blocks: np.ndarray) -> np.ndarray:
+        """A tangent (m, m) from the flat one (b,)."""
+        A = np.zeros((self.m, self.m))
+        A[self.places] = blocks
+        return A
+
+    @cached_property
+    def _each(self) -> list[tuple[Any, Any, np.ndarray, slice, slice, slice]]:
+        """Of each law its functions and parameters, and its parts of the displacements, tangents and states."""
+        return [
+            (
+                self.schedules[kind],
+                self.forces[kind],
+                self.parameters[self.parameters_first[i] : self.parameters_first[i + 1]],
+                slice(self.first[i], self.first[i + 1]),
+                slice(self.block_first[i], self.block_first[i + 1]),
+                slice(self.state_first[i], self.state_first[i + 1]),
+            )
+            for i, kind in enumerate(self.kind)
+        ]
+
+    def answer(
+        self, angle: float, speed: float, t: float, d: np.ndarray, v: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Forces (m,), tangents in d and v (flat blocks) and energies (4 l,) at angle and speed of the reference and a time.
+
+        Law by law from Python: to hand all compiled functions over as one tuple costs a hundred times the evaluation.
+        """
+        F = np.zeros(self.m)
+        energy = np.zeros(4 * len(self.laws))
+        states = np.zeros(self.state_first[-1])
+        Kd = np.zeros(self.block_first[-1])
+        Kv = np.zeros(self.block_first[-1])
+        d = np.ascontiguousarray(d, dtype=float)
+        v = np.ascontiguousarray(v, dtype=float)
+        for i, (schedule, force, parameters, rows, block, own) in enumerate(self._each):
+            schedule(angle, speed, t, parameters, states[own])
+            force(parameters, states[own], d[rows], v[rows], F[rows], Kd[block], Kv[block], energy[4 * i : 4 * i + 4])
+        return F, Kd, Kv, energy
+
     def arguments(self) -> Laws:
         """What the compiled loops take."""
         from rotorgear.solvers.time.compiled import FORCE, SCHEDULE, handed
@@ -135,14 +194,7 @@ class LocalForces:
         return Laws(
             tuple(handed(one, SCHEDULE) for one in self.schedules),
             tuple(handed(one, FORCE) for one in self.forces),
-            self.kind,
-            self.first,
-            self.parameters,
-            self.parameters_first,
-            self.state_first,
-            self.block_first,
-            self.conserves,
-            self.extents,
+            *(getattr(self, name) for name in Laws._fields[2:]),
         )
 
 
@@ -152,6 +204,8 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
     Raises:
         ValueError: more than MOST_LAWS different kinds.
     """
+    from scipy.linalg import block_diag
+
     from rotorgear.solvers.time.kernel_contact import no_force, no_schedule
 
     kinds: list[tuple[Any, Any]] = []
@@ -164,25 +218,19 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
     sizes = [law.components for law in laws]
     parameters = [np.ascontiguousarray(law.parameters(), dtype=float) for law in laws]
     m = sum(sizes)
-    K = np.zeros((m, m))
-    C = np.zeros((m, m))
-    first = _starts(sizes)
-    for law, at, size in zip(laws, first, sizes, strict=False):
-        K[at : at + size, at : at + size] = law.reference_stiffness()
-        C[at : at + size, at : at + size] = law.reference_damping()
     return LocalForces(
         laws=laws,
         schedules=tuple(pair[0] for pair in filled),
         forces=tuple(pair[1] for pair in filled),
         kind=np.array([kinds.index(law.functions()) for law in laws], dtype=np.int64),
-        first=first,
+        first=_starts(sizes),
         parameters=np.concatenate([*parameters, np.zeros(0)]),
         parameters_first=_starts([p.size for p in parameters]),
         state_first=_starts([law.state_size() for law in laws]),
         block_first=_starts([size**2 for size in sizes]),
         conserves=np.array([law.conserves for law in laws], dtype=bool),
-        reference_stiffness=K,
-        reference_damping=C,
+        reference_stiffness=block_diag(*(law.reference_stiffness() for law in laws)).reshape(m, m),
+        reference_damping=block_diag(*(law.reference_damping() for law in laws)).reshape(m, m),
     )
 
 

@@ -5,6 +5,7 @@ M q'' + D q' + K q + B F(B^T q, B^T q', t) = f
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -53,6 +54,11 @@ class Rotation:
         """Angle in rad at each of the times, with 0 at time 0."""
         steps = 0.5 * (self.speeds[1:] + self.speeds[:-1]) * np.diff(self.times)
         return self.speeds[0] * self.times[0] + np.concatenate([[0.0], np.cumsum(steps)])
+
+    @property
+    def table(self) -> np.ndarray:
+        """Times, speeds and angles, (3, k), as the compiled loops read them."""
+        return np.array([self.times, self.speeds, self.angles], dtype=float)
 
     def speed(self, t: np.ndarray) -> np.ndarray:
         """Speed in rad/s at times (p,)."""
@@ -148,8 +154,8 @@ class LocalSystem:
 
 
 @dataclass
-class State:
-    """State of a run after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
+class MotionState:
+    """MotionState of a run after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
     `before` are the forces a step earlier; `d` (m,) the local displacements; `sums` (l, 2): energy put in and dissipated by
     each law, with half a step before the first for those that follow the trapezoidal rule; `events` (l, 4): steps on the front
@@ -172,8 +178,8 @@ class State:
 
     @property
     def carried(self) -> Carried:
-        """What the local forces carry on, for the compiled loops to change in place."""
-        return Carried(self.F, self.before, self.d, self.sums, self.last, self.events, self.gathered)
+        """What the compiled loops change in place."""
+        return Carried(*(getattr(self, name) for name in Carried._fields))
 
     @property
     def extremes(self) -> np.ndarray:
@@ -187,66 +193,72 @@ class State:
         self.gathered.extremes[:] = (np.inf, -np.inf)
         self.gathered.steps[:] = 0
 
-    def copy(self) -> State:
+    def copy(self) -> MotionState:
         """Return a copy with arrays of its own."""
         return deepcopy(self)
 
 
 @dataclass(frozen=True)
 class Records:
-    """r recorded steps: time (r,), local d and F (r, m), energies of each law (r, l, 3): stored, put in, dissipated.
+    """r recorded steps.
 
-    `fields` gives rows of q, v and a. `status`: 0, or what stopped the loop (-1 no convergence, -2 not finite). `done`: steps
-    that were taken. `solutions`: linear systems of m x m that were solved.
+    Attributes:
+        t: times (r,). d, F: local displacements and forces, (r, m). energy: of each law, (r, l, 3): stored, put in, dissipated.
+        motion: arrays (r, ...) in the coordinates of the integrator, and product: gives rows of q, v and a of them.
+        done: steps that were taken. status: 0, or what stopped the loop (-1 no convergence, -2 not finite).
+        solutions: linear systems of m x m that were solved.
     """
 
     t: np.ndarray
     d: np.ndarray
     F: np.ndarray
     energy: np.ndarray
-    fields: Fields
+    motion: tuple[np.ndarray, ...]
+    product: Callable[..., np.ndarray]
     done: int
-    status: int = 0
-    solutions: int = 0
+    status: int
+    solutions: int
+
+    def rows(self, kind: str, Y: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Y q, Y v or Y a at the recorded steps, or at some of them, (r, p); `kind` is "q", "v" or "a"."""
+        return self.product(kind, Y, *(array[which] for array in self.motion))
 
 
-class Fields(Protocol):
-    """Motions of the recorded steps."""
+class Stepper:
+    """An integrator made ready for one system and steps of h seconds; it records q, v and a unless it says otherwise."""
 
-    def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
-        """Y q, Y v or Y a at the recorded steps, (r, p); `kind` is "q", "v" or "a"."""
+    def __init__(self, system: LocalSystem, h: float) -> None:
+        self.system = system
+        self.h = h
 
-    def chosen(self, which: np.ndarray) -> Fields:
-        """Those of some records."""
-
-
-@dataclass(frozen=True)
-class PlainFields:
-    """q, v and a of the recorded steps, (r, n)."""
-
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-
-    def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
-        """Y q, Y v or Y a at the recorded steps, (r, p)."""
-        return np.asarray(getattr(self, kind) @ Y.T)
-
-    def chosen(self, which: np.ndarray) -> PlainFields:
-        """Those of some records."""
-        return PlainFields(self.q[which], self.v[which], self.a[which])
-
-
-class Stepper(Protocol):
-    """An integrator made ready for one system and one step."""
-
-    h: float
-
-    def start(self, state: State) -> None:
+    def start(self, state: MotionState) -> None:
         """Take a state that another integrator, or the equilibrium, has left."""
 
-    def advance(self, state: State, steps: int, every: int) -> Records:
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Of the arrays in which the motion is recorded."""
+        return (self.system.n,) * 3
+
+    def rows(self, kind: str, Y: np.ndarray, *motion: np.ndarray) -> np.ndarray:
+        """Y q, Y v or Y a, (r, p), of a recorded motion; `kind` is "q", "v" or "a"."""
+        return np.asarray(motion["qva".index(kind)] @ Y.T)
+
+    def loop(self, state: MotionState, steps: int, every: int, kept: Kept) -> tuple[int, int, int]:
+        """Advance a state in place and record; returns steps done, status and linear solutions, see `Records`."""
+        raise NotImplementedError
+
+    def advance(self, state: MotionState, steps: int, every: int) -> Records:
         """Advance a state in place by some steps and record every `every`-th."""
+        r = steps // every
+        m = self.system.m
+        motion = tuple(np.zeros((r, size)) for size in self.sizes)
+        kept = Kept(motion, np.zeros((r, m)), np.zeros((r, m)), np.zeros((r, len(self.system.forces.laws), 3)))
+        done, status, solutions = self.loop(state, steps, every, kept)
+        r = done // every
+        t = (state.step + every * np.arange(1, r + 1)) * self.h
+        state.step += done
+        motion = tuple(array[:r] for array in motion)
+        return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], motion, self.rows, done, status, solutions)
 
 
 class Integrator(Protocol):
@@ -259,9 +271,11 @@ class Integrator(Protocol):
     @property
     def keeps_energy(self) -> bool:
         """Whether contacts that part can't bring energy in, whatever the step."""
+        return True
 
     def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
         """Rows Y (b, n) of damping that the method has beside D: it dissipates |Y v|^2."""
+        return np.zeros((0, system.n))
 
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float) -> Stepper:
         """Make ready for a system, a step in s and a speed of the reference in rad/s at which D + W G is taken."""
@@ -271,25 +285,9 @@ def evaluated(
     system: LocalSystem, d: np.ndarray, v: np.ndarray, t: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Forces (m,), tangents in d and v (flat blocks) and energies (4 l,) at local displacements, velocities and a time."""
-    laws = system.forces
     angle = float(system.rotation.angle(np.array(t)))
     speed = float(system.rotation.speed(np.array(t)))
-    F = np.zeros(laws.m)
-    energy = np.zeros(4 * len(laws.laws))
-    states = np.zeros(laws.state_first[-1])
-    Kd = np.zeros(laws.block_first[-1])
-    Kv = np.zeros(laws.block_first[-1])
-    d = np.ascontiguousarray(d, dtype=float)
-    v = np.ascontiguousarray(v, dtype=float)
-    # Law by law: to hand all compiled functions over as one tuple costs a hundred times the evaluation.
-    for i, kind in enumerate(laws.kind):
-        rows = slice(laws.first[i], laws.first[i + 1])
-        block = slice(laws.block_first[i], laws.block_first[i + 1])
-        parameters = laws.parameters[laws.parameters_first[i] : laws.parameters_first[i + 1]]
-        state = states[laws.state_first[i] : laws.state_first[i + 1]]
-        laws.schedules[kind](angle, speed, t, parameters, state)
-        laws.forces[kind](parameters, state, d[rows], v[rows], F[rows], Kd[block], Kv[block], energy[4 * i : 4 * i + 4])
-    return F, Kd, Kv, energy
+    return system.forces.answer(angle, speed, t, d, v)
 
 
 def local_values(system: LocalSystem, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
@@ -301,35 +299,23 @@ def local_values(system: LocalSystem, q: np.ndarray, v: np.ndarray, t: float) ->
 def local_tangent(system: LocalSystem, d: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Local forces (m,) at rest and their tangent (m, m) at local displacements and a time."""
     F, blocks, _, _ = evaluated(system, d, np.zeros(system.m), t)
-    laws = system.forces
-    K = np.zeros((system.m, system.m))
-    for a, b, p, q in zip(laws.first[:-1], laws.first[1:], laws.block_first[:-1], laws.block_first[1:], strict=True):
-        K[a:b, a:b] = blocks[p:q].reshape(b - a, b - a)
-    return F, K
+    return F, system.forces.matrix(blocks)
 
 
-def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | None = None) -> State:
+def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | None = None) -> MotionState:
     """Return a consistent state at t = 0: M a = f - D v - K q - B F."""
-    v = np.zeros(system.n) if v is None else np.asarray(v, dtype=float)
+    q = np.array(q, dtype=float)
+    v = np.zeros(system.n) if v is None else np.array(v, dtype=float)
     F, energy = local_values(system, q, v, 0.0)
     D = system.velocity_terms(float(system.rotation.speeds[0]))
     a = acceleration(system.M, system.load - D @ v - system.K @ q - system.B @ F)
-    laws = len(system.forces.laws)
-    powers = energy.reshape(laws, 4)
+    powers = energy.reshape(-1, 4)
     d = np.asarray(system.B.T @ q, dtype=float)
-    return State(
-        0,
-        np.array(q, dtype=float),
-        v.copy(),
-        a,
-        F,
-        F.copy(),
-        d,
-        0.5 * h * powers[:, 1:3].copy(),
-        powers[:, 3].astype(np.int64),
-        np.zeros((laws, 4), dtype=np.int64),
-        blank_gathered(system.gathered_values(q, v, a, d, F)),
-    )
+    sums = 0.5 * h * powers[:, 1:3]
+    last = powers[:, 3].astype(np.int64)
+    events = np.zeros((len(powers), 4), dtype=np.int64)
+    gathered = blank_gathered(system.gathered_values(q, v, a, d, F))
+    return MotionState(0, q, v, a, F, F.copy(), d, sums, last, events, gathered)
 
 
 def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
@@ -343,26 +329,11 @@ def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
     return a
 
 
-def contact_rates(system: LocalSystem) -> np.ndarray:
+def contact_rates(M: sp.csc_array, B: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
     """Rates (m,) in rad/s at which each local displacement alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b)."""
-    k = np.diag(system.forces.reference_stiffness)
-    squares = np.zeros(system.m)
+    k = np.diag(stiffness)
+    squares = np.zeros(k.size)
     for j in np.flatnonzero(k > 0.0):
-        column = system.B[:, [j]].toarray()[:, 0]
-        squares[j] = k[j] * float(column @ acceleration(system.M, column))
+        column = np.ascontiguousarray(B[:, j])
+        squares[j] = k[j] * float(column @ acceleration(M, column))
     return np.sqrt(squares)
-
-
-def blank_records(steps: int, every: int, n: int, system: LocalSystem) -> Kept:
-    """Arrays for the records of some steps."""
-    r = steps // every
-    m = system.m
-    laws = len(system.forces.laws)
-    return Kept(
-        q=np.zeros((r, n)),
-        v=np.zeros((r, n)),
-        a=np.zeros((r, n)),
-        d=np.zeros((r, m)),
-        F=np.zeros((r, m)),
-        energy=np.zeros((r, laws, 3)),
-    )

@@ -19,26 +19,15 @@ from rotorgear.errors import AnalysisError
 from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
-from rotorgear.solvers.time.arguments import (
-    Compliance,
-    Motion,
-    NewmarkStep,
-    Observing,
-    Span,
-    SparseRows,
-    Structure,
-    Triangles,
-    Turning,
-    Weights,
-)
-from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
+from rotorgear.solvers.time.arguments import Kept, NewmarkStep, SparseRows, Triangles
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper
 
 # Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
 _FELT = 1e-5
 
 
 @dataclass(frozen=True)
-class Newmark:
+class Newmark(Integrator):
     """Method of the generalised-alpha family by its four numbers."""
 
     beta: float = 0.25
@@ -84,10 +73,6 @@ class Newmark:
             raise AnalysisError(f"alpha of HHT must lie between 0 and 1/3, got {alpha:g}")
         return Newmark(0.25 * (1.0 + alpha) ** 2, 0.5 + alpha, 0.0, alpha)
 
-    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
-        """None: all damping is in D."""
-        return np.zeros((0, system.n))
-
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> NewmarkStepper:
         """Factor the step's matrix and condense it to the contacts."""
         return NewmarkStepper(self, system, h, speed, tolerance)
@@ -102,13 +87,11 @@ def held_by_contacts(system: LocalSystem) -> bool:
     return False
 
 
-class NewmarkStepper:
+class NewmarkStepper(Stepper):
     """The method made ready for one system, step and speed."""
 
     def __init__(self, method: Newmark, system: LocalSystem, h: float, speed: float, tolerance: float) -> None:
-        self.h = h
-        self._method = method
-        self._system = system
+        super().__init__(system, h)
         am = method.alpha_m
         af = method.alpha_f
         beta = method.beta
@@ -123,73 +106,60 @@ class NewmarkStepper:
         B = system.B.toarray()
         P = factor.solve(B) if system.m else np.zeros((system.n, 0))
         condensed = (1.0 - af) * (B.T @ P)
-        rotation = system.rotation
-        observed = system.observed_rows
+        # Over a whole step, one mean acceleration moves both: q1 = q + h v + h^2/2 a, v1 = v + h a.
+        whole = method.keeps_energy
+        by_q = 0.5 if whole else beta
+        by_v = 1.0 if whole else gamma
         first, column, (K, D_nz, M) = on_one_pattern(system.K, D, system.M)
-        # SuperLU's factors without their diagonals.
         lu = factor._lu
-        L = sp.csc_array(sp.tril(lu.L, -1))
-        U = sp.csc_array(sp.triu(lu.U, 1))
-        triangles = Triangles(
-            Lp=L.indptr.astype(np.int32),
-            Li=L.indices.astype(np.int32),
-            Lx=L.data.copy(),
-            Up=U.indptr.astype(np.int32),
-            Ui=U.indices.astype(np.int32),
-            Ux=U.data.copy(),
-            diagonal=1.0 / lu.U.diagonal(),
-            row_place=lu.perm_r.astype(np.int32),
-            column_place=lu.perm_c.astype(np.int32),
-        )
-        self._weights = Weights(float(am), float(af), float(beta), float(gamma))
-        self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
-        self._structure = Structure(first, column, K, D_nz, M, np.ascontiguousarray(system.load, dtype=float))
+        observed = system.observed_rows
         self._step = NewmarkStep(
-            S=triangles,
+            h=float(h),
+            whole=whole,
+            am=float(am),
+            af=float(af),
+            beta=float(by_q),
+            gamma=float(by_v),
+            rotation=system.rotation.table,
+            tolerance=float(tolerance),
+            first=first,
+            column=column,
+            K=K,
+            D=D_nz,
+            M=M,
+            load=np.ascontiguousarray(system.load, dtype=float),
+            S=Triangles(
+                L=_compressed(sp.csc_array(sp.tril(lu.L, -1))),
+                U=_compressed(sp.csc_array(sp.triu(lu.U, 1))),
+                diagonal=1.0 / lu.U.diagonal(),
+                row_place=lu.perm_r.astype(np.int32),
+                column_place=lu.perm_c.astype(np.int32),
+            ),
             Bt=_rows(system.B.T),
             Wt=_rows(system.watched_vectors.T),
-            P=np.ascontiguousarray(P),
-            compliance=Compliance(
-                # Over a whole step, one mean acceleration moves both: q1 = q + h v + h^2/2 a, v1 = v + h a.
-                np.ascontiguousarray((0.5 if method.keeps_energy else beta) * h**2 * condensed),
-                np.ascontiguousarray((1.0 if method.keeps_energy else gamma) * h * condensed),
-            ),
-            observing=Observing(*(_rows(Y) for Y in (observed.q, observed.v, observed.a, observed.F))),
+            P=np.ascontiguousarray((1.0 - af) * P),
+            channels=tuple(_rows(Y) for Y in (observed.q, observed.v, observed.a, observed.F)),
+            Ad=np.ascontiguousarray(by_q * h**2 * condensed),
+            Av=np.ascontiguousarray(by_v * h * condensed),
         )
         self._laws = system.forces.arguments()
-        self._tolerance = tolerance
 
-    def start(self, state: State) -> None:
+    def start(self, state: MotionState) -> None:
         """Any consistent state will do; energies of whole steps have no half step before the first."""
-        if self._method.keeps_energy and state.step == 0:
+        if self._step.whole and state.step == 0:
             state.sums[:] = 0.0
 
-    def advance(self, state: State, steps: int, every: int) -> Records:
-        """Advance a state in place by some steps and record every `every`-th."""
-        from rotorgear.solvers.time.kernel_newmark import average_loop, newmark_loop
+    def loop(self, state: MotionState, steps: int, every: int, kept: Kept) -> tuple[int, int, int]:
+        """Advance a state in place and record; returns steps done, status and linear solutions."""
+        from rotorgear.solvers.time.kernel_newmark import newmark_loop
 
-        loop = average_loop if self._method.keeps_energy else newmark_loop
-        kept = blank_records(steps, every, self._system.n, self._system)
-        done, status, solutions = loop(
-            Span(steps, every, state.step, self.h),
-            self._weights,
-            self._turning,
-            self._structure,
-            self._step,
-            self._laws,
-            Motion(state.q, state.v, state.a),
-            state.carried,
-            self._tolerance,
-            kept,
-        )
-        t = (state.step + every * np.arange(1, done // every + 1)) * self.h
-        state.step += done
-        r = t.size
-        fields = PlainFields(kept.q[:r], kept.v[:r], kept.a[:r])
-        return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], fields, done, status, solutions)
+        done, status, solutions = newmark_loop(self._step, self._laws, steps, every, state.step, state.carried, kept)
+        return done, status, solutions
 
 
 def _rows(A: sp.csc_array | np.ndarray) -> SparseRows:
-    """A matrix by rows."""
-    rows = sp.csr_array(A)
-    return SparseRows(rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data.astype(float))
+    return _compressed(sp.csr_array(A))
+
+
+def _compressed(A: sp.csr_array | sp.csc_array) -> SparseRows:
+    return SparseRows(A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data.astype(float))

@@ -1,4 +1,4 @@
-"""Runs an integrator in chunks: records go to a receiver chunk by chunk, and what stops a run keeps what is there."""
+"""Runs an integrator in chunks: records go to a receiver chunk by chunk, and a run that is stopped keeps those it has."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, silent
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, Stepper
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Records, Stepper
 
 # Records in a chunk: large enough for fast products, small enough to stop and report often.
 CHUNK = 512
@@ -26,34 +26,28 @@ class Schedule:
     every: int = 1
 
 
-@dataclass
-class RunCost:
-    """What a run did: steps, linear solutions of m x m, and how often the step's matrix was made ready."""
-
-    steps: int = 0
-    solutions: int = 0
-    preparations: int = 0
-
-
-Receiver = Callable[[Records, State], None]
+Receiver = Callable[[Records, MotionState], None]
 
 
 def run(
     system: LocalSystem,
     integrator: Integrator,
     schedule: Schedule,
-    state: State,
+    state: MotionState,
     receive: Receiver,
     *,
     tolerance: float = 1e-10,
     progress: Progress = silent,
-) -> RunCost:
+) -> int:
     """Integrate from `state`, which is advanced in place, to the last step of the schedule.
+
+    Returns:
+        Linear systems of m x m that were solved.
 
     Raises:
         ConvergenceError: a step did not converge, or something is no longer finite; all records before it were received.
     """
-    cost = RunCost()
+    solutions = 0
     fixed_speed = system.rotation.is_constant or system.G is None or not system.G.nnz
     stepper: Stepper | None = None
     first = state.step
@@ -70,10 +64,8 @@ def run(
             speed = float(system.rotation.speed(np.array(middle)))
             stepper = integrator.prepare(system, schedule.h, speed, tolerance)
             stepper.start(state)
-            cost.preparations += 1
         records = stepper.advance(state, steps, schedule.every)
-        cost.steps += records.done
-        cost.solutions += records.solutions
+        solutions += records.solutions
         if not np.all(np.isfinite(state.F)) or (records.t.size and not np.all(np.isfinite(records.F[-1]))):
             raise ConvergenceError(_stopped(-2, records.t[0] if records.t.size else 0.0, schedule.h))
         receive(records, state)
@@ -81,7 +73,7 @@ def run(
             raise ConvergenceError(_stopped(records.status, (state.step + 1) * schedule.h, schedule.h))
         share = (state.step - first) / max(schedule.steps - first, 1)
         progress(share, f"step {state.step} of {schedule.steps}")
-    return cost
+    return solutions
 
 
 def _stopped(status: int, t: float, h: float) -> str:

@@ -4,7 +4,7 @@
 
 and the least and the largest value, whose difference is the peak to peak. Over a period the motion is cubic between instants
 (Hermite, from values and rates); laws change sides at instants of their own, which are found, and integrals are Gauss's between
-them, so that nothing hangs on where the instants lie.
+them, so that nothing depends on where the instants lie.
 
 The error of each statistic is that of the statistic itself, relative to its own size: see `scales` and `compared`.
 """

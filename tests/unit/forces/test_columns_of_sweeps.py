@@ -8,7 +8,7 @@ import pytest
 from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
-from rotorgear.solvers.batch.columns import ERROR, PUSH, SLOPE, STIFFNESS
+from rotorgear.solvers.batch.columns import ERROR, FORCE_SHARE, SLOPE, STIFFNESS
 
 ANGLES = np.linspace(0.0, 0.7, 9)
 
@@ -35,7 +35,9 @@ def test_a_turning_force_is_its_share_of_the_push_at_every_angle_and_speed(law: 
         table = table_of(law, 20.0)
         for i, angle in enumerate(ANGLES):
             force = law.evaluate(np.zeros(law.components), 0.0, angle=angle, speed=speed).force
-            assert [c.push * table[i, k, PUSH] for k, c in enumerate(columns)] == pytest.approx(list(force), abs=1e-9)
+            assert [c.prescribed * table[i, k, FORCE_SHARE] for k, c in enumerate(columns)] == pytest.approx(
+                list(force), abs=1e-9
+            )
 
 
 @pytest.mark.parametrize(
@@ -59,7 +61,7 @@ def test_a_contact_is_its_share_of_the_mean_stiffness_on_what_the_error_leaves(l
     d = 9e-6
     for i, angle in enumerate(ANGLES):
         row = table[i, 0]
-        force = column.stiffness * row[STIFFNESS] * (d - row[ERROR]) + column.push * row[PUSH]
+        force = column.stiffness * row[STIFFNESS] * (d - row[ERROR]) + column.prescribed * row[FORCE_SHARE]
         assert force == pytest.approx(law.evaluate([d], angle=angle).force[0], rel=1e-9)
     # The time of the sweep counts radians of a mesh of this order: e falls or rises with it.
 

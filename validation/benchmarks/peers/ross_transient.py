@@ -47,7 +47,7 @@ def ours() -> tuple[np.ndarray, float, int]:
     stepper = Newmark().prepare(local, STEP, SPEED)
     state = state_at_rest(local, STEP, np.zeros(local.n))
     row = system.dofs.transform[[6 * system.nodes.at(place.shaft, float(place.at))], :].toarray()
-    x = stepper.advance(state.copy(), STEPS, 1).fields.rows("q", row)[:, 0]
+    x = stepper.advance(state.copy(), STEPS, 1).rows("q", row)[:, 0]
     begin = time.process_time()
     stepper.advance(state, MORE, 10)
     return np.concatenate([[0.0], x]), (time.process_time() - begin) / MORE, local.n

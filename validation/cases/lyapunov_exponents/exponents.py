@@ -12,7 +12,7 @@ from rotorgear.analysis.sweep.point import at_rest, ready, table_of
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.solvers.batch.flow_exponents import flow_exponents
-from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block
 from validation.oscillators import local_system
 
 # zeta, mean force, its amplitude, frequency, backlash, state at phase 0, steps a period, periods that settle and count.
@@ -57,6 +57,6 @@ def _orbit(name: str) -> np.ndarray:
     system = local_system([[1.0]], [[2.0 * zeta]], [[0.0]], [mean], laws, speed=frequency)
     point = ready(at_rest(system, [Fraction(1)], (name,)), frequency)
     starts = [Start(np.array([x0 * (1.0 + 1e-3 * i)]), np.array([v0 / frequency])) for i in range(_LANES)]
-    orbits = run_block([point.system] * _LANES, starts, [table_of(point, steps)], Plan(steps, settle, count, 2))
+    orbits = run_block([point.system] * _LANES, starts, [table_of(point, steps)], BatchPlan(steps, settle, count, 2))
     rates = [exponents(orbit.growth, 2.0 * np.pi / frequency)[0] for orbit in orbits]
     return np.asarray(np.mean(rates, axis=0))

@@ -18,7 +18,7 @@ from rotorgear.analysis.sweep.gather import notes
 from rotorgear.analysis.sweep.point import at_rest, common_period, ready, table_of
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block
 from rotorgear.solvers.batch.small_system import SmallSystem
 from tests.paths import ROOT
 from validation.benchmarks.sweep_speed import apart
@@ -66,7 +66,7 @@ def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
     steps = 800
     periods = 6
     start = Start(point.system.rest, np.zeros(n))
-    orbit = run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, periods, 0))[0]
+    orbit = run_block([point.system], [start], [table_of(point, steps)], BatchPlan(steps, 0, periods, 0))[0]
     fine = 4000
     q0 = np.linalg.solve(point.system.root.T, start.z)
     motion = integrate(local, "average acceleration", 2.0 * np.pi / speed / fine, fine * periods, q0, np.zeros(n), fine)
@@ -84,7 +84,9 @@ def test_the_method_is_of_order_four_where_teeth_do_not_part() -> None:
 
     def end(steps: int) -> float:
         start = Start(np.zeros(1), np.zeros(1))
-        return float(run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, 3, 0))[0].end.z[0])
+        return float(
+            run_block([point.system], [start], [table_of(point, steps)], BatchPlan(steps, 0, 3, 0))[0].end.z[0]
+        )
 
     errors = [abs(end(steps) - end(1280)) for steps in (20, 40, 80)]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
@@ -107,7 +109,7 @@ def test_all_exponents_sum_up_to_the_trace_and_a_rigid_motion_is_left_out(rigid:
     own = 2 * (2 - len(system.rigid))
     table = np.zeros((2 * 100 + 1, 1, 4))
     table[:, :, 0] = 1.0
-    plan = Plan(100, 40, 400, own)
+    plan = BatchPlan(100, 40, 400, own)
     orbit = run_block([system], [Start(np.zeros(2), np.array([0.1, 0.0]))], [table], plan)[0]
     mean, _ = exponents(orbit.growth, 2.0 * np.pi / 0.8)
     # Damping in proportion to the mass: each mode decays at half its ratio, 0.02.
@@ -481,5 +483,5 @@ def test_a_slow_motion_does_not_look_like_growth() -> None:
     local = local_system(np.diag([1.0, 1.0]), np.zeros((2, 2)), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=1.0)
     point = ready(at_rest(local, [Fraction(1)], ("m",)), 1.0)
     start = Start(point.system.rest, np.zeros(2))
-    orbit = run_block([point.system], [start], [table_of(point, 100)], Plan(100, 60, 60, 1))[0]
+    orbit = run_block([point.system], [start], [table_of(point, 100)], BatchPlan(100, 60, 60, 1))[0]
     assert abs(exponents(orbit.growth, 1.0)[0][0]) < 1e-4

@@ -17,7 +17,7 @@ from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.torque_curve import TorqueCurve
 from rotorgear.solvers.batch.own_laws import not_held, own_laws
-from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block
 from rotorgear.solvers.time.local_system import LocalSystem
 from tests.models import spur_pair
 from validation.oscillators import integrate, local_system
@@ -59,7 +59,7 @@ def test_laws_follow_newmark_in_small_steps(law: ForceLaw, columns: np.ndarray) 
     steps = 800
     periods = 5
     start = Start(point.system.rest, np.zeros(5))
-    orbit = run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, periods, 0))[0]
+    orbit = run_block([point.system], [start], [table_of(point, steps)], BatchPlan(steps, 0, periods, 0))[0]
     fine = 6000
     q0 = np.linalg.solve(point.system.root.T, start.z)
     h = 2.0 * np.pi / 0.9 / fine
@@ -83,7 +83,9 @@ def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pyte
         # The same measure of tangents for both: that of a law of its own is taken at its steepest.
         points = [replace(p, system=replace(p.system, energy=np.eye(5))) for p in points]
         starts = [Start(p.system.rest, np.zeros(5)) for p in points]
-        return run_block([p.system for p in points], starts, [table_of(points[0], 200)], Plan(200, 3, 12, 4, warm=3))
+        return run_block(
+            [p.system for p in points], starts, [table_of(points[0], 200)], BatchPlan(200, 3, 12, 4, warm=3)
+        )
 
     for a, b in zip(orbit(False), orbit(True), strict=True):
         assert a.section == pytest.approx(b.section, rel=1e-9, abs=1e-11)

@@ -22,8 +22,7 @@ from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.torque_curve import TorqueCurve
 from rotorgear.results.portrait import DISPLACEMENT, FORCE, Portraits
-from rotorgear.solvers.batch.run_block import Plan, run_block
-from rotorgear.solvers.batch.trajectory import trajectory
+from rotorgear.solvers.batch.run_block import BatchPlan, run_block, trajectory
 from tests.unit.analysis.sweep.test_sweep import PAIR, TWO_STAGES
 from tests.unit.analysis.sweep.test_sweep_laws import MESH, with_law
 from validation.oscillators import local_system
@@ -53,8 +52,8 @@ def check(point: Point, steps: int, periods: int, settle: int = 20) -> None:
     """The trajectory begins with the last Poincare point and goes through those of the batch, with their forces."""
     table = table_of(point, steps)
     system = point.system
-    settled = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle, 2, 0))[0]
-    whole = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle + 2, periods, 0))[0]
+    settled = run_block([system], [start_of(system, 1, 3)], [table], BatchPlan(steps, settle, 2, 0))[0]
+    whole = run_block([system], [start_of(system, 1, 3)], [table], BatchPlan(steps, settle + 2, periods, 0))[0]
     path = trajectory(system, settled.end, table, steps, periods + 1, begun=settle + 2)
     mesh = system.columns.counted
     length = system.turns * steps
@@ -113,7 +112,7 @@ def test_a_linear_forced_oscillator_has_the_lines_of_its_closed_form() -> None:
     local = local_system(np.eye(1), [[damping]], [[ground]], [0.1], [(law, [[1.0]])], speed=w)
     point = ready(at_rest(local, [Fraction(1)], ("m",)), w)
     table = table_of(point, 400)
-    settled = run_block([point.system], [start_of(point.system, 0, 1)], [table], Plan(400, 80, 1, 0))[0]
+    settled = run_block([point.system], [start_of(point.system, 0, 1)], [table], BatchPlan(400, 80, 1, 0))[0]
     path = trajectory(point.system, settled.end, table, 400, 16)
     own = Portraits(*(np.array(x) for x in ([0], [0], [1], [16], [400])), path[None, None])
     order, _ = own.spectrum(0)

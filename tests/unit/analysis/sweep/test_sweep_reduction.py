@@ -18,7 +18,7 @@ from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.model.model import Model
-from rotorgear.solvers.batch.run_block import Plan, Start, run_block
+from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block
 from rotorgear.solvers.batch.small_system import small_system
 from tests.models import pair_file, spur_pair
 from tests.paths import ROOT
@@ -142,7 +142,7 @@ def test_all_exponents_of_a_reduced_system_sum_up_to_its_trace(tmp_path: Path) -
     assert np.abs(system.rigid @ system.B).max() < 1e-12 * np.abs(system.B).max()
     own = 2 * (system.n - 1)
     assert own > 12
-    plan = Plan(600, 5, 40, own)
+    plan = BatchPlan(600, 5, 40, own)
     orbit = run_block([system], [Start(system.rest, np.zeros(system.n))], [table_of(point, 600)], plan)[0]
     mean, _ = exponents(orbit.growth, 1.0)
     damping = system.D + (system.B * system.columns.damping) @ system.B.T

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from rotorgear.forces.plain_spring import PlainSpring
-from rotorgear.solvers.time.arguments import Turning
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.kernel_time import rotation_at
 from rotorgear.solvers.time.local_system import Rotation
@@ -71,9 +70,8 @@ def test_the_angle_is_the_integral_of_the_speed_in_the_loop_and_outside() -> Non
     grid = np.linspace(0.0, 1.3, 130001)
     middle = 0.5 * (grid[1:] + grid[:-1])
     whole = np.concatenate([[0.0], np.cumsum(np.diff(grid) * np.interp(middle, rotation.times, rotation.speeds))])
-    turning = Turning(rotation.times, rotation.speeds, rotation.angles)
     for t in (0.03, 0.1, 0.25, 0.4, 0.45, 0.77, 1.0, 1.2):
-        angle, rate = rotation_at(t, turning)
+        angle, rate = rotation_at(t, rotation.table)
         assert rate == pytest.approx(speed(t))
         assert angle == pytest.approx(np.interp(t, grid, whole), abs=1e-6)
         assert rotation.angle(np.array(t)) == pytest.approx(angle, abs=1e-12)

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_forces import gather
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, State, state_at_rest
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Rotation, state_at_rest
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 
@@ -29,12 +29,12 @@ def period(stiffness: float) -> float:
     return float(free + (np.pi - 2.0 * np.arctan2(1.0 / (1.0 + stiffness), np.sqrt(8.0) / rate)) / rate)
 
 
-def energies(system: LocalSystem, method: Integrator, h: float, steps: int) -> tuple[np.ndarray, State]:
+def energies(system: LocalSystem, method: Integrator, h: float, steps: int) -> tuple[np.ndarray, MotionState]:
     state = state_at_rest(system, h, np.array([-3.0]))
     found: list[np.ndarray] = []
 
     def receive(records, state):  # type: ignore[no-untyped-def]
-        q, v = (records.fields.rows(kind, np.eye(1))[:, 0] for kind in "qv")
+        q, v = (records.rows(kind, np.eye(1))[:, 0] for kind in "qv")
         found.append(0.5 * v**2 + 0.5 * q**2 + records.energy[:, 0, 0])
 
     run(system, method, Schedule(h, steps), state, receive)
@@ -79,7 +79,7 @@ def test_the_impulse_of_impacts_is_that_of_the_momentum_where_no_step_sees_them(
 
     def receive(records, state):  # type: ignore[no-untyped-def]
         nonlocal springs
-        q = np.concatenate([[-3.0], records.fields.rows("q", np.eye(1))[:, 0]])
+        q = np.concatenate([[-3.0], records.rows("q", np.eye(1))[:, 0]])
         springs += h * float((0.5 * (q[1:] + q[:-1])).sum())
 
     run(system, method, Schedule(h, 50), state, receive)

@@ -14,7 +14,8 @@ def test_contact_is_lost_each_time_a_flank_is_left() -> None:
     events = np.zeros((2, 4), np.int64)
     last = np.array([1, 0], np.int64)
     nothing = blank_gathered(np.zeros(2))
-    carried = Carried(np.zeros(2), np.zeros(2), np.zeros(2), np.zeros((2, 2)), last, events, nothing)
+    x = np.zeros(2)
+    carried = Carried(x, x, x, x, x, x, np.zeros((2, 2)), last, events, nothing)
     for side in sides:
         energy = np.zeros(8)
         energy[3] = side
