@@ -76,8 +76,8 @@ def counts() -> None:
     right.plot(spins, np.array(tracks), color=COLOURS[0], linewidth=1.2)
     right.plot(spins, spins, color="black", linewidth=0.8, linestyle=":")
     right.text(1370.0, 1460.0, "w = W", ha="right")
-    sparse = [sp.csc_array(A) for A in (M, 0.0 * G, G, K, 0.0 * K, 0.0 * K)]
-    family = Affine(*sparse, 0.0, 1500.0)
+    none = sp.csc_array((4, 4))
+    family = Affine(sp.csc_array(M), none, sp.csc_array(G), sp.csc_array(K), none, none, 0.0, 1500.0)
     for root in synchronous_speeds(family, 1.0):
         right.plot(root.speed, root.speed, "o", color=COLOURS[1], markersize=5)
     right.set_ylim(0.0, 3000.0)
