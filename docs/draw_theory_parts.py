@@ -113,6 +113,7 @@ def teeth(figure: Figure) -> None:
     model = rg.load("pair.toml")
     left, right = figure.subplots(1, 2, width_ratios=[1.35, 1.0])
     found = rg.mesh(model, "stage")
+    assert found.tangent is not None
     u = np.linspace(0.0, 1.0, 601)
     left.plot(
         u, 1e-9 * np.interp(u, found.position, found.tangent, period=1.0), color=ORANGE, label="loaded teeth, tangent"
@@ -145,6 +146,7 @@ def bearings(figure: Figure) -> None:
     import rotorgear as rg
     from rotorgear.analysis.bearing.state import carried, change_of_tangents, law_at, laws_of, relative
     from rotorgear.forces.ball_bearing import BallBearing
+    from rotorgear.forces.journal_film import JournalFilm
 
     left, right = figure.subplots(1, 2)
     y = np.linspace(-16e-6, -4e-6, 601)
@@ -170,6 +172,7 @@ def bearings(figure: Figure) -> None:
     speed = 9000.0 * np.pi / 30.0
     state = law_at(laws_of(model, speed), "bearings.left")
     film = state.part.law
+    assert isinstance(film, JournalFilm)
     cells = np.array([30, 60, 120, 240, 480])
     runs = [carried(state, replace(film, around=int(n), along=max(int(n) // 20, 2)), speed) for n in cells]
     finest = carried(state, replace(film, around=960, along=48), speed)
@@ -209,7 +212,7 @@ def bodies(figure: Figure) -> None:
         hz, shapes = body.modes()
         count = len(whole)
         error = hz[:count] / whole - 1.0
-        told = [0.5 * body.eigenvalue_error((2.0 * np.pi * hz[k]) ** 2, shapes[:, k]) for k in range(count)]
+        told = [0.5 * (body.eigenvalue_error((2.0 * np.pi * hz[k]) ** 2, shapes[:, k]) or 0.0) for k in range(count)]
         ratio = hz[:count] / body.left_frequency
         real = error > 1e-9
         left.loglog(ratio[real], error[real], "o", color=colour, label=f"{len(body.fixed_frequency)} modes: error")
