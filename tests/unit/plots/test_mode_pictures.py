@@ -90,7 +90,7 @@ def test_wishes_that_make_no_sense_are_refused(tmp_path):
         write_modes(modes_of(PAIR), tmp_path, modes=[8])
     with pytest.raises(AnalysisError, match="at least 100 pixels each way, got 1600 x 40"):
         write_modes(modes_of(PAIR), tmp_path, size=(1600, 40))
-    with pytest.raises(AnalysisError, match="the amplitude must be"):
+    with pytest.raises(AnalysisError, match="the amplitude is a positive share"):
         write_modes(modes_of(PAIR), tmp_path, amplitude=-1.0)
 
 

@@ -194,7 +194,7 @@ def test_teeth_of_the_second_helix_are_ahead_by_the_stagger_where_the_input_turn
     system = System(model)
     (force, _) = system.state.forces
     whole = system.layout.mesh("pair").stiffness(sense=force.torque_sense)
-    for u, k in zip(whole.position, whole.normal, strict=True):
+    for u, k in zip(whole.position, whole.transverse / math.cos(whole.base_helix_angle) ** 2, strict=True):
         later = u if driver == "one" else -u
         angle = (2.0 * math.pi * later - first.phase) / first.order
         both = sum(law.evaluate([1e-3], angle=angle).in_displacement[0, 0] for law in (first, second))

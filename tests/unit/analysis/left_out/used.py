@@ -97,8 +97,10 @@ VERBS: dict[str, Verb] = {
 
 
 def _sweep(model: rg.Model) -> Any:
-    """One point and one period: what moves it does so there. Modes are kept where all of them would need too short steps."""
-    run = partial(rg.sweep, over={"as given": [0.0]}, change=lambda same, _: same, discard=0, sample=1, exponents=0)
+    """One point, a turn or some periods of the mesh: what moves it does so there. Without too short steps: with few modes."""
+    turns = bool(model.unbalances or model.loads)
+    periods = {"discard": 0, "sample": 1} if turns else {"discard": 20, "sample": 10}
+    run = partial(rg.sweep, over={"as given": [0.0]}, change=lambda same, _: same, exponents=0, **periods)
     try:
         return run(model)
     except rg.RotorgearError:
