@@ -88,6 +88,8 @@ def _masses(system: System) -> dict[str, tuple[float, float, float]]:
         M = group.matrices.mass
         if M is None or group.shaft not in found:
             continue
+        if group.part.removeprefix("gears.") in system.layout.elastic_bodies:
+            M = M[:, :6, :6]  # the motion of the hub; the modes behind it do not take part in a rigid motion
         x = np.arange(0, M.shape[1], 6)
         tz = np.arange(5, M.shape[1], 6)
         own = found[group.shaft]

@@ -408,3 +408,14 @@ def test_kept_bodies_keep_their_surface_and_their_error(tmp_path: Path, monkeypa
     assert again.surface is not None
     np.testing.assert_array_equal(again.surface.basis, first.surface.basis)
     assert again.mesh_error == first.mesh_error > 0.0
+
+
+def test_a_shaft_carries_the_mass_of_its_wheel_and_none_of_the_wheels_modes() -> None:
+    model = rg.load(ROOT / "models" / "elastic_wheel.toml")
+    wheel = model.layout.gear("wheel").wheel
+    assert wheel is not None
+    alone, row = rg.check(model).shafts
+    assert alone.length_m == row.length_m  # two shafts alike, of which one carries the wheel
+    assert row.body_mass_kg == pytest.approx(wheel.body_mass, rel=1e-9)
+    bare = alone.polar_inertia_kg_m2 - model.layout.gear("pinion").body.polar_inertia
+    assert row.polar_inertia_kg_m2 == pytest.approx(bare + wheel.polar_inertia, rel=1e-9)
