@@ -17,7 +17,7 @@ the commands, `rotorgear COMMAND --help` the options of one; `rotorgear --instal
 An option means the same everywhere: `--from`, `--to` and `--speed` are speeds of the input shaft, `--rig` is a file of
 measured frequencies, `--json` and `--save` write the result, `--vtk` a folder for ParaView, and `--plot` draws one picture to a
 file that ends in .png, .svg or .pdf, or every picture into a folder. A command ends with exit code 0, or with 2 and one
-report where what was asked can't be done ([errors](errors.md)).
+report where what was asked can't be done ([Troubleshooting](errors.md)).
 """
 
 

@@ -200,7 +200,7 @@ Errors, tables and energies use them.
 **Places**: z runs along every shaft, from one origin that you choose for the whole gearbox. `at` is a z in that
 frame, or `"start"` or `"end"` of the shaft. Signs and axes stand in [conventions](conventions.md).
 
-**Mistakes** are reported all at once: see [errors](errors.md).
+**Mistakes** are reported all at once: see [Troubleshooting](errors.md).
 
 **Editors** complete and check keys from a JSON Schema. Write it with `rotorgear schema --json model.schema.json`
 and put `#:schema ./model.schema.json` into the first line of the model (Taplo; "Even Better TOML" in VS Code).
