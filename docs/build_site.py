@@ -30,7 +30,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
         "gear_bodies", "layout", "standards", "rig", "scatter", "report", "rexs", "export", "python",
     ),
     "Notebooks": ("rotordynamicist", "gear_engineer"),
-    "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions", "glossary"),
+    "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Reference": ("commands", "model_file", "api", "json", "errors", "stability"),
     "Validation": (
         "validation", "seeds", "accuracy", "extreme", "run_time",

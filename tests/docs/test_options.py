@@ -34,7 +34,7 @@ OF_BENCHMARKS = {
     "run_time.md": {"--repetitions", "--longest"},
 }
 # Pages that tell what former options are called now.
-OF_FORMER_NAMES = {"glossary.md"}
+OF_FORMER_NAMES = {"conventions.md"}
 _CODE = re.compile(r"^```.*?^```|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 _OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 _CALL = re.compile(r"rotorgear (?P<command>[a-z-]+)(?P<rest>[^\n`]*)")
