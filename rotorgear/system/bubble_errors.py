@@ -103,7 +103,7 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
     for shaft, elements, dofs, bubbles in bubble_groups(system):
         moved = _moved(system, speed or 0.0, shaft, bubbles, s, right[dofs], left[dofs].conj())
         pieces = np.array([element.piece for element in elements])
-        for piece in np.unique(pieces).tolist():
+        for piece in sorted(set(pieces.tolist())):  # np.unique would load numpy.ma
             change = np.abs(moved[np.flatnonzero(pieces == piece)].sum(axis=0))
             finite = np.where(np.isfinite(change), change, 0.0)
             # The root in the form that loses no digits where the square matters little.

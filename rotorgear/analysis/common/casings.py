@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.analysis.common.excitation import rates
 from rotorgear.casings.settings import BEYOND
 from rotorgear.model.model import Model
 from rotorgear.quantity import millimetres
@@ -17,6 +16,8 @@ from rotorgear.system.system import System
 if TYPE_CHECKING:
     from rotorgear.solvers.time.local_forces import LocalLaw
 
+# Harmonics of a law that are looked at, at most.
+_HARMONICS = 10
 # Modes of a casing that are taken where the file does not ask for more.
 MOST_MODES = 120
 # A bearing nearer to the point of its seat than this stands there.
@@ -131,3 +132,14 @@ def casing_warnings(errors: np.ndarray, s: np.ndarray) -> Iterator[str]:
             f"casings: their reduction makes {over.size} of {len(errors)} frequencies wrong by more than {NOTICED:g}, the "
             f"first of them at {abs(s[first]) / (2.0 * np.pi):.4g} Hz by {errors[first]:.1e}; raise modes_to"
         )
+
+
+def rates(laws: Sequence[LocalLaw], speed: float) -> np.ndarray:
+    """Rad/s of all harmonics of all laws that matter, up to the 10th, at a speed of the reference in rad/s, each once."""
+    frequencies = [
+        each.order * abs(speed) * harmonic
+        for law in laws
+        for each in law.repeats()
+        for harmonic in range(1, min(each.harmonics, _HARMONICS) + 1)
+    ]
+    return np.unique(np.round([w for w in frequencies if w > 0.0], 6))

@@ -1,27 +1,19 @@
-"""What excites at which frequency: orders of every shaft and mesh, sidebands of meshes, and harmonics of force laws."""
+"""What excites at which frequency: orders of every shaft and mesh, and sidebands of meshes."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from rotorgear.model.model import Model
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.comparison import ExcitationLine
-
-if TYPE_CHECKING:
-    from rotorgear.solvers.time.local_forces import LocalLaw
 
 # Unbalance and misalignment of shafts; the first harmonics of a mesh carry most of its transmission error.
 SHAFT_ORDERS = (1, 2)
 MESH_ORDERS = (1, 2, 3)
 # Kinds of lines, and the parts that they are of.
 _PARTS = {"shaft": "shaft", "mesh": "mesh", "sideband": "mesh"}
-# Harmonics of a law that are looked at, at most.
-_HARMONICS = 10
 
 
 def excitation_lines(model: Model, speed: float) -> tuple[ExcitationLine, ...]:
@@ -67,14 +59,3 @@ def excitation_orders(
         ExcitationOrder(f"{_PARTS[kind]} {', '.join(names)} {label}", kind, tuple(names), order)
         for (kind, label, order), names in found.items()
     )
-
-
-def rates(laws: Sequence[LocalLaw], speed: float) -> np.ndarray:
-    """Rad/s of all harmonics of all laws that matter, up to the 10th, at a speed of the reference in rad/s, each once."""
-    frequencies = [
-        each.order * abs(speed) * harmonic
-        for law in laws
-        for each in law.repeats()
-        for harmonic in range(1, min(each.harmonics, _HARMONICS) + 1)
-    ]
-    return np.unique(np.round([w for w in frequencies if w > 0.0], 6))

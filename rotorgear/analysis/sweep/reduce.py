@@ -20,7 +20,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from rotorgear.analysis.common.excitation import rates
+from rotorgear.analysis.common.casings import rates
 from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction
 from rotorgear.solvers.batch.columns import PRESCRIBED
