@@ -108,7 +108,7 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "standards",
-        "`rotorgear standards MODEL --json standards.json`. [Rules of standards](standards.md) says what is compared.",
+        "`rotorgear standards MODEL --json standards.json`. [Rules of standards](report.md#rules-of-standards) says what is compared.",
         (("standards", ""),),
     ),
     (
@@ -160,7 +160,7 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "optimise",
-        "`rotorgear optimise MODEL --free ADDRESS --json optimise.json`. [Layout](layout.md) says what is done.",
+        "`rotorgear optimise MODEL --free ADDRESS --json optimise.json`. [Layout](report.md#layout) says what is done.",
         (("optimise", ""),),
     ),
     (

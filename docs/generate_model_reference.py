@@ -178,7 +178,7 @@ RULES: dict[type[BaseModel], str] = {
         [Forces and moments](static.md#forces-and-moments) says which analysis takes what.""",
     Scatter: """
 The key is an address in quotes, such as `"bearings.*.stiffness" = { sigma = "10 %" }`; of two that name one number the later
-counts. Give one of `sigma`, `tolerance` and `grade`. [Scatter](scatter.md) says what is made of it.
+counts. Give one of `sigma`, `tolerance` and `grade`. [Scatter](report.md#scatter) says what is made of it.
 """,
     Point: """
         Give `on`, or `shaft` and `at`. The modal result lists each mode's amplitude there.""",
