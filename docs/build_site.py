@@ -31,7 +31,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     ),
     "Notebooks": ("rotordynamicist", "gear_engineer"),
     "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions"),
-    "Reference": ("commands", "model_file", "api", "json", "errors", "stability"),
+    "Reference": ("commands", "model_file", "api", "json", "errors"),
     "Validation": (
         "validation", "seeds", "accuracy", "extreme", "run_time",
     ),
