@@ -27,7 +27,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Start": ("index", "first_gearbox", "gallery"),
     "How to": (
         "modal", "campbell", "static", "response", "transient", "sweep", "orbits", "gears", "mesh", "bearings", "casings",
-        "gear_bodies", "rig", "report", "rexs", "export", "python",
+        "gear_bodies", "rig", "report", "rexs", "python",
     ),
     "Notebooks": ("rotordynamicist", "gear_engineer"),
     "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions"),
