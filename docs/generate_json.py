@@ -170,7 +170,7 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "gear",
-        "`rotorgear gear MODEL --json gear.json`. The [page on gears](gears.md) says what the numbers mean.",
+        "`rotorgear gear MODEL --json gear.json`. The [page on gears](mesh.md#the-gear-sheet) says what the numbers mean.",
         (("gear", ""),),
     ),
     (
