@@ -26,7 +26,7 @@ DOCS = ROOT / "docs"
 NAVIGATION: dict[str, tuple[str, ...]] = {
     "Start": ("index", "first_gearbox", "gallery"),
     "How to": (
-        "modal", "static", "response", "transient", "sweep", "orbits", "mesh", "bearings", "casings",
+        "modal", "static", "response", "transient", "sweep", "mesh", "bearings", "casings",
         "gear_bodies", "rig", "report", "rexs", "python",
     ),
     "Notebooks": ("rotordynamicist", "gear_engineer"),
