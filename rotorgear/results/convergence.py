@@ -132,7 +132,7 @@ class MeshConvergenceStudy(Result, kind="mesh_convergence", analysis="accuracy")
         """What was measured, and the meshes with their errors, real and estimated."""
         yield Line(self.title or "Mesh", f": mesh '{self.mesh}', F_bt {self.base_force_n:.6g} N on a helix")
         yield from (f"body: {self.body}", f"errors in % against {self.reference};")
-        yield from ("after the stroke what the analysis itself estimates", "")
+        yield from ("behind the stroke: what the analysis itself estimates", "")
         rows = []
         for rung in self.rungs:
             errors = []

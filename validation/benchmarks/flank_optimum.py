@@ -1,4 +1,4 @@
-"""Height and length of the tip relief of a spur pair over three torques: `rotorgear mesh --optimise` beside a grid of 13 x 13.
+"""Height and length of the tip relief of a spur pair over three torques: `rotorgear optimise-flanks` beside a grid of 13 x 13.
 
 Run `python -m validation.benchmarks.flank_optimum`. It prints both best flanks and CPU seconds of the search, and ends with 1
 where the search is worse than the grid or takes 60 CPU seconds.

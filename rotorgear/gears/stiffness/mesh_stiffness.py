@@ -229,6 +229,6 @@ def given_stiffness(
         definition="tangent",
         helices=helices,
         load=load,
-        body="as whoever gave the stiffness took it",
+        body="not known, since the stiffness is given",
         base_helix_angle=base_helix_angle,
     )

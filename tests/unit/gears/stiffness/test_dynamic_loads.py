@@ -1,4 +1,4 @@
-"""K_v and friction laws against hand calculation and limits."""
+"""K_v against hand calculation and limits."""
 
 from __future__ import annotations
 
@@ -8,11 +8,6 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.loaded.friction import (
-    mean_mesh_friction,
-    saturating_friction,
-    xu_kahraman_friction,
-)
 from rotorgear.gears.stiffness.dynamic_factor import iso_dynamic_factor, reduced_mass, simple_dynamic_factor
 
 deg = math.radians
@@ -86,36 +81,3 @@ def test_no_load_and_a_contact_ratio_of_1_are_refused() -> None:
         iso_dynamic_factor(**MESH | {"total_contact_ratio": 1.0})
     with pytest.raises(AnalysisError, match="grades 3 to 12, not 2"):
         simple_dynamic_factor(10.0, 20, 3.0, 1e5, 1.0, 2)
-
-
-def test_the_mean_friction_of_a_mesh_grows_with_the_fifth_root_of_its_load() -> None:
-    mean = mean_mesh_friction(5e5, 10.0, 0.01, 0.02)
-    assert mean_mesh_friction(32 * 5e5, 10.0, 0.01, 0.02) == pytest.approx(2 * mean, rel=1e-12)
-    assert mean == pytest.approx(0.045 * (500 / 100) ** 0.2 * 20**-0.05, rel=1e-12)
-
-
-def test_ehl_friction_vanishes_in_pure_rolling_and_has_the_usual_size() -> None:
-    at = {
-        "hertz_pressure": 1e9,
-        "viscosity": 0.02,
-        "entraining_velocity": 8.0,
-        "curvature_radius": 0.01,
-        "roughness": 0.3e-6,
-    }
-    assert xu_kahraman_friction(0.0, **at) == 0.0
-    assert 0.01 < xu_kahraman_friction(0.3, **at) < 0.08
-    assert xu_kahraman_friction(-0.3, **at) == xu_kahraman_friction(0.3, **at)
-    f = (
-        -8.916465
-        - 0.354068 * 0.3 * math.log10(20)
-        + 2.812084 * math.exp(-0.3 * math.log10(20))
-        + 0.620305 * math.exp(0.3)
-    )
-    expected = math.exp(f) * 0.3**1.036077 * 8**-0.100601 * 20**0.752755 * 0.01**-0.390958
-    assert xu_kahraman_friction(0.3, **at) == pytest.approx(expected, rel=1e-12)
-
-
-def test_saturating_friction_is_odd_and_bounded() -> None:
-    assert saturating_friction(0.0, 0.06, 20.0) == 0.0
-    assert saturating_friction(-0.5, 0.06, 20.0) == -saturating_friction(0.5, 0.06, 20.0)
-    assert saturating_friction(1e3, 0.06, 20.0) == pytest.approx(0.06, rel=1e-12)
