@@ -33,7 +33,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Reference": ("commands", "model_file", "api", "json", "errors"),
     "Validation": (
-        "validation", "seeds", "accuracy", "extreme", "run_time",
+        "validation", "seeds", "accuracy", "extreme",
     ),
     "Development": ("architecture",),
 }  # fmt: skip

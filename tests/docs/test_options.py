@@ -31,7 +31,7 @@ OTHER_TOOLS = ("docs/", "python", "pytest", "dask", "check.py", "pip ", "octave"
 OF_BENCHMARKS = {
     "casings.md": {"--large"},
     "response.md": {"--form", "--flank"},
-    "run_time.md": {"--repetitions", "--longest"},
+    "accuracy.md": {"--repetitions", "--longest"},
 }
 # Pages that tell what former options are called now.
 OF_FORMER_NAMES = {"conventions.md"}
