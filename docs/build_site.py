@@ -27,7 +27,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Start": ("index", "first_gearbox", "gallery"),
     "How to": (
         "modal", "static", "response", "transient", "sweep", "mesh", "bearings", "casings",
-        "gear_bodies", "rig", "report", "rexs", "python",
+        "rig", "report", "rexs", "python",
     ),
     "Notebooks": ("rotordynamicist", "gear_engineer"),
     "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions"),

@@ -28,12 +28,12 @@ plt.rcParams |= {"font.size": 9.0, "svg.hashsalt": "rotorgear", "axes.spines.top
 
 
 def from_page(page: str) -> None:
-    """Write the files that a page shows into this folder, and run its first Python block, which makes a mesh on two pages."""
+    """Write the files that a page shows into this folder, and run the block of Python that makes the mesh of casings."""
     blocks = marked_blocks(DOCS / f"{page}.md")
     for block in blocks:
         if block.verb == "file":
             Path(block.argument).write_text(block.text, encoding="utf-8")
-    if page in ("casings", "gear_bodies"):
+    if page == "casings":
         exec(next(block.text for block in blocks if block.language == "python"), {})
 
 
@@ -227,7 +227,7 @@ def bodies(figure: Figure) -> None:
     )
     left.legend(frameon=False, fontsize=8)
 
-    wheel = rg.load("wheel.toml").layout.elastic_bodies["wheel"]
+    wheel = rg.load(DOCS.parent / "models" / "elastic_wheel.toml").layout.elastic_bodies["wheel"]
     speeds = np.linspace(0.0, 2.0 * np.pi * 250.0, 26)
     for n, colour in ((0, GREY), (2, BLUE), (3, ORANGE)):
         own = np.flatnonzero(wheel.diameters == n)[: 2 if n else 1]
@@ -256,7 +256,7 @@ def main() -> None:
     copies = Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        for page in ("mesh", "bearings", "casings", "gear_bodies"):
+        for page in ("mesh", "bearings", "casings"):
             from_page(page)
         for draw, name in ((contact, "contact"), (teeth, "teeth"), (bearings, "bearings"), (bodies, "bodies")):
             figure = plt.figure(figsize=(8.6, 3.3), layout="constrained")
