@@ -1,8 +1,8 @@
 """Costs of kinds of teeth, bearings and casings in `modal`: python -m validation.benchmarks.model_choice
 
 Seconds are those of the processor, of the first call with an empty cache and of a second one of the same model in the same
-process, which has what the first has found. Changes are the largest of the lowest elastic frequencies, as many as the group says, beside those of its
-first model. An elastic casing has modes of its own among them, so that only the lowest is compared there.
+process, which has what the first has found. Changes are the largest of the lowest elastic frequencies, as many as the group
+says, beside those of its first model. An elastic casing has modes of its own among them, so that only the lowest is compared.
 """
 
 from __future__ import annotations
