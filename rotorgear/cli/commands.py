@@ -35,6 +35,7 @@ def _written_to(text: str) -> Option:
     return Option(text, "path", flags=("-o", "--output"))
 
 
+_LAWS = Option("Also list the operating points of bearings and elements with force laws.", "flag")
 _RIG = Option("Measured frequencies of a rig (CSV).", "path", None)
 _SPECTRUM = Option("List the lines in the spectrum of this history.", "text")
 _OVER = Option(
@@ -102,11 +103,12 @@ _GROUPS = {
                 ),
                 "tolerance": Option("Largest relative difference of a match with the rig.", "float", 0.05),
                 "energies": Option("Also list the energy shares of each mode by part.", "flag"),
+                "laws": _LAWS,
                 "shapes": Option(
                     "Modes for --vtk, --plot and --uff, such as 1,6,9-12 (default: the six lowest, --uff all).", "text"
                 ),
             },
-            table=("energies",),
+            table=("energies", "laws"),
             body="bodies.modal",
         ),
         Command(
@@ -117,10 +119,11 @@ _GROUPS = {
             options={
                 "sidebands": Option(least=0),
                 "crossings": Option("Also list all crossings with the lines.", "flag"),
+                "laws": _LAWS,
                 "colour": Option("Colour of branches in --plot: motion, mesh or damping.", "text", "motion"),
                 "branch": Option("The branch that --vtk writes.", "int", 1, least=1),
             },
-            table=("crossings",),
+            table=("crossings", "laws"),
             picture=("colour",),
         ),
         Command(
@@ -129,9 +132,11 @@ _GROUPS = {
             shows=("json", "save", "plot"),
             options={
                 "damped": Option(flags=("--damped/--undamped",)),
+                "laws": _LAWS,
                 "map": Option("Also the undamped map over the stiffness of the bearings, which --plot draws.", "flag"),
                 "map_shaft": Option("Shaft that excites in the map (default: the input).", "text"),
             },
+            table=("laws",),
             body="bodies.critical",
         ),
         Command(
@@ -148,14 +153,16 @@ _GROUPS = {
             options={
                 "waterfall": Option("Draw spectra over speed to this PNG, SVG or PDF.", "path"),
                 "at": Option("Mesh, bearing or point of --waterfall (default: mesh of the largest force).", "text"),
+                "laws": _LAWS,
             },
+            table=("laws",),
         ),
         Command(
             "frf",
             "Frequency responses between places",
             shows=("json", "save", "plot", "uff"),
-            options={"quantity": Option("receptance, mobility or accelerance.", "text", "receptance")},
-            table=("quantity",),
+            options={"quantity": Option("receptance, mobility or accelerance.", "text", "receptance"), "laws": _LAWS},
+            table=("quantity", "laws"),
             picture=("quantity",),
             body="bodies.frf",
         ),

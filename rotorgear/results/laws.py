@@ -10,7 +10,7 @@ from rotorgear.model.layout.state import OperatingPoint, State
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Table, grid, written
+from rotorgear.results.table import Block, grid, written
 
 
 class LawRow(Record):
@@ -74,11 +74,13 @@ class AboutEquilibrium(ModelResult):
         note=" of bearings and nonlinear elements in the static equilibrium, at the first and the last speed",
     )
 
-    def operating_points(self) -> Table:
+    def operating_points(self) -> Block:
         """Force, deflection and stiffness of each across the shaft, in the direction of the force, and along z.
 
         "mean" stands behind those that are averaged over a pitch of rolling elements.
         """
+        if not self.laws:
+            return "\nno bearing or element of the model has a force law"
         rows = []
         for row in self.laws:
             # What is rounding of the largest component is shown as none.

@@ -72,6 +72,7 @@ def test_linear_analyses_print_the_state_that_they_are_about():
     assert not any("bearings.front" in note for note in found.left_out)  # nothing of it is left out
     assert "15.19" in found.text(laws=True)
     assert "15.19" not in found.text()
+    assert "15.19" not in found.text()
     assert [row["part"] for row in found.rows("laws")] == ["bearings.front"]
 
 
