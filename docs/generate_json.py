@@ -108,7 +108,8 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "standards",
-        "`rotorgear standards MODEL --json standards.json`. [Rules of standards](report.md#rules-of-standards) says what is compared.",
+        "`rotorgear standards MODEL --json standards.json`. [Rules of standards](report.md#rules-of-standards) says what is "
+        "compared.",
         (("standards", ""),),
     ),
     (
