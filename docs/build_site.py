@@ -24,19 +24,15 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 # The pages by what a reader wants; a page that is not listed here is a mistake, which the test of the site finds.
 NAVIGATION: dict[str, tuple[str, ...]] = {
-    "Start": ("index", "first_gearbox", "gallery"),
-    "How to": (
-        "modal", "static", "response", "transient", "sweep", "mesh", "bearings", "casings",
-        "rig", "report", "rexs", "python",
-    ),
-    "Notebooks": ("rotordynamicist", "gear_engineer"),
-    "Theory": ("theory", "theory_structure", "theory_parts", "theory_motions", "conventions"),
-    "Reference": ("commands", "model_file", "api", "json", "errors"),
-    "Validation": (
-        "validation", "seeds", "accuracy", "extreme",
-    ),
+    "Start": ("index", "first_gearbox", "gallery", "errors", "rotordynamicist", "gear_engineer"),
+    "Analyses": ("static", "modal", "response", "transient", "sweep"),
+    "Parts": ("mesh", "bearings", "casings", "model_file"),
+    "Design": ("report", "rig"),
+    "Files and Python": ("commands", "python", "api", "json", "rexs"),
+    "Trust": ("accuracy", "validation", "seeds", "extreme"),
+    "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Development": ("architecture",),
-}  # fmt: skip
+}
 # Files beside docs/ that pages link to, as the pages of the site that show them.
 BESIDE = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "README.md", "LICENSE")
 # mkdocs takes a README.md for a second index.
