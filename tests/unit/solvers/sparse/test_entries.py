@@ -52,6 +52,8 @@ def test_products_by_stretches_of_rows_are_the_product(rows: int) -> None:
     assert np.array_equal(product, A @ X)
     assert [k for part in stretches(rows) for k in range(rows)[part]] == list(range(rows))
 
+
+def test_halves_and_scaled_norms_are_what_dense_matrices_give() -> None:
     rng = np.random.default_rng(5)
     for density in (0.1, 1.0):  # with one pattern for A and its mirror image, and with two
         A = sp.csc_array(scattered((9, 9), density, rng))
