@@ -124,14 +124,22 @@ class Command:
     def to_typer(self, body: Callable[[Command, dict[str, Any]], None]) -> Any:
         """The command as typer runs it; `body` as in `function`."""
         single = typer.Typer(add_completion=False, rich_markup_mode=None)
-        told = told_by(self.verbs[0]) if self.verbs else ""
-        epilog = f"The result tells: {told}." if told else None
-        single.command(self.name, cls=CommandInGroups, epilog=epilog)(self.function(body))
-        return typer.main.get_command(single)
+        single.command(self.name, cls=CommandInGroups)(self.function(body))
+        made: Any = typer.main.get_command(single)
+        made.verbs = self.verbs
+        return made
 
 
 class CommandInGroups(TyperCommand):
-    """A command whose help lists its options in groups."""
+    """A command whose help lists its options in groups, and then what its result tells."""
+
+    verbs: tuple[str, ...] = ()
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        # Read here and not when the command is made: only who asks for help is to wait for it.
+        if told := told_by(self.verbs[0]) if self.verbs else "":
+            self.epilog = f"The result tells: {told}."
+        super().format_epilog(ctx, formatter)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], OWN: [], FILES: []}
