@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
+from machinery.figures import COLOURS, save
 
 import rotorgear as rg
 from rotorgear.analysis.rig.posterior import Posterior
@@ -23,18 +21,6 @@ from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 
 ROOT = Path(__file__).parents[1]
-PICTURES = ROOT / "docs" / "pictures"
-COLOURS = ("#1f4e79", "#b0461f", "#3b7d3b", "#7a5195")
-
-matplotlib.rcParams["svg.hashsalt"] = "theory"
-matplotlib.rcParams["font.size"] = 9
-
-
-def save(figure: plt.Figure, name: str) -> None:
-    """Write a picture, the same bytes each time."""
-    figure.tight_layout()
-    figure.savefig(PICTURES / f"theory_{name}.svg", bbox_inches="tight", metadata={"Date": None})
-    plt.close(figure)
 
 
 def counts() -> None:
@@ -83,6 +69,7 @@ def counts() -> None:
     right.set_ylim(0.0, 3000.0)
     right.set_xlabel("speed W, rad/s")
     right.set_ylabel("natural frequency, rad/s")
+    figure.tight_layout()
     save(figure, "counts")
 
 
@@ -134,6 +121,7 @@ def energy() -> None:
     right.minorticks_off()
     right.set_xlabel("step times contact frequency, rad")
     right.set_ylabel("largest change of energy")
+    figure.tight_layout()
     save(figure, "energy")
 
 
@@ -170,6 +158,7 @@ def multipliers() -> None:
     right.set_aspect("equal")
     right.set_xlabel("Re mu")
     right.set_ylabel("Im mu")
+    figure.tight_layout()
     save(figure, "multipliers")
 
 
@@ -197,6 +186,7 @@ def posterior() -> None:
     right.semilogx(s, 1.0 / np.sqrt(1.0 + s**2), color=COLOURS[1], linewidth=1.4, label="spread after over before")
     right.set_xlabel("singular value s of a direction")
     right.legend(frameon=False, loc="center right", fontsize=8)
+    figure.tight_layout()
     save(figure, "posterior")
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numba
 import numpy as np
+from machinery.figures import COLOURS, save
 from matplotlib.axes import Axes
 from matplotlib.patches import Arc
 
@@ -24,17 +22,6 @@ from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 ROOT = Path(__file__).parents[1]
-PICTURES = ROOT / "docs" / "pictures"
-COLOURS = ("#1f4e79", "#b0461f", "#3b7d3b", "#7a5195")
-
-matplotlib.rcParams["svg.hashsalt"] = "theory"
-matplotlib.rcParams["font.size"] = 9
-
-
-def save(figure: plt.Figure, name: str) -> None:
-    """Write a picture, the same bytes each time."""
-    figure.savefig(PICTURES / f"theory_{name}.svg", bbox_inches="tight", metadata={"Date": None})
-    plt.close(figure)
 
 
 def shaft_estimate() -> None:

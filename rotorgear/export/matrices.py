@@ -103,7 +103,7 @@ def write_matrices(
     """
     target = require_matrix_name(path, (".npz",))
     turns = speed_in_si(speed) or 0.0
-    check_request(turns, None, None, elements, None)
+    check_request(elements=elements)
     if fmax is None and elements is None:
         raise AnalysisError("matrices need fmax (--fmax), the frequency in Hz that the mesh serves, or elements")
     if fmax is not None and not 0.0 < fmax < float("inf"):

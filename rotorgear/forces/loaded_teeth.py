@@ -16,7 +16,8 @@ with the displacements d = d_1 in the middle of the face and d_2 = tilt (m/m, cl
 W(x, tilt, u) is a Hermite cubic in the tilt between two of those for which the contact was solved, with its force and moment
 there: W_k and M_k are the integrals of F_k and dM_k/dx over x. So F and M follow from one energy, at those tilts they are the
 contact's own, and both are nothing where the teeth part. Beyond the first and the last tilt the moment stays as it is there.
-Damping acts at the place z_e of the face where the stiffness of the mean state has its centre.
+Damping acts at the place z_e of the face where the stiffness of the mean state has its centre; its k_t takes
+the forces F_k alone, without the part of the cubic that the moments M_k make between two tilts.
 
 Damping goes with the stiffness that carries, from zero at first touch over one step of x: c is what it is at k. It never pulls
 where `contact_damping` is non-adhesive; "penetration" is c x/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440).

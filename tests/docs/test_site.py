@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -44,3 +45,10 @@ def test_the_site_builds_without_warnings_and_asks_nothing_of_the_network(tmp_pa
         shown = (tmp_path / "site" / f"{page}.html").read_text(encoding="utf-8")
         loads = [tag for tag in shown.split("<") if tag.startswith(("script", "link", "img"))]
         assert not [tag for tag in loads if 'src="http' in tag or 'rel="stylesheet" href="http' in tag]
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "docs").glob("draw_*.py")), ids=lambda script: script.stem)
+def test_a_script_of_pictures_finds_all_that_it_imports(script: Path) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("skfem")
+    runpy.run_path(str(script), run_name="drawing")

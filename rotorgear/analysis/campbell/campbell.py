@@ -102,7 +102,7 @@ def campbell(
         if mesh_orders and not isinstance(model, System):  # a given system has the mesh it has
             fmax, beyond = mesh_reach(model)
         modes = DEFAULT_MODES if fmax is None else None
-    check_request(None, modes, fmax, None, None)
+    check_request(modes=modes, fmax=fmax)
     check_whole("the number of sidebands", sidebands, 0)
     clock = Clock()
     about = linear_system(model, [float(speed) for speed in asked])

@@ -1,4 +1,4 @@
-"""Modes at any speed from a small basis: the lowest modes at a few speeds, with a certificate by true solutions at others.
+"""Modes at any speed from a small basis: the lowest modes at a few speeds, checked by true solutions in the middles between them.
 
 Snapshots are taken at both ends of the speed range. In the middle between two snapshots the true sparse solution is compared with
 the projected one; where a frequency is off by more than `TOLERANCE` the true modes join the basis and both halves are checked in

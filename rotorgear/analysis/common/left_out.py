@@ -92,11 +92,18 @@ _MOTION = ("bending", "bending", "axial", "bending", "bending", "torsion")
 
 
 def left_out(
-    system: System, analysis: Analysis, speed: float | None, *, undamped: bool = False, contacts_only: bool = False
+    system: System,
+    analysis: Analysis,
+    speed: float | None,
+    *,
+    undamped: bool = False,
+    modal_damping: float = 0.0,
+    contacts_only: bool = False,
 ) -> tuple[Note, ...]:
     """What of its model an analysis at a speed in rad/s leaves out; None of the speed is an undamped one at standstill.
 
-    `contacts_only`: of the motions, the result tells those of the contacts.
+    `modal_damping`: ratio that the analysis adds to the modes. `contacts_only`: of the motions, the result tells those of the
+    contacts.
     """
     model = system.model
     undamped = undamped or speed is None
@@ -104,7 +111,7 @@ def left_out(
     absent = list(_without_motion(system))
     notes = (
         *_dofs(system),
-        *_matrices(system, analysis, speed, undamped=undamped),
+        *_matrices(system, analysis, speed, undamped=undamped, modal_damping=modal_damping),
         *absent,
         *(note for row in _NOT_TAKEN if kinds & set(row[2].split()) for note in _given(model, row)),
         *_flanks(model, analysis),
@@ -181,7 +188,9 @@ def _dofs(system: System) -> Iterator[Note]:
             yield Note("", f"{count} dofs {how}")
 
 
-def _matrices(system: System, analysis: Analysis, speed: float | None, *, undamped: bool) -> Iterator[Note]:
+def _matrices(
+    system: System, analysis: Analysis, speed: float | None, *, undamped: bool, modal_damping: float
+) -> Iterator[Note]:
     """Gyroscopic terms, and what damps beyond the keys of the file."""
     if analysis == "static":
         for name, shaft in system.model.shafts.items():
@@ -208,7 +217,7 @@ def _matrices(system: System, analysis: Analysis, speed: float | None, *, undamp
             if address in system.state.tangents and np.any(spring.damping):
                 yield Note(address, "damping of the law", _UNDAMPED)
         return
-    if not np.any(system.damping(speed or 0.0).data) and not system.model.damping.modal_ratio:
+    if not np.any(system.damping(speed or 0.0).data) and not (modal_damping or system.model.damping.modal_ratio):
         # The law of a nonlinear element is in no matrix until it is linearised: a film damps all the same.
         laws = [
             f"nonlinear_elements.{name}"

@@ -77,7 +77,7 @@ def check_whole(name: str, value: object, least: int = 1) -> None:
 
 
 def check_request(
-    speed: float | None, modes: int | None, fmax: float | None, elements: int | None, accuracy: float | None
+    *, modes: int | None = None, fmax: float | None = None, elements: int | None = None, accuracy: float | None = None
 ) -> None:
     """Refuse a request that can't be meant."""
     for name, value in (("the number of modes", modes), ("the number of elements", elements)):

@@ -116,7 +116,7 @@ def optimise(
     at = tuple(dict.fromkeys(speed for speed in wanted if speed))
     if not at:
         raise AnalysisError("speeds: expected at least one other than 0")
-    check_request(at[0], None, None, elements, None)
+    check_request(elements=elements)
     lines = excitation_orders(model, shaft_orders, mesh_orders)
     if not lines:
         raise AnalysisError("no excitation: the shafts stand still, or no orders are given")

@@ -99,7 +99,7 @@ def modes_about(
 ) -> ModalResult:
     """The modes of a model about a state, for analyses that know it; None: about its equilibrium. Errors are those of `modal`."""
     speed = asked.speed
-    check_request(speed, asked.modes, asked.fmax, asked.elements, asked.accuracy)
+    check_request(modes=asked.modes, fmax=asked.fmax, elements=asked.elements, accuracy=asked.accuracy)
     unknown = set(asked.only) - set(MOTIONS)
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")

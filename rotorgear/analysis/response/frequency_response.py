@@ -84,7 +84,7 @@ def frf(
     if frequencies is None:
         frequencies = _evenly_spaced(fmin, fmax, points)
     hz = np.sort(np.asarray(frequencies, float).ravel())
-    check_request(turns, None, None, elements, accuracy)
+    check_request(elements=elements, accuracy=accuracy)
     if not hz.size or not np.all(np.isfinite(hz)) or hz[0] <= 0.0:
         raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
     check_modal_damping(modal_damping)
@@ -130,7 +130,7 @@ def frf(
         laws=law_rows(system.state.operating),
         left_out=(
             *about[1].notes,
-            *left_out(system, "frf", turns),
+            *left_out(system, "frf", turns, modal_damping=modal_damping),
             *undamped_above(limit, zeta),
         ),
         warnings=(*few, *([] if zeta or system.damping(turns).nnz else [_UNDAMPED]), *([short] if short else [])),

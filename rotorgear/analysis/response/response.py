@@ -85,7 +85,7 @@ def response(
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
     check_modal_damping(modal_damping)
-    check_request(None, None, fmax, elements, accuracy)
+    check_request(fmax=fmax, elements=elements, accuracy=accuracy)
     zeta = modal_damping + model.damping.modal_ratio
     speed = float(chosen[-1])
     # Tangents at all speeds, or at enough of them for straight lines in between.
@@ -158,7 +158,7 @@ def response(
             *setup.notes,
             *between_nodes,
             *([begun] if begun else []),
-            *left_out(system, "response", speed),
+            *left_out(system, "response", speed, modal_damping=modal_damping),
         ),
         warnings=(
             *few,

@@ -91,8 +91,8 @@ def state_space(
         ConvergenceError: the reduced system is singular, as at a mode without damping.
     """
     turns = speed_in_si(speed) or 0.0
-    check_request(turns, None, fmax, elements, None)
-    check_request(turns, None, None, None, accuracy)
+    check_request(fmax=fmax, elements=elements)
+    check_request(accuracy=accuracy)
     check_modal_damping(modal_damping)
     places = checked_places(model, inputs, outputs)
     zeta = modal_damping + model.damping.modal_ratio
@@ -156,7 +156,7 @@ def state_space(
         laws=law_rows(system.state.operating),
         left_out=(
             *about[1].notes,
-            *left_out(system, "frf", turns),
+            *left_out(system, "frf", turns, modal_damping=modal_damping),
             *undamped_above(damped_up_to(system, limit), zeta),
             *_apart(system, reached),
         ),

@@ -123,7 +123,7 @@ def scatter(
     if not (sobol == 0 or 8 <= sobol <= _MOST_SAMPLES):
         raise AnalysisError(f"sobol: got {sobol}, expected 0 (none) or 8 and more base points")
     at = speed_or_operating(speed, model)
-    check_request(at, modes, None, elements, accuracy)
+    check_request(modes=modes, elements=elements, accuracy=accuracy)
     least_margin = share_of(margin, "margin")
     share_of(participation, "participation", "0.01")
     spreads = spreads_of(model, _given(model, free, sigma, tolerance, distribution, sharing))

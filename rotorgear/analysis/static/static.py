@@ -70,7 +70,7 @@ def static(
         ConvergenceError: shafts and loads along the faces don't come to agree.
     """
     given = speed_or_operating(speed, model)
-    check_request(given, None, None, elements, accuracy)
+    check_request(elements=elements, accuracy=accuracy)
     if tilt:
         wide = [name for name in model.meshes if all(gear.part.width for gear in model.layout.mesh(name).gears)]
         if not wide:

@@ -5,7 +5,7 @@ cubic that was there before; what it was wrong by is what the two cubics beside 
 by eight and more where the curve is smooth, but a kink may stand anywhere. With such an error e_i in each interval of length h_i
 
     pp:          [max(f + e) - min(f - e)] - pp of the positions,        where f + e is above, or f - e below, all positions,
-    harmonics:   |c_n - c_n'| <= 2 sum of h_i e_i / P.
+    harmonics:   |c_n - c_n'| <= 4/3 sum of h_i e_i / P, beside the change of c_n by the positions that were added.
 
 The next positions halve the intervals with the largest of these. Where a pair comes or goes, the opening of its flanks crosses
 zero, which a chord of it finds within a few solutions. At last the search goes on for some positions that are not kept: they

@@ -36,7 +36,7 @@ def _parse(value: Any) -> Any:
         if len(value) < _LEAST_VALUES:
             raise refuse(f"at least {_LEAST_VALUES} stiffnesses, evenly spaced over one mesh period")
         return tuple(_UNIT.parse(item) for item in value)
-    if isinstance(value, str) and value.strip() and not any(character.isdigit() for character in value):
+    if isinstance(value, str) and value.strip()[:1].isalpha():
         if value in MODELS:
             return value
         wanted = f"a stiffness such as '{_EXAMPLE}' or one of {', '.join(MODELS)}"

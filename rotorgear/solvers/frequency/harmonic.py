@@ -1,4 +1,4 @@
-"""Harmonic response Z(w) q = f, Z = K + i w D - w^2 M (+ i w P diag(d) P^T): direct, or in a basis that certifies itself.
+"""Harmonic response Z(w) q = f, Z = K + i w D - w^2 M (+ i w P diag(d) P^T): direct, or in a basis checked by its residual.
 
 The reduced solution q = X y comes from X^T Z X y = X^T f. Its residual f - Z q is cheap at every frequency; where it is
 largest the full problem is solved, which measures the true error there, and the solution joins the basis until that error is

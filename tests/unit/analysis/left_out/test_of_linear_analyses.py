@@ -11,6 +11,7 @@ import rotorgear as rg
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.transient.request import rotation_of
 from rotorgear.elements.spring import rigid_transfer
+from rotorgear.note import as_notes
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
 from tests.models import bearing, cantilever, disk, spur_pair
@@ -262,3 +263,12 @@ def test_groups_that_are_solved_apart_do_not_act_on_each_other() -> None:
 
     coupled = abs(system.mass) + abs(system.stiffness())
     assert numbers(said)[0] == connected_components(coupled)[0]
+
+
+def test_modes_that_the_request_damps_are_damped() -> None:
+    tip = {"tip": {"shaft": "rotor", "at": "end", "direction": "y"}}
+    bare = cantilever({"length": 0.4, "outer_diameter": 0.03}).with_("points", tip)
+    places = {"inputs": ["tip"], "outputs": ["tip"]}
+    for ratio in (0.0, 0.03):
+        found = rg.frf(bare, [20.0], **places, modal_damping=ratio, elements=1)
+        assert ("damping matrix" in {note.what for note in as_notes(found.left_out)}) == (not ratio)
