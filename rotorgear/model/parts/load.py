@@ -7,10 +7,10 @@ file over time or over the angle of a shaft.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.fields import Part, Station, Unit, listed, refuse
@@ -27,7 +27,8 @@ class Unbalance(Part):
     phase: si.Angle = Field(0.0, description="direction of the unbalance at the time 0, from +x about +z")
 
 
-COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
+_Component = Literal["force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"]
+COMPONENTS = get_args(_Component)
 _TURN = 2.0 * np.pi
 
 
@@ -46,8 +47,29 @@ class LoadHistory(Part):
 
     over: Literal["time", "angle"] = Field(description="what the places are")
     places: tuple[float, ...] = Field(description="times in s or angles in rad, rising; a turn of angles begins again")
-    components: tuple[str, ...] = Field(description="names of the components that are given")
+    components: tuple[_Component, ...] = Field(description="names of the components that are given")
     values: tuple[tuple[float, ...], ...] = Field(description="of each component at the places, in N and N m")
+
+    @model_validator(mode="after")
+    def _is_a_table(self) -> Self:
+        if len(set(self.components)) != len(self.components) or not self.components:
+            raise refuse(f"components, each once; it has {', '.join(self.components) or 'none'}")
+        if len(self.places) < 2:
+            raise refuse(f"at least two places; it has {len(self.places)}")
+        if len(self.values) != len(self.components):
+            raise refuse(f"values of each component: {len(self.components)} lists; it has {len(self.values)}")
+        for component, values in zip(self.components, self.values, strict=True):
+            if len(values) != len(self.places):
+                raise refuse(f"{len(self.places)} values of {component}, one at each place; it has {len(values)}")
+        for row, (a, b) in enumerate(pairwise(self.places), 2):
+            if not b > a:
+                raise refuse(f"rising places; the one of number {row}, {b:g}, is not above {a:g} before it")
+        if not np.isfinite([self.places, *self.values]).all():
+            raise refuse("finite numbers")
+        # A turn of angles begins again, so that its end is not its begin.
+        if self.over == "angle" and not 0.0 <= self.places[0] <= self.places[-1] < _TURN:
+            raise refuse("angles from 0 to below 2 pi rad, one turn that begins again")
+        return self
 
     @property
     def mean(self) -> np.ndarray:

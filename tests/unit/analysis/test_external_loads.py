@@ -312,6 +312,36 @@ def test_a_mistake_in_a_history_names_the_file(tmp_path, text, said):
         _with(CANTILEVER, 'point = "tip"\nhistory = "h.csv"', tmp_path)
 
 
+def _inline(**changed: object) -> dict[str, object]:
+    table = {"over": "time", "places": [0.0, 1.0], "components": ["force_y"], "values": [[0.0, 10.0]]}
+    return table | changed
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        (_inline(components=["force_y", "moment_z"]), "2 lists; it has 1"),
+        (_inline(values=[[0.0, 1.0], [2.0, 3.0]]), "1 lists; it has 2"),
+        (_inline(values=[[0.0, 1.0, 2.0]]), "2 values of force_y, one at each place; it has 3"),
+        (_inline(places=[1.0, 0.0]), "rising places; the one of number 2, 0, is not above 1"),
+        (_inline(places=[1.0, 1.0]), "rising places"),
+        (_inline(places=[0.0, float("nan")]), "rising places"),
+        (_inline(values=[[0.0, float("inf")]]), "finite"),
+        (_inline(places=[], values=[[]]), "at least two places; it has 0"),
+        (_inline(components=[], values=[]), "components, each once; it has none"),
+        (_inline(components=["force_y"] * 2, values=[[0.0, 1.0]] * 2), "each once"),
+        (_inline(components=["force_q"]), "components.0.*did you mean"),
+        (_inline(over="angle", places=[0.0, 7.0]), "from 0 to below 2 pi"),
+        (_inline(over="angle", places=[-0.1, 3.0]), "from 0 to below 2 pi"),
+    ],
+)
+def test_a_mistake_in_a_table_of_a_load_is_told_by_python_and_the_file(table, said):
+    with pytest.raises(ModelError, match=said):
+        rg.Load(point="tip", history=table)
+    with pytest.raises(ModelError, match=said):
+        _with(CANTILEVER, 'point = "tip"\nforce = [0, 1, 0]').with_("loads.pull.history", table)
+
+
 def test_missing_rows_and_impossible_forces_of_a_history_are_asked_about(tmp_path):
     rows = [(0.001 * k, float(k % 7)) for k in (*range(30), *range(300, 330))]
     (tmp_path / "h.csv").write_text("time_s,force_x_MN\n" + "\n".join(f"{t:.3f},{1e3 * x}" for t, x in rows))
