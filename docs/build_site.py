@@ -2,8 +2,9 @@
 
 Where a generator (docs/generate_*.py) has a function `site_pages`, the repository keeps the summary that its `pages` makes, and
 the site shows the whole page, made anew; one that takes minutes (`LONG = True`) only with --long.
-mkdocs-material (extra `site`) makes it; formulas become MathML, which browsers show by themselves: the site needs no network.
-Links to files of the repository outside of docs/ lead to copies of them. Every warning is an error.
+mkdocs-material (extra `site`) makes it; formulas become MathML, which browsers show by themselves. The site needs no network and
+no server: its search works where index.html is opened from a disk, too. Links to files of the repository outside of docs/ lead to
+copies of them as texts, those to folders to lists of their files. Every warning is an error.
 """
 
 from __future__ import annotations
@@ -31,12 +32,20 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Files and Python": ("commands", "python", "api", "json", "rexs"),
     "Trust": ("accuracy", "validation", "seeds", "extreme"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
-    "Development": ("architecture",),
+    "Development": ("architecture", "CONTRIBUTING"),
 }
-# Files beside docs/ that pages link to, as the pages of the site that show them.
-BESIDE = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "README.md", "LICENSE")
-# mkdocs takes a README.md for a second index.
-_ABOUT = "about.md"
+# The page that stands beside docs/; other files there are shown as texts.
+_BESIDE = "CONTRIBUTING.md"
+# What lets a page that is opened from a disk search; the plugin would fetch it from elsewhere.
+_SHIM = "iframe-worker.js"
+# A wider page, and tables with narrow cells: what they hold is short.
+_STYLE = """
+.md-grid { max-width: 72rem; }
+.md-typeset table:not([class]) th, .md-typeset table:not([class]) td { min-width: 0; padding: 0.4em 0.7em; }
+.md-typeset table:not([class]) td:last-child { min-width: 10rem; }
+.md-typeset td:first-child code { white-space: nowrap; }
+.md-typeset math[display="block"] { overflow-x: auto; padding: 0.4em 0; }
+"""
 _BLOCK = re.compile(r"^\$\$(.+?)\$\$", re.MULTILINE | re.DOTALL)
 _INLINE = re.compile(r"(?<![\w$\\])\$(?![\s\d$(])([^$\n]+?)(?<!\s)\$(?![\w$])")
 _CODE = re.compile(r"^ *(`{3,}).*?^ *\1[^\n]*$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
@@ -48,16 +57,8 @@ def staged(text: str) -> str:
     """A page as the site takes it: formulas as MathML, links to notebooks to their pages, links out of docs/ to copies."""
 
     def outside(link: re.Match[str]) -> str:
-        target = link["target"].removeprefix("../")
-        anchor = link["anchor"] or ""
-        if target in BESIDE:
-            shown = _ABOUT if target == "README.md" else target
-            return f"]({shown}{anchor})" if target.endswith(".md") else f"](files/{target}.txt)"
-        return (
-            f"](files/{target.rstrip('/').replace('/', '_')}.md)"
-            if (ROOT / target).is_dir()
-            else f"](files/{target}.txt)"
-        )
+        target = link["target"].removeprefix("../").rstrip("/")
+        return f"]({target}{link['anchor'] or ''})" if target == _BESIDE else f"]({_copy(target)})"
 
     return _LINK.sub(outside, with_formulas(_NOTEBOOK.sub(r"](\1.md)", text)))
 
@@ -94,26 +95,29 @@ def stage(folder: Path, *, long: bool = False) -> None:
     shutil.copytree(DOCS / "pictures", folder / "pictures")
     pages = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")} | whole_pages(long=long)
     pages |= {f"{file.stem}.md": write_page(file, folder) for file in notebooks()}
-    linked = {link["target"].removeprefix("../") for text in pages.values() for link in _LINK.finditer(text)}
-    for name in BESIDE:
-        source = (ROOT / name).read_text(encoding="utf-8")
-        if name.endswith(".md"):
-            inside = re.sub(r"\]\((?!https?:|#|docs/)([^)\s]+)\)", r"](../\1)", source)
-            shown = _ABOUT if name == "README.md" else name
-            pages[shown] = inside.replace("](docs/", "](").replace("](../../", "](../")
-            linked |= {link["target"].removeprefix("../") for link in _LINK.finditer(pages[shown])}
-    for target in sorted(linked | {name for name in BESIDE if not name.endswith(".md")}):
+    beside = re.sub(r"\]\((?!https?:|#|docs/)([^)\s]+)\)", r"](../\1)", (ROOT / _BESIDE).read_text(encoding="utf-8"))
+    pages[_BESIDE] = beside.replace("](docs/", "](").replace("](../../", "](../")
+    linked = {
+        link["target"].removeprefix("../").rstrip("/") for text in pages.values() for link in _LINK.finditer(text)
+    }
+    for target in sorted(linked - {_BESIDE}):
         path = ROOT / target
         if path.is_dir():
-            place = folder / "files" / f"{target.rstrip('/').replace('/', '_')}.md"
-            listed = "\n".join(f"* `{file.relative_to(ROOT)}`" for file in sorted(path.rglob("*")) if _shown(file))
-            _write(place, f"# {target.rstrip('/')}\n\nIn the repository:\n\n{listed}\n")
-        elif path.exists() and not (target in BESIDE and target.endswith(".md")):
-            place = folder / "files" / f"{target}.txt"
+            listed = "\n".join(str(file.relative_to(ROOT)) for file in sorted(path.rglob("*")) if _shown(file))
+            _write(folder / _copy(target), f"{target}, in the repository:\n\n{listed}\n")
+        elif path.exists():
+            place = folder / _copy(target)
             place.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, place)
     for name, text in pages.items():
         _write(folder / name, staged(text))
+    shutil.copy(DOCS / "machinery" / "iframe-worker.js", folder / _SHIM)
+    _write(folder / "style.css", _STYLE)
+
+
+def _copy(target: str) -> str:
+    """Where the copy of a file, or the list of a folder, stands in the site."""
+    return f"files/{target.replace('/', '_') if (ROOT / target).is_dir() else target}.txt"
 
 
 def _shown(file: Path) -> bool:
@@ -125,6 +129,26 @@ def _write(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
+def _python() -> dict[str, object]:
+    """How the page of public names shows Python."""
+    return {
+        "paths": [str(ROOT)],
+        "inventories": [],
+        "options": {
+            "extensions": ["machinery.declared_fields"],
+            "docstring_section_style": "table",
+            "heading_level": 3,
+            "line_length": 90,
+            "members_order": "source",
+            "separate_signature": True,
+            "show_root_heading": True,
+            "show_signature_annotations": True,
+            "show_source": False,
+            "signature_crossrefs": True,
+        },
+    }
+
+
 def settings(source: Path, target: Path) -> dict[str, object]:
     """What mkdocs is told."""
     from pymdownx.slugs import slugify
@@ -133,7 +157,6 @@ def settings(source: Path, target: Path) -> dict[str, object]:
         {title: [f"{page}.md" for page in names if (source / f"{page}.md").exists()]}
         for title, names in NAVIGATION.items()
     ]
-    nav[-1]["Development"] += [_ABOUT if name == "README.md" else name for name in BESIDE if name.endswith(".md")]
     return {
         "site_name": "rotorgear",
         "site_description": "Finite-element rotor-gear analysis",
@@ -146,10 +169,17 @@ def settings(source: Path, target: Path) -> dict[str, object]:
             "font": False,
             "features": ["navigation.tabs", "navigation.top", "content.code.copy"],
         },
-        "plugins": ["search"],
+        "extra": {"polyfills": [_SHIM], "generator": False},
+        "extra_css": ["style.css"],
+        # `offline` writes the index of the search as a script.
+        "plugins": [
+            "search",
+            "offline",
+            {"mkdocstrings": {"enable_inventory": False, "handlers": {"python": _python()}}},
+        ],
         # Anchors as the forge makes them, which the links of the pages are written for.
         "markdown_extensions": [
-            {"toc": {"slugify": slugify(case="lower"), "permalink": True}},
+            {"toc": {"slugify": slugify(case="lower"), "permalink": True, "toc_depth": 3}},
             "tables",
             "admonition",
             "pymdownx.superfences",
@@ -200,8 +230,9 @@ def main() -> int:
     try:
         import latex2mathml  # noqa: F401
         import mkdocs  # noqa: F401
-    except ImportError:
-        print("docs/build_site.py needs mkdocs-material and latex2mathml: pip install -e '.[site]'", file=sys.stderr)
+        import mkdocstrings  # noqa: F401
+    except ImportError as missing:
+        print(f"docs/build_site.py needs {missing.name}: pip install -e '.[site]'", file=sys.stderr)
         return 2
     build(folder, long=options.long)
     print(f"wrote {html.escape(str(folder / 'index.html'))}")

@@ -1,82 +1,87 @@
-"""Writes docs/api.md from the docstrings of the public names, those of `rotorgear` and of `rotorgear.plot`.
+"""Writes docs/api.md: the public names of `rotorgear` and of `rotorgear.plot` in groups, as the stubs list them.
 
-The repository keeps a line for each name; the site shows the whole docstrings.
+The site shows each with its signature, types, fields, returns and errors, from the sources (mkdocstrings).
 """
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable
+import textwrap
+from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
-
-import rotorgear as rg
 
 ROOT = Path(__file__).resolve().parents[1]
 HEAD = """# Public names
 
-All names of `import rotorgear as rg`, from their docstrings; `rg.plot` at the end. A part's keys stand in
-[the model file](model_file.md), a result's keys in [JSON output](json.md), and examples in [Python](python.md).
+All names of `import rotorgear as rg`, and the pictures of `rg.plot`. `help(rg.modal)` tells arguments, units and errors of
+a function, `help(rg.ModalResult)` the fields of a result. [Python](python.md) has examples.
 """
-_SUMMARY = f"""{HEAD}
-Arguments, units, returns and errors are on the site, which `python docs/build_site.py` builds, and in `help(rg.modal)`.
+_SITE = """
+[The site](../CONTRIBUTING.md#docs), which `python docs/build_site.py` builds, shows every name with types, units and links.
 """
+# What a group holds, by the comment above it in the stub.
+_WORDS = {
+    "A model from a file or from parts": "`rg.load` reads a [model file](model_file.md); the classes are its parts.",
+    "The verbs: a model in, a result out": "Most are the [command](commands.md) of their name and take its options.",
+    "A force law of your own": "[Force laws](python.md#a-force-law-of-your-own) that you write act in every analysis.",
+    "A rig beside them": "What reads measurements and puts them [beside a model](rig.md).",
+    "Files of results": "What saves results and writes them for other programs.",
+    "The results": "What the verbs return; the keys of their JSON stand under [commands](json.md).",
+    "The errors": "What is raised: see [Troubleshooting](errors.md).",
+    "Pictures": "Functions of `rg.plot`; `result.plot()` calls the one of its kind ([gallery](gallery.md)).",
+}
+_TYPES = """## Types beside them
+
+What public functions return, and what results and parts hold. They are no names of `rg`.
+"""
+# The search shows the pages that explain before this one.
+_LATER = "---\nsearch:\n  boost: 0.3\n---\n"
+_WIDTH = 130
 
 
 def pages() -> dict[str, str]:
-    """Return the summary by its path: a line for each name."""
-    return {"docs/api.md": _page(_SUMMARY, _line, "| name | what it is |\n|---|---|")}
+    """Return the summary by its path: the names of each group."""
+    parts = [HEAD.rstrip(), _SITE]
+    for heading, names in groups():
+        listed = textwrap.fill(
+            " ".join(f"`{name.rpartition('.')[2]}`" for name in names), _WIDTH, break_on_hyphens=False
+        )
+        parts.append(f"## {heading}\n\n{_WORDS[heading]}\n\n{listed}\n")
+    return {"docs/api.md": "\n".join(parts)}
 
 
 def site_pages() -> dict[str, str]:
-    """Return the whole page by its path."""
-    return {"docs/api.md": _page(HEAD, _entry, "")}
+    """Return the whole page by its path, for mkdocstrings."""
+    from machinery.declared_fields import types_of
+
+    parts = [_LATER, HEAD]
+    found = []
+    for heading, names in groups():
+        parts.append(f"## {heading}\n\n{_WORDS[heading]}\n")
+        parts += [_entry(name, name.replace("rotorgear", "rg")) for name in names]
+        found += names
+    parts.append(_TYPES)
+    parts += [_entry(path, path.rpartition(".")[2]) for path in types_of(found)]
+    return {"docs/api.md": "\n".join(parts)}
 
 
-def _page(head: str, entry: Callable[[object, str], str], above: str) -> str:
-    parts = [
-        head,
-        *_sections(rg, ROOT / "rotorgear" / "__init__.pyi", "rg", entry, above),
-        "\n## Pictures\n",
-        *filter(None, [above]),
-    ]
-    parts += _sections(rg.plot, ROOT / "rotorgear" / "plot" / "__init__.pyi", "rg.plot", entry, above)
-    return "\n".join(parts).rstrip() + "\n"
+def _entry(path: str, heading: str) -> str:
+    return f"::: {path}\n    options:\n      heading: {heading}\n      toc_label: {heading}\n"
 
 
-def _sections(
-    package: ModuleType, stub: Path, prefix: str, entry: Callable[[object, str], str], above: str
-) -> list[str]:
-    """The names in the order of the stub, under its comments."""
-    parts: list[str] = []
-    for line in stub.read_text(encoding="utf-8").splitlines():
-        if line.startswith("# ") and package is rg:
-            parts += [
-                f"\n## {line[2:].rstrip('.')}\n" if above else f"## {line[2:].rstrip('.')}\n",
-                *filter(None, [above]),
-            ]
-        words = line.split()
-        if len(words) == 6 and words[4] == "as" and words[5] != "plot":
-            parts.append(entry(getattr(package, words[5]), f"{prefix}.{words[5]}"))
-    return parts
+def groups() -> Iterator[tuple[str, list[str]]]:
+    """Yield the comment above each group of the stub, and the paths of its names; the pictures as the last group."""
+    heading, names = "", []
+    for line in (ROOT / "rotorgear" / "__init__.pyi").read_text(encoding="utf-8").splitlines():
+        if line.startswith("# "):
+            if names:
+                yield heading, names
+            heading, names = line[2:].rstrip("."), []
+        names += [f"rotorgear.{name}" for name in _name(line)]
+    yield heading, names
+    pictures = (ROOT / "rotorgear" / "plot" / "__init__.pyi").read_text(encoding="utf-8").splitlines()
+    yield "Pictures", [f"rotorgear.plot.{name}" for line in pictures for name in _name(line)]
 
 
-def _line(value: object, name: str) -> str:
-    """A name, with the arguments that it needs, and the first sentence of its docstring."""
-    called = ""
-    if inspect.isfunction(value):
-        needed = [p.name for p in inspect.signature(value).parameters.values() if p.default is p.empty]
-        called = f"({', '.join(needed)})"
-    first = (inspect.getdoc(value) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
-    return f"| `{name}{called}` | {first} |"
-
-
-def _entry(value: object, name: str) -> str:
-    text = inspect.getdoc(value) or ""
-    if inspect.isfunction(value):
-        arguments = [
-            f"{parameter.name}=..." if parameter.default is not parameter.empty else parameter.name
-            for parameter in inspect.signature(value).parameters.values()
-        ]
-        return f"### `{name}`\n\n```text\n{name}({', '.join(arguments)})\n\n{text}\n```\n"
-    return f"### `{name}`\n\n```text\n{text}\n```\n"
+def _name(line: str) -> list[str]:
+    words = line.split()
+    return [words[5]] if len(words) == 6 and words[4] == "as" and words[5] != "plot" else []

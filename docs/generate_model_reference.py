@@ -243,13 +243,24 @@ def _section(title: str, part: type[BaseModel]) -> str:
 
 
 def _rows(part: type[BaseModel]) -> Iterator[list[str]]:
+    for (name, unit, bound, default, meaning), kind in zip(facts(part), _kinds(part), strict=True):
+        yield [f"`{name}`", _value(kind), unit, bound, default, meaning]
+
+
+def facts(part: type[BaseModel]) -> Iterator[tuple[str, str, str, str, str]]:
+    """Yield key, SI unit, bound, default and meaning of each field of a part, as cells of a table."""
+    for (name, field), kind in zip(part.model_fields.items(), _kinds(part), strict=True):
+        default = "*required*" if field.is_required() else _default(field.get_default(call_default_factory=True), kind)
+        yield name, _unit(kind), _bound(kind), default, _escaped(field.description or "")
+
+
+def _kinds(part: type[BaseModel]) -> Iterator[dict[str, Any]]:
     schema = part.model_json_schema()
     for name, field in part.model_fields.items():
         kind = _kind(schema["properties"][name], schema)
-        default = "*required*" if field.is_required() else _default(field.get_default(call_default_factory=True), kind)
         if "'start', 'end'" in str(field.annotation):
             kind["words"] = ["start", "end"]
-        yield [f"`{name}`", _value(kind), _unit(kind), _bound(kind), default, _escaped(field.description or "")]
+        yield kind
 
 
 def _kind(schema: dict[str, Any], root: dict[str, Any]) -> dict[str, Any]:

@@ -127,8 +127,10 @@ def parameter(
         unit: SI unit of the value, "" for none.
         meaning: what it is, in words.
         default: value where none is given; without it one has to be given.
-        least, above: bounds from below, the value itself allowed or not.
-        most, below: bounds from above, the value itself allowed or not.
+        least: bound from below that the value itself may have.
+        above: bound from below that the value must exceed.
+        most: bound from above that the value itself may have.
+        below: bound from above that the value must stay under.
         choices: texts that are allowed, for a parameter that is a word.
 
     Returns:

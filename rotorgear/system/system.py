@@ -62,7 +62,8 @@ class System:
         elements: basic elements in each shaft segment.
         plan: how finely each piece is cut, in place of `elements`.
         state: flanks, forces and tangents that it is about. None: those of the torque flow at the operating speed.
-        load, direction: old ways to ask for a state.
+        load: old way to ask for a state.
+        direction: old way to ask for a state.
     """
 
     def __init__(

@@ -64,7 +64,9 @@ def transient_convergence_study(
     as many steps, and errors below their difference are not judged.
 
     Args:
-        model, speed, modal_damping: as for `transient`. Damping by modes leaves only the exponential method.
+        model: as for `transient`.
+        speed: as for `transient`.
+        modal_damping: as for `transient`. Damping by modes leaves only the exponential method.
         time: duration in s or as a text; 8 periods of the slowest mesh where not given.
         steps: numbers of steps in a period of the fastest mesh, multiples of 40.
         accuracies: accuracies that the analysis chooses its step for itself.
@@ -272,7 +274,8 @@ def orbits_convergence_study(
     and its multipliers, without the estimate, which a branch makes at three points.
 
     Args:
-        model, excite: as for `orbits`.
+        model: as for `orbits`.
+        excite: as for `orbits`.
         speed: of the input shaft, in rad/s or as a text; the operating speed where not given.
         harmonics: numbers of harmonics, each with 16 instants a harmonic.
         densities: instants for each of 30 harmonics, 5 or more.

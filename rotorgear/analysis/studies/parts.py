@@ -123,7 +123,9 @@ def mesh_convergence_study(
     """Run the loaded contact of one helix of a mesh over presets and mesh sizes, without stored compliances.
 
     Args:
-        model, mesh, torque: as for `mesh`.
+        model: as for `mesh`.
+        mesh: as for `mesh`.
+        torque: as for `mesh`.
         progress: callable that is told fraction and step.
 
     Raises:

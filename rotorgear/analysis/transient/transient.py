@@ -95,7 +95,7 @@ def transient(
     Raises:
         AnalysisError: nothing to run, or a request that makes no sense.
         ConvergenceError: not even the first records came to be. A run that stops later returns what it has, and says
-        so in `status`.
+            so in `status`.
     """
     clock = Clock()
     if steps is not None and accuracy is not None:
