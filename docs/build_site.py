@@ -29,7 +29,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Analyses": ("static", "modal", "response", "transient", "sweep"),
     "Parts": ("mesh", "bearings", "casings", "model_file"),
     "Design": ("report", "rig"),
-    "Files and Python": ("commands", "python", "api", "json", "rexs"),
+    "Files and Python": ("commands", "python", "api", "rexs"),
     "Trust": ("accuracy", "validation", "seeds", "extreme"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Development": ("architecture", "CONTRIBUTING"),

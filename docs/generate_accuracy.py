@@ -80,8 +80,8 @@ HEAD = f"""# Accuracy: error against run time
 
 **Ask for an accuracy, not for an element count.** By default the estimated relative error of every frequency is at most
 {DEFAULT_ACCURACY:g}. `--accuracy 1e-6` (in Python `accuracy=1e-6`) asks for less. The estimate is in the column "error" of the
-printed table and in `error_estimate` of the [JSON](json.md). It covers the discretisation only. Uncertain stiffness of
-bearings and meshes is often the larger error ([Scatter](report.md#scatter)).
+printed table and in `error_estimate` of the [JSON](commands.md#json-output). It covers the discretisation only. Uncertain
+stiffness of bearings and meshes is often the larger error ([Scatter](report.md#scatter)).
 
 **How it works.** A shaft *segment* lies between two neighbouring places: ends of sections, gears, bearings, disks, supports,
 couplings, points. Each segment starts as one element of order 2. The residual of a mode against the next two polynomials of

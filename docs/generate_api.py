@@ -25,7 +25,7 @@ _WORDS = {
     "A force law of your own": "[Force laws](python.md#a-force-law-of-your-own) that you write act in every analysis.",
     "A rig beside them": "What reads measurements and puts them [beside a model](rig.md).",
     "Files of results": "What saves results and writes them for other programs.",
-    "The results": "What the verbs return; the keys of their JSON stand under [commands](json.md).",
+    "The results": "What the verbs return; the keys of their JSON stand under [commands](commands.md#json-output).",
     "The errors": "What is raised: see [Troubleshooting](errors.md).",
     "Pictures": "Functions of `rg.plot`; `result.plot()` calls the one of its kind ([gallery](gallery.md)).",
 }

@@ -1,6 +1,6 @@
 """Bring the docs up to date:  python docs/update.py
 
-With names of pages or generators, only those, their long blocks too:  python docs/update.py mesh json
+With names of pages or generators, only those, their long blocks too:  python docs/update.py mesh commands
 With --check it changes nothing, and fails where something but seconds would change.
 
 Every number on a page is printed by a command beside it. This runs the marked blocks of all pages (the marks stand in
@@ -125,7 +125,7 @@ def main() -> int:
         "--check", action="store_true", help="change nothing; fail where something but seconds would change"
     )
     parser.add_argument("--long", action="store_true", help="run the generators and blocks that take long, too")
-    parser.add_argument("names", nargs="*", help="pages or generators, such as mesh or json; default: all")
+    parser.add_argument("names", nargs="*", help="pages or generators, such as mesh or commands; default: all")
     options = parser.parse_args()
     changed, failed = update(options.check, options.long, options.names)
     return 1 if failed or (changed and options.check) else 0

@@ -45,7 +45,7 @@ class Report:
     numbers: dict[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON: results by name under `results`, each with its keys of docs/json.md."""
+        """Plain values for JSON: results by name under `results`, each with its keys of docs/commands.md."""
         return self.numbers
 
 

@@ -278,7 +278,7 @@ class MeshResult(Result, kind="mesh"):
         return self.orders()
 
     def to_dict(self, harmonics: int = _ORDERS) -> dict[str, Any]:
-        """Plain values for JSON with so many orders; the keys are on docs/json.md."""
+        """Plain values for JSON with so many orders; the keys are on docs/commands.md."""
         return {**super().to_dict(), "harmonics": plain(self.orders(harmonics))}
 
     def tables(self, *, harmonics: int = 0) -> Iterator[Block]:

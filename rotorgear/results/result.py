@@ -114,7 +114,7 @@ class Result(Record):
     __hash__ = None  # type: ignore[assignment]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are on docs/json.md."""
+        """Plain values for JSON; the keys are on docs/commands.md."""
         values = super().to_dict()
         head = {"title": values.pop("title")} if "title" in values else {}
         return {"analysis": self.analysis_word, **head, **values}

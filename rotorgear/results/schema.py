@@ -7,7 +7,7 @@
         def frequency_hz(self) -> np.ndarray:
             return np.abs(self.eigenvalues) / (2.0 * np.pi)
 
-JSON, HDF5, rows, data sets, the text of a result and docs/json.md follow from these declarations. An axis in small letters is
+JSON, HDF5, rows, data sets, the text of a result and docs/commands.md follow from these declarations. An axis in small letters is
 counted ("mode"), one in capitals is a dictionary's ("PART"). Subclasses of `Record` are frozen dataclasses without a decorator;
 two of them are equal if all their values are, arrays by their entries and NaN to NaN, and their arrays are read-only. `rows`
 writes the fields that an axis counts as a list of rows.
@@ -464,7 +464,7 @@ class Record:
         return f"{type(self).__name__}({', '.join(f'{item.name}={_short(getattr(self, item.name))}' for item in fields(self))})"
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are on docs/json.md."""
+        """Plain values for JSON; the keys are on docs/commands.md."""
         out: dict[str, Any] = {}
         for declared in self.declarations.values():
             for entry in declared.written():

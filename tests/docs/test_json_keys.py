@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from machinery.json_keys import SECTIONS
 from machinery.snippets import ROOT
 from typer.testing import CliRunner
 from update import load_generator
 
 from rotorgear.analysis.static.static import static
 from rotorgear.cli.main import app
+from rotorgear.results.kinds import kinds
 from tests.models import pair_file
 from tests.unit.analysis.static.test_bearing_states import rotor
 from tests.unit.casings.blocks import block, write_inp
@@ -34,12 +36,12 @@ RIG = """frequency_hz,label,uncertainty_hz,damping_ratio
 @cache
 def whole_page() -> str:
     """The page of the site."""
-    return str(load_generator(ROOT / "docs" / "generate_json.py").site_pages()["docs/json.md"])
+    return str(load_generator(ROOT / "docs" / "generate_commands.py").site_pages()["docs/commands.md"])
 
 
 def documented(section: str) -> set[str]:
     """Return the keys of a section's table."""
-    part = whole_page().split(f"\n## {section}\n")[1].split("\n## ")[0]
+    part = re.split(r"\n##+ ", whole_page().split(f"\n### JSON of {section}\n")[1])[0]
     return set(re.findall(r"^\| `([^`]+)` \|", part, flags=re.MULTILINE))
 
 
@@ -230,6 +232,12 @@ def test_the_keys_of_frf_are_documented(tmp_path: Path) -> None:
     places = ("--inputs", "gears.bull:y", "--outputs", "output_bearing_y")
     data = written(tmp_path, "frf", str(MODEL), *places, "--fmax", "50", "--points", "3", "--elements", "1")
     assert differences(data, documented("frf")) == NONE
+
+
+def test_every_output_stands_below_a_command_of_the_page() -> None:
+    below = re.findall(r"^### JSON of (.+)$", whole_page(), flags=re.MULTILINE)
+    assert sorted(below) == sorted(heading for heading, _, _ in SECTIONS)
+    assert {kind for _, _, parts in SECTIONS for kind, _ in parts} == set(kinds())
 
 
 def test_a_key_that_is_not_in_the_table_is_found() -> None:

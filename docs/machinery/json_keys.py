@@ -1,42 +1,12 @@
-"""Writes docs/json.md from the declarations of the results: the rules, and what each command's output holds.
-
-The site shows the whole page: every key with its unit and meaning.
-"""
+"""The keys of the JSON output of each command, from the declarations of the results."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 from rotorgear.results.kinds import keys_of, kinds
 from rotorgear.results.result import ModelResult
 
-HEAD = """# JSON output
-
-`--json FILE` writes the result of a command as one JSON object; `result.to_dict()` is the same in Python. A test compares the
-keys with what the commands write, in both directions.
-
-* **A field has one name.** A key is the name of the field in Python, in tables of `result.rows()` and in the HDF5 file of
-  `--save`, with its unit behind it where it has one: `largest_pressure` in Pa is `largest_pressure_pa`. Some keys keep the
-  shorter name that they have had since version 0.1, such as `ste_m` of a transmission error.
-* **Numbers are in the unit that their key names**, SI but for `_rpm`, `_deg`, `_hz` and `_percent`; a key without a unit is a
-  share, a ratio, a count, or says its unit in its meaning. What is stored as rad/s and rad is written as rpm and degrees.
-* **A number that is not known is `null`**, and so is one that is not finite.
-* **Lists go along axes.** `[]` stands for the entries of a list, and a word in capitals for names of your model, which are the
-  keys of an object. Modes are counted from 1 in `mode_number`; lists over modes begin with mode 1.
-* **What every result says** stands in each object: see the first table.
-
-The whole list of keys with units and meanings is made with the site, from the declarations of the results in
-`rotorgear/results/`: `python docs/build_site.py` builds it.
-"""
-_WHOLE = """# JSON output
-
-`--json FILE` writes the result of a command as one JSON object; `result.to_dict()` is the same in Python. Numbers are in the
-unit that their key names; a key without a unit is a share, a ratio or a count. A number that is not known is `null`. Modes are
-counted from 1 in `mode_number`; lists over modes begin with mode 1.
-
-Below, `[]` stands for the entries of a list, and a word in capitals for names of your model. This page is made from the
-declarations of the results in `rotorgear/results/`; a test compares it with what the commands write, in both directions.
-"""
-# So many fields of a result stand in the summary.
-_MAIN = 8
 # Heading, words before the table, and the kinds of results with what stands before their keys.
 SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     (
@@ -208,36 +178,29 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
 )
 
 
-def pages() -> dict[str, str]:
-    """Return the summary by its path: the rules, what every result says, and a line for each command."""
-    common = {path: (path, unit, text) for path, unit, text in keys_of(ModelResult)}
-    shared = "".join(row(*key) for path, key in common.items() if path != "analysis")
-    lines = []
-    for heading, _, parts in SECTIONS:
-        for kind, prefix in parts:
-            cls = kinds()[kind]
-            about = (cls.__doc__ or "").strip().split("\n")[0].replace("|", "\\|")
-            own = dict.fromkeys(path.partition(".")[0] for path, _, _ in keys_of(cls) if path not in common)
-            fields = [f"`{prefix}{name}`" for name in own if not name.startswith(("analysis", "facts"))]
-            more = f" and {len(fields) - _MAIN} more" if len(fields) > _MAIN else ""
-            lines.append(f"| {heading} | {about} | {', '.join(fields[:_MAIN])}{more} |\n")
-    parts_of_page = [
-        HEAD,
-        f"## What every result says\n\n| key | unit | value |\n|---|---|---|\n{shared}",
-        f"## What each command writes\n\n| output | what it holds | main fields |\n|---|---|---|\n{''.join(lines)}",
-    ]
-    return {"docs/json.md": "\n".join(parts_of_page)}
+# The command whose section an output stands in, where that is not the first word of its heading.
+_COMMANDS = {
+    "mesh map": "mesh-map",
+    "mesh optimum": "optimise-flanks",
+    "root stress": "root-stress",
+    "mesh accuracy": "accuracy",
+    "sweep accuracy": "accuracy",
+    "tooth field": "mesh",
+}
 
 
-def site_pages() -> dict[str, str]:
-    """Return the whole page by its path."""
-    return {"docs/json.md": "\n".join([_WHOLE, *(section(*parts) for parts in SECTIONS)])}
+def outputs_of(command: str) -> Iterator[str]:
+    """Yield a section of Markdown for each output of a command: its keys with units and meanings."""
+    for heading, words, parts in SECTIONS:
+        if _COMMANDS.get(heading, heading.split()[0]) == command:
+            rows = "".join(row(*key) for kind, prefix in parts for key in keys_of(kinds()[kind], prefix))
+            yield f"### JSON of {heading}\n\n{words}\n\n| key | unit | value |\n|---|---|---|\n{rows}"
 
 
-def section(heading: str, words: str, parts: tuple[tuple[str, str], ...]) -> str:
-    """The section of one command."""
-    rows = "".join(row(*key) for kind, prefix in parts for key in keys_of(kinds()[kind], prefix))
-    return f"## {heading}\n\n{words}\n\n| key | unit | value |\n|---|---|---|\n{rows}"
+def common_keys() -> str:
+    """A table of the keys of every result."""
+    rows = "".join(row(*key) for key in keys_of(ModelResult) if key[0] != "analysis")
+    return f"| key | unit | value |\n|---|---|---|\n{rows}"
 
 
 def row(path: str, unit: str, text: str) -> str:
