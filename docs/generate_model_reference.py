@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter
 
 from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
 from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
+from rotorgear.model.parts.fields import Whole
 from rotorgear.model.parts.gear import Flank, Gear, GearBody
 from rotorgear.model.parts.load import Load, LoadHistory, Unbalance
 from rotorgear.model.parts.mesh import CornerImpact, ErrorHarmonic, Mesh, StiffnessHarmonic, ToothFeTable
@@ -58,8 +60,8 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("thrust = { ... } of a bearing", ThrustGeometry),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
-    ("stiffness = { ... } of a bearing, support or coupling", StiffnessMatrix),
-    ("damping = { ... } of a bearing, support or coupling", DampingMatrix),
+    ("stiffness = { ... } of a part", StiffnessMatrix),
+    ("damping = { ... } of a part", DampingMatrix),
     ("[casings.NAME]", Casing),
     ("seats = { NAME = { ... } } of a casing", Seat),
     ("mounts = { SET = { ... } } of a casing", Mount),
@@ -77,24 +79,26 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[scatter] by address", Scatter),
 ]
 
+# A whole number from 1 to the largest count.
+COUNT = TypeAdapter(Whole).json_schema()
 # What single fields can't say: rules that tie keys together.
 RULES: dict[type[BaseModel], str] = {
     Model: """
-        Keys above the first table, and the tables that a file may have. `shafts` is the only one it must have.""",
+        Keys above the first table, and the tables of a file.""",
     Operation: """
         Give `power` or `torque`, not both; then name the `output_shaft`, or list the torques under `[loads]`. Without
         `[operation]` the first shaft is the input.""",
     Material: """
-        Give `poisson_ratio` or `shear_modulus`, one of them.""",
+        Give `poisson_ratio` or `shear_modulus`, not both.""",
     Casing: """
         A bearing with `casing = "NAME"` stands on the seat of its name. Give `material`, or E, nu and density.
-        [Casings](casings.md) tells how meshes are read, reduced and checked.""",
+        See [Casings](casings.md).""",
     Seat: """
         A text is the name of a set. Else all of `axis`, `center`, `from`, `to` and `radius` say where the bore is.""",
     Join: """
         Both faces may stand in one mesh or in two; a set of one mesh of several is written `lower.flange`.""",
     Shaft: """
-        One rigid point is enough for a torsional model.""",
+        That is enough for a torsional model.""",
     Section: """
         A section begins where the one before it ends. `outer_diameter_end` and `bore_end` make it a cone. The mass
         diameters serve sleeves and rings that weigh but do not stiffen.""",
@@ -106,18 +110,19 @@ RULES: dict[type[BaseModel], str] = {
     GearBody: """
         Without a rim the blank is a solid ring from the bore to the reference circle. A rim needs a web.""",
     Flank: """
-        For [loaded teeth](mesh.md) only; their shapes and the columns of `topography` stand there. Amounts are depths of
-        removed material along the flank normal; tip relief stands in the gear. `z` is that of the gear's shaft, and of each
-        helix by itself in a herringbone.""",
+        For [loaded teeth](mesh.md) only, where their shapes and the columns of `topography` stand. Amounts are depths of removed
+        material; `z` is that of the gear's shaft, and of each helix by itself in a herringbone.""",
     ToothFeTable: """
-        For `stiffness = "tooth_fe"` and [`rotorgear mesh`](mesh.md).""",
+        See [Loaded teeth](mesh.md).""",
     Mesh: """
         Both gears need the same kind, normal module, pressure angle and helix angle, and opposite hands. Their axes must
         stand at the centre distance that teeth and profile shifts give, to a twentieth of the module. Signs:
         [conventions](conventions.md#mesh-of-a-parallel-axis-pair).""",
     Bearing: """
-        Give `stiffness` (and `damping`), a `table` over speed, `rolling` elements, or a `journal`. A bearing holds no torsion
-        unless told to.""",
+        Give `stiffness` (and `damping`), a `table` over speed, `rolling` elements, a `journal` or a `thrust` bearing.
+        A stiffness of one number, `{ radial = "1e8 N/m" }`, holds x and y alone, not z: give one bearing of the shaft an
+        `axial` one, too. A bearing holds no torsion unless told to. See
+        [Bearings](bearings.md).""",
     TableRow: """
         At least two rows, speeds rising. A speed outside the table is refused, never extrapolated.""",
     Pedestal: """
@@ -125,47 +130,40 @@ RULES: dict[type[BaseModel], str] = {
     StiffnessMatrix: """
         Give `radial`, or `x` and `y`; `tilt`, or `tilt_x` and `tilt_y`; or the full `matrix` and nothing else, rows and
         columns x y z tilt_x tilt_y torsion. What is left out is zero.""",
-    DampingMatrix: """
-        The same keys as for the stiffness.""",
-    Support: """
-        Springs that stand for the machine behind a shaft end, or an ideal clamp (`fixed`).""",
-    Coupling: """
-        Gears join parallel shafts, couplings coaxial ones.""",
+    DampingMatrix: f"""
+        The same keys as those of the [stiffness](#stiffness-----of-a-part), with velocities in place of displacements:
+        `"{DIMENSIONS["damping"].example}"` along axes, `"{DIMENSIONS["rotational_damping"].example}"` about them.""",
     CornerImpact: """
         The force of each helix, beside the contact force.""",
     RollingElements: """
-        A `clearance_class` with its `bore` stands for a clearance; angular contact bearings take a preload as displacement or
-        as force, O arrangement: `contact_angle` positive at the smaller z, negative at the larger, X the other way round. A
-        transient and a sweep take them. With a `stiffness` beside them (along x, y, axial and tilt), statics and linear
-        analyses keep that and say so; without one, statics solves for their contacts, and linear analyses take the tangent at
-        that equilibrium, the mean over a pitch of the elements.""",
+        With a `designation` no other key is required. It is one of the series 60, 62, 63 (deep groove), 70, 72, 73 (angular
+        contact), QJ 0, 2, 3 (four-point), N, NU, NJ, NUP 2 and 3 (cylindrical), 302, 303, 313, 320, 322, 323 (tapered). O
+        arrangement: `contact_angle` positive at the smaller z, negative at the larger, X the other way round. With a `stiffness`
+        beside them (along x, y, axial and tilt), statics and linear analyses keep that and say so; without one, statics solves
+        for the contacts, and linear analyses take the tangent there, the mean over a pitch of the elements. Transients and
+        sweeps follow the contacts.""",
     JournalGeometry: """
         The film carries across; what holds the shaft along z is a support or a bearing of its own. Statics, transients and
         sweeps solve its pressure, linear analyses take its stiffness and damping at the static equilibrium, over speed.
-        With `pads` it is one of tilting pads, whose stiffness and damping are those of pads that follow at `whirl_ratio`.
-        [Bearings](bearings.md) tells more. Refused: turbulent films, eccentricities above 0.95, lengths
-        above two diameters.""",
+        Refused: turbulent films, eccentricities above 0.95, lengths above two diameters.""",
     ThrustGeometry: """
-        The films carry along z and resist tilting of the collar; what holds the shaft across is a bearing of its own. Statics,
-        transients and sweeps solve the pressure of each pad, linear analyses take stiffness and damping at the static
-        equilibrium, over speed. Fixed pads have a `taper`, tilting ones a `pivot` instead. [Bearings](bearings.md) tells
-        more.""",
+        The films carry along z and resist tilting of the collar; what holds the shaft across is a bearing of its own. Analyses
+        take pressure and tangents like those of a journal. Fixed pads have a `taper`, tilting ones a `pivot` instead. The
+        keys of the oil, `viscosity`, `oil`, `inlet_temperature`, `heat_share`, `specific_heat` and `density`, are those of the
+        [journal](#journal-----of-a-bearing).""",
     NonlinearElement: """
-        A force law of the package, such as `journal_bearing` or `plain_spring`, or one registered from Python before the file
-        is loaded. It acts in every analysis: as it is in statics, transients and sweeps, and by its tangents at the static
-        equilibrium in modes, Campbell diagrams, critical speeds and responses, over speed where they depend on it; `left_out`
-        says about which state. Displacements are those of the shaft less those of `to_shaft`, and the force acts against
-        them.""",
+        The law is one of the package, such as `journal_bearing` or `plain_spring`, or registered from Python before the file is
+        loaded. Statics, transients and sweeps take it as it is, linear analyses by its tangents at the static equilibrium.
+        Displacements are those of the shaft less those of `to_shaft`, and the force acts against them.""",
     Unbalance: """
-        Responses, transients and sweeps take it. It turns with its shaft; [conventions](conventions.md) count angles from +x
-        about +z.""",
+        Responses, transients and sweeps take it.""",
     Disk: """
         Give `mass` and both inertias, or `outer_diameter` and `width`.""",
     ModelDamping: """
-        Damping counts in analyses at a `--speed` only.""",
+        Damping counts in analyses at a `--speed` only. Materials have no loss factor: the damping of parts stands in `damping` of
+        bearings, supports and couplings, `damping_ratio` or `damping` of meshes, `internal_damping` of shafts, and
+        `damping_ratio` of casings and gear bodies.""",
     Load: """
-        Either a torque that drives the train or takes its power, or a force with its moment at any place.
-
         A torque has `shaft`, `kind` and `torque` or `power`, in place of those under `[operation]`. The torques must balance in
         power; leave that of one output out and it takes the rest.
 
@@ -178,24 +176,26 @@ RULES: dict[type[BaseModel], str] = {
         [Forces and moments](static.md#forces-and-moments) says which analysis takes what.""",
     Scatter: """
 The key is an address in quotes, such as `"bearings.*.stiffness" = { sigma = "10 %" }`; of two that name one number the later
-counts. Give one of `sigma`, `tolerance` and `grade`. [Scatter](report.md#scatter) says what is made of it.
+counts. [Scatter](report.md#scatter) says what is made of it.
 """,
     Point: """
-        Give `on`, or `shaft` and `at`. The modal result lists each mode's amplitude there.""",
+        Give `on`, or `shaft` and `at`.""",
 }
+
+# Parts whose keys are, as far as they have the same name and meaning, those of another one; words say so.
+AS_ANOTHER: dict[type[BaseModel], type[BaseModel]] = {DampingMatrix: StiffnessMatrix, ThrustGeometry: JournalGeometry}
 
 HEAD = f"""# The model file
 
-<!-- Generated by docs/generate_model_reference.py: change that file or the fields it reads, then run docs/update.py. -->
+<!-- Generated by docs/generate_model_reference.py from the fields of the parts. -->
 
 A model is one [TOML](https://toml.io) file in UTF-8. This page lists every key of schema version {SCHEMA_VERSION}.
 [Your first gearbox](first_gearbox.md) builds a file step by step; [models/](../models) holds more.
 
 **Quantities** are texts of number and unit, `"2.75 mm"`. A plain number is SI: angles in rad, speeds in rad/s.
-Decimals take a point. A unit of the wrong kind is an error, never a guess.
+Decimals take a point. A unit of the wrong kind is an error.
 
 **Names** are yours: `[gears.pinion_1]` makes a gear called `pinion_1`. They take letters, digits, `_`, `-` and blanks.
-Errors, tables and energies use them.
 
 **Places**: z runs along every shaft, from one origin that you choose for the whole gearbox. `at` is a z in that
 frame, or `"start"` or `"end"` of the shaft. Signs and axes stand in [conventions](conventions.md).
@@ -205,20 +205,16 @@ frame, or `"start"` or `"end"` of the shaft. Signs and axes stand in [convention
 **Editors** complete and check keys from a JSON Schema. Write it with `rotorgear schema --json model.schema.json`
 and put `#:schema ./model.schema.json` into the first line of the model (Taplo; "Even Better TOML" in VS Code).
 
-In the tables below, *required* means that the part can't do without the key. All others may be left out; a dash in
-the column of defaults means that nothing stands in for them, or that the meaning says what does. Column "value" shows an
-example, the choices, or the kind of value.
+In the tables, a *value* is an example, the choices, or a kind, with its bounds. The SI unit of a plain number follows from the
+example, as [below](#quantities-and-units); a *count* is a whole number from 1 to {COUNT["maximum"]}. A key that is not
+*required* may be left out; where no default stands, the meaning says what holds then, or nothing does.
 """
 
 
 def pages() -> dict[str, str]:
     """Return the reference page by its path."""
-    parts = [HEAD, _contents(), _quantities(), *(_section(*row) for row in SECTIONS), _library()]
+    parts = [HEAD, _quantities(), *(_section(*row) for row in SECTIONS), _library()]
     return {"docs/model_file.md": "\n".join(parts)}
-
-
-def _contents() -> str:
-    return "".join(f"* [{title}](#{_anchor(title)})\n" for title, _ in SECTIONS)
 
 
 def _anchor(title: str) -> str:
@@ -238,29 +234,45 @@ def _quantities() -> str:
 def _section(title: str, part: type[BaseModel]) -> str:
     lead = "" if part is Model else inspect.cleandoc(part.__doc__ or "").split("\n\n")[0]
     text = " ".join(f"{lead} {RULES.get(part, '')}".split())
-    rows = [["key", "value", "SI unit", "bound", "default", "meaning"], *_rows(part)]
-    return f"## {title}\n\n{text}\n\n{_table(rows)}"
+    shared = {row[0] for row in _shared(part)}
+    own = [row for row in _rows(part) if row[0] not in shared]
+    table = _table([["key", "value", "default", "meaning"], *own]) if own else ""
+    return f"## {title}\n\n{text}\n\n{table}".rstrip() + "\n"
+
+
+def _shared(part: type[BaseModel]) -> list[list[str]]:
+    """The rows that a part shares with another one: all keys of a damping, or those with the same words."""
+    if part not in AS_ANOTHER:
+        return []
+    other = list(_rows(AS_ANOTHER[part]))
+    names = [row[0] for row in other]
+    rows = list(_rows(part))
+    return rows if [row[0] for row in rows] == names else [row for row in rows if row in other]
 
 
 def _rows(part: type[BaseModel]) -> Iterator[list[str]]:
-    for (name, unit, bound, default, meaning), kind in zip(facts(part), _kinds(part), strict=True):
-        yield [f"`{name}`", _value(kind), unit, bound, default, meaning]
+    for (name, _, bound, default, meaning), kind in zip(facts(part), _kinds(part), strict=True):
+        yield [f"`{name}`", f"{_linked(name, part, _value(kind))} {bound} {_words(kind)}".rstrip(), default, meaning]
+
+
+def _linked(key: str, part: type[BaseModel], value: str) -> str:
+    """What a key takes; of a table that has a section, with a link there."""
+    names = (f"{key} =", f"[{key}.NAME]") if part is not Model else (f"[{key}.NAME]", f"[{key}]")
+    title = next((title for title, _ in SECTIONS if title.startswith(names)), None) if "table" in value else None
+    return f"[{value}](#{_anchor(title)})" if title else value
 
 
 def facts(part: type[BaseModel]) -> Iterator[tuple[str, str, str, str, str]]:
     """Yield key, SI unit, bound, default and meaning of each field of a part, as cells of a table."""
     for (name, field), kind in zip(part.model_fields.items(), _kinds(part), strict=True):
-        default = "*required*" if field.is_required() else _default(field.get_default(call_default_factory=True), kind)
+        default = "required" if field.is_required() else _default(field.get_default(call_default_factory=True), kind)
         yield name, _unit(kind), _bound(kind), default, _escaped(field.description or "")
 
 
 def _kinds(part: type[BaseModel]) -> Iterator[dict[str, Any]]:
     schema = part.model_json_schema()
-    for name, field in part.model_fields.items():
-        kind = _kind(schema["properties"][name], schema)
-        if "'start', 'end'" in str(field.annotation):
-            kind["words"] = ["start", "end"]
-        yield kind
+    for name in part.model_fields:
+        yield _kind(schema["properties"][name], schema)
 
 
 def _kind(schema: dict[str, Any], root: dict[str, Any]) -> dict[str, Any]:
@@ -280,7 +292,7 @@ def _value(kind: dict[str, Any]) -> str:
         example = next(o["examples"][0] for o in kind["anyOf"] if "examples" in o)
         if not kind["x-unit"]:
             return "number"
-        return ", ".join(f'`"{text}"`' for text in [example, *kind.get("words", [])])
+        return f'`"{example}"`'
     options = {option.get("type") for option in kind.get("anyOf", [])} - {"null"}
     if options == {"string", "object"}:
         return "text or table"
@@ -292,8 +304,17 @@ def _value(kind: dict[str, Any]) -> str:
     if kind.get("type") == "array":
         return _list(kind)
     if "table" in kind or kind.get("type") == "object":
-        return "table of named parts" if "additionalProperties" in kind and "table" not in kind else "table"
-    return {"string": "text", "boolean": "`true` `false`", "integer": "whole number"}[kind["type"]]
+        return "named tables" if "additionalProperties" in kind and "table" not in kind else "table"
+    if kind["type"] == "integer":
+        return "count" if kind.get("maximum") == COUNT["maximum"] else "whole number"
+    return {"string": "text", "boolean": "`true` `false`"}[kind["type"]]
+
+
+def _words(kind: dict[str, Any]) -> str:
+    """The words that a quantity may be in place of a number."""
+    return " ".join(
+        f'`"{word}"`' for option in kind.get("anyOf", []) for word in option.get("enum", []) if "x-unit" in kind
+    )
 
 
 def _list(kind: dict[str, Any]) -> str:
@@ -310,25 +331,33 @@ def _list(kind: dict[str, Any]) -> str:
             + ", ".join(f'"{o["examples"][0]}"' for i in kind["prefixItems"] for o in i["anyOf"] if "examples" in o)
             + "]`"
         )
-    return "6 rows of 6 numbers"
+    if items.get("type") == "array":
+        return "6 rows of 6 numbers" if items.get("minItems") == 6 else f"rows of {_plural(items['items'])}"
+    return f"list of {_plural(items)}"
+
+
+def _plural(kind: dict[str, Any]) -> str:
+    return _value(kind) if kind.get("x-unit") else "numbers"
 
 
 def _unit(kind: dict[str, Any]) -> str:
     items = kind.get("prefixItems")
     unit = items[0].get("x-unit", "") if items else kind.get("x-unit", "")
-    return f"`{unit}`" if unit else "-"
+    return f"`{unit}`" if unit else ""
 
 
 def _bound(kind: dict[str, Any]) -> str:
     numbers = [kind, *(option for option in kind.get("anyOf", []) if option.get("type") == "number")]
     signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+    if kind.get("type") == "integer" and _value(kind) == "count":
+        return ""
     found = [f"{sign} {option[key]:g}" for option in numbers for key, sign in signs.items() if key in option]
-    return ", ".join(dict.fromkeys(found)) or "-"
+    return ", ".join(dict.fromkeys(found))
 
 
 def _default(value: Any, kind: dict[str, Any]) -> str:
     if value is None or value in ("", ()) or isinstance(value, dict | BaseModel):
-        return "-"
+        return ""
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
     if kind.get("x-unit") == "rad" and value:
@@ -350,5 +379,5 @@ def _escaped(text: str) -> str:
 
 
 def _table(rows: list[list[str]]) -> str:
-    head, *body = [f"| {' | '.join(row)} |" for row in rows]
+    head, *body = [re.sub(r" {2,}", " ", f"| {' | '.join(row)} |") for row in rows]
     return "\n".join([head, "|" + "---|" * len(rows[0]), *body]) + "\n"

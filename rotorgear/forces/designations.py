@@ -41,7 +41,7 @@ _KNOWN = {
 }
 SERIES = "60, 62, 63, 70, 72, 73, QJ 0 2 3, N NU NJ NUP 2 and 3, 302, 303, 313, 320, 322, 323"
 _FORM = re.compile(
-    r"(?P<series>6[023]|7[023]|QJ ?[023]|N[UJ]?P? ?[23]|3[0-3][023])(?P<code>\d\d)\s*(?P<suffix>[A-Z]{0,2})"
+    r"(?P<series>6[023]|7[023]|QJ ?[023]|N[UJ]?P? ?[23]|3[0-3][023])(?P<code>\d\d)(?!\d)\s*(?P<suffix>[A-Z]{0,2})"
 )
 
 

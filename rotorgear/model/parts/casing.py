@@ -74,7 +74,7 @@ Files = Annotated[
 class Mount(StiffnessMatrix):
     """Springs, and dampers, between the mean motion of a face and the ground."""
 
-    damping: DampingMatrix | None = Field(None, description="damping to the ground; default: none")
+    damping: DampingMatrix | None = Field(None, description="damping to the ground")
 
 
 class Join(Part):
@@ -123,8 +123,8 @@ class Casing(Part):
     )
     modes_to: si.Frequency | None = Field(
         None,
-        description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20, or more where an "
-        "analysis asks for frequencies beyond half of theirs",
+        description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20, more where an "
+        "analysis asks beyond half of their frequencies",
     )
     damping_ratio: si.Ratio = Field(0.0, description="damping ratio of every elastic mode of the casing by itself")
     mass: si.PositiveMass | None = Field(None, description="mass, if it is known: the mesh is checked against it")

@@ -97,13 +97,11 @@ class Gear(Part):
     """A cylindrical external gear on a shaft."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the gear's middle, or 'start' or 'end'")
+    at: Station = Field(description="z of the gear's middle")
     kind: Literal["spur", "helical", "herringbone"] = Field(description="spur, helical or herringbone")
     teeth: Whole | None = Field(None, description="number of teeth")
     normal_module: si.PositiveLength | None = Field(None, description="normal module m_n")
-    normal_pressure_angle: si.Angle = Field(
-        0.3490658503988659, description="normal pressure angle alpha_n; default 20 deg"
-    )
+    normal_pressure_angle: si.Angle = Field(0.3490658503988659, description="normal pressure angle alpha_n")
     helix_angle: si.Angle | None = Field(None, description="helix angle beta at the reference circle, positive")
     hand: Literal["right", "left"] | None = Field(
         None, description="hand of the helix; of a herringbone: of the helix at the smaller z"

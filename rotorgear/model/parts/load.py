@@ -22,7 +22,7 @@ class Unbalance(Part):
     """An unbalance that turns with its shaft, at the speed of that shaft."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the unbalance, or 'start' or 'end'")
+    at: Station = Field(description="z of the unbalance")
     magnitude: si.UnbalanceSize = Field(description="mass times eccentricity")
     phase: si.Angle = Field(0.0, description="direction of the unbalance at the time 0, from +x about +z")
 
@@ -175,9 +175,7 @@ class Load(Part):
     at: Station | None = Field(
         None, description="z of the place; default of a torque: start for an input, end for an output"
     )
-    torque: si.Torque | None = Field(
-        None, description="size of the torque; one load, an output as a rule, may leave it out and takes the rest"
-    )
+    torque: si.Torque | None = Field(None, description="size of the torque; left out of one load: the rest")
     power: si.Power | None = Field(None, description="power, in place of the torque")
     speed_power: si.SignedRatio = Field(
         0.0,
@@ -207,7 +205,7 @@ class Load(Part):
     phase: si.Angle = Field(0.0, description="phase at angle or time 0")
     history: HistoryFile | None = Field(
         None,
-        description="forces and moments over time, or over the angle of a shaft, in place of force and moment",
+        description="forces and moments over time or angle, in place of force and moment",
     )
 
     @property

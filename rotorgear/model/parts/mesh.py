@@ -104,25 +104,25 @@ class ToothFeTable(Part):
     pitches: Whole = Field(7, description="rim: pitches of the arc, an odd number of at least 3; its end cuts are held")
     exclude_torsion: bool | None = Field(
         None,
-        description="ring, wheel: leave the wind-up between bore and teeth to the rotor model; default: of a wheel, whose "
-        "torsion then stands between its teeth and its shaft, but not of a ring",
+        description="ring, wheel: leave the wind-up between bore and teeth to the rotor model; default: true of a wheel, false "
+        "of a ring",
     )
 
 
 class ErrorHarmonic(Part):
     """A harmonic of the transmission error: amplitude times cos(harmonic times the angle of the mesh + phase)."""
 
-    harmonic: Whole = Field(description="1 for the mesh frequency, 2 for twice that, ...")
+    harmonic: Whole = Field(description="number of the harmonic; 1: the mesh frequency")
     amplitude: si.NonNegativeLength = Field(description="amplitude along the flank normal (half of peak to peak)")
-    phase: si.Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
+    phase: si.Angle = Field(0.0, description="phase, from a contact at the pitch point")
 
 
 class StiffnessHarmonic(Part):
     """A harmonic of the mesh stiffness: a share of the mean times cos(harmonic times the angle of the mesh + phase)."""
 
-    harmonic: Whole = Field(description="1 for the mesh frequency, 2 for twice that, ...")
+    harmonic: Whole = Field(description="number of the harmonic; 1: the mesh frequency")
     amplitude: si.Ratio = Field(description="amplitude as a share of the mean stiffness")
-    phase: si.Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
+    phase: si.Angle = Field(0.0, description="phase, from a contact at the pitch point")
 
 
 class CornerImpact(Part):
@@ -130,7 +130,7 @@ class CornerImpact(Part):
 
     force: si.Force = Field(description="peak of the force of one helix")
     duration: si.Ratio = Field(description="duration in pitches, below 1")
-    at: si.Ratio = Field(0.0, description="its start in the cycle in pitches; 0 when a contact is at the pitch point")
+    at: si.Ratio = Field(0.0, description="start in the cycle in pitches; 0: a contact at the pitch point")
 
 
 class Mesh(Part):
@@ -139,9 +139,9 @@ class Mesh(Part):
     pinion: str = Field(description="name of the gear that is called the pinion")
     gear: str = Field(description="name of its mate")
     stiffness: StiffnessValue = Field(
-        description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one "
-        "mesh period; a Fourier series { mean, amplitudes, phases }; or the name of a stiffness model, which takes the "
-        "mean load of the torque flow"
+        description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one mesh "
+        "period; a Fourier series { mean, amplitudes, phases }; or a stiffness model, which takes the mean load of the torque "
+        "flow"
     )
     damping_ratio: si.Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
     damping: si.Damping | None = Field(
@@ -157,15 +157,15 @@ class Mesh(Part):
     stagger: si.Ratio = Field(
         0.0,
         description="herringbone: share of a pitch by which the pinion's teeth at the larger z are ahead, where the input shaft "
-        "turns about +z; 0 in phase, 0.5 staggered",
+        "turns about +z; 0.5: staggered",
     )
     misalignment: si.Length = Field(
         0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
     )
     tilt: Flag = Field(
         False,
-        description="whether the flanks feel the tilt of their shafts: the mesh resists it over the width of its face, and "
-        "statics finds misalignment and load distribution together with the shafts",
+        description="whether the mesh resists the tilt of its shafts over its face width; statics then finds misalignment and "
+        "load distribution with the shafts",
     )
     tooth_fe: ToothFeTable = Field(default_factory=ToothFeTable, description="settings of stiffness = 'tooth_fe'")
     contact_position: si.Length = Field(
@@ -186,8 +186,8 @@ class Mesh(Part):
     )
     phase: si.Angle | None = Field(
         None,
-        description="angle of the mesh at the time 0, counted from contact at the pitch point; default: what follows from "
-        "teeth, clocking and centre lines",
+        description="angle of the mesh at the time 0, from contact at the pitch point; default: from teeth, clocking and centre "
+        "lines",
     )
     transmission_error: tuple[ErrorHarmonic, ...] = Field(
         (), description="harmonics of the static transmission error, positive where it opens the gap"
@@ -195,7 +195,7 @@ class Mesh(Part):
     stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
         (), description="harmonics of the mesh stiffness about its mean"
     )
-    corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth; default: none")
+    corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth")
     friction_coefficient: si.Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")
     lubricant_viscosity: si.Viscosity | None = Field(
         None, description="viscosity of the oil: friction by Benedict and Kelley's formula, in place of a coefficient"
@@ -209,8 +209,8 @@ class Mesh(Part):
     )
     nominal_driver: Literal["pinion", "gear"] | None = Field(
         None,
-        description="which of the two drives on the flanks that responses, transients and sweeps call the working ones, "
-        "even where the loads press the other flanks together; default: the one that the mean torques make drive",
+        description="which gear drives on the flanks that are called working ones, even where loads press the others together; "
+        "default: the one that drives under the mean torques",
     )
     contact_damping: Literal["non-adhesive", "adhesive", "penetration"] = Field(
         "non-adhesive",
@@ -219,9 +219,8 @@ class Mesh(Part):
     )
     regularisation_depth: si.PositiveLength | None = Field(
         None,
-        description="penetration over which contact damping grows from zero to its full value, so that the force is "
-        "continuous; default: 2 % of the mean deflection. With penetration: the penetration at which the coefficient has its "
-        "given value; default: the mean deflection",
+        description="penetration over which contact damping grows to its full value; default: 2 % of the mean deflection. With "
+        "contact_damping = 'penetration': where the coefficient has its given value; default: the mean deflection",
     )
 
     @property

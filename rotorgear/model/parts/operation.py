@@ -19,7 +19,7 @@ class Operation(Part):
     torque: si.Torque | None = Field(None, description="torque into the input shaft, in the sense of its rotation")
     output_shaft: str | None = Field(None, description="name of the shaft that takes the power")
     gravity: si.Gravity | None = Field(
-        None, description="acceleration of gravity along x, y and z, for statics and transients; default: none"
+        None, description="acceleration of gravity along x, y and z, for statics and transients"
     )
 
 
@@ -29,8 +29,8 @@ class ModelDamping(Part):
     rayleigh_alpha: si.Rate = Field(0.0, description="alpha of C = alpha M + beta K")
     rayleigh_beta: si.Time = Field(
         0.0,
-        description="beta of C = alpha M + beta K, of the symmetric part of K: cross-coupled and circulatory terms damp "
-        "nothing; tangents of nonlinear elements and rolling bearings take part in linear analyses only",
+        description="beta of C = alpha M + beta K, of the symmetric part of K; tangents of nonlinear elements and rolling "
+        "bearings take part in linear analyses only",
     )
     modal_ratio: si.Ratio = Field(0.0, description="damping ratio added to that of every mode that is not rigid")
 
@@ -69,8 +69,7 @@ class Scatter(Part):
     )
     tolerance: float | str | None = Field(
         None,
-        description="half width of the tolerance, as sigma: the limits of a uniform distribution, three standard deviations of "
-        "the others",
+        description="half width: the limits of a uniform distribution, three standard deviations of the others",
     )
     grade: Whole | None = Field(
         None,

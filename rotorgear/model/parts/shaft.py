@@ -149,7 +149,7 @@ class Disk(Part):
     """A rigid disk: mass and inertias given, or a plain cylinder by its size."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the middle, or 'start' or 'end'")
+    at: Station = Field(description="z of the middle")
     mass: si.Mass | None = Field(None, description="mass")
     polar_inertia: si.Inertia | None = Field(None, description="moment of inertia about z")
     diametral_inertia: si.Inertia | None = Field(None, description="moment of inertia about x and y through the middle")
@@ -163,5 +163,5 @@ class PointMass(Part):
     """A mass without moments of inertia."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the place, or 'start' or 'end'")
+    at: Station = Field(description="z of the place")
     mass: si.Mass = Field(description="mass")

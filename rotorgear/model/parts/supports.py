@@ -89,7 +89,7 @@ class TableRow(Part):
 
     speed: si.Speed = Field(description="speed of the bearing's own shaft, without sign")
     stiffness: StiffnessMatrix = Field(description="stiffness at that speed")
-    damping: DampingMatrix | None = Field(None, description="damping at that speed; default: none")
+    damping: DampingMatrix | None = Field(None, description="damping at that speed")
 
 
 class Pedestal(Part):
@@ -104,21 +104,15 @@ class Bearing(Part):
     """A bearing between a shaft and the ground, a pedestal or a casing: a stiffness, or a law by its geometry."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the bearing, or 'start' or 'end'")
+    at: Station = Field(description="z of the bearing")
     stiffness: StiffnessMatrix | None = Field(None, description="stiffness; or give a table")
-    damping: DampingMatrix | None = Field(None, description="damping; default: none")
+    damping: DampingMatrix | None = Field(None, description="damping")
     table: tuple[TableRow, ...] = Field(
         (), description="rows over speed, linear in between, in place of stiffness and damping"
     )
-    rolling: RollingElements | None = Field(
-        None, description="rolling elements, which take the place of the stiffness in a transient"
-    )
-    journal: JournalGeometry | None = Field(
-        None, description="journal bearing by its geometry, in place of stiffness, damping and rolling elements"
-    )
-    thrust: ThrustGeometry | None = Field(
-        None, description="thrust bearing by its geometry, in place of stiffness, damping and rolling elements"
-    )
+    rolling: RollingElements | None = Field(None, description="rolling elements, by their contacts")
+    journal: JournalGeometry | None = Field(None, description="journal bearing by its geometry, in place of all these")
+    thrust: ThrustGeometry | None = Field(None, description="thrust bearing by its geometry, likewise")
     pedestal: Pedestal | None = Field(None, description="flexible pedestal; default: rigid ground")
     casing: str | None = Field(
         None, description="name of the casing that the bearing stands on: its seat has the bearing's name"
@@ -181,7 +175,7 @@ class Support(Part):
     """A support to ground: springs, dampers, and motions that are held fixed."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the support, or 'start' or 'end'")
+    at: Station = Field(description="z of the support")
     stiffness: StiffnessMatrix | None = Field(None, description="stiffness to ground")
     damping: DampingMatrix | None = Field(None, description="damping to ground")
     fixed: tuple[FixedDof, ...] = Field((), description="motions held fixed: x y z tilt_x tilt_y torsion, or all")
@@ -195,7 +189,7 @@ class Coupling(Part):
     to_shaft: str = Field(description="name of the second shaft")
     to_at: Station = Field("start", description="z on the second shaft; default: its start")
     stiffness: StiffnessMatrix = Field(description="stiffness; with a torsional one, both shafts turn at one speed")
-    damping: DampingMatrix | None = Field(None, description="damping; default: none")
+    damping: DampingMatrix | None = Field(None, description="damping")
 
     @property
     def turns_both(self) -> bool:
@@ -211,7 +205,7 @@ class NonlinearElement(Part):
 
     law: str = Field(description="name of the force law, of the package or registered from Python")
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the element, or 'start' or 'end'")
+    at: Station = Field(description="z of the element")
     to_shaft: str | None = Field(None, description="name of a second shaft; default: the ground")
     to_at: Station | None = Field(None, description="z on the second shaft; default: that on the first")
     casing: str | None = Field(None, description="name of a casing that it stands in, in place of the ground")

@@ -39,14 +39,14 @@ class Tables(Part):
     gears: dict[Name, Gear] = Field(default_factory=dict, description="gears")
     meshes: dict[Name, Mesh] = Field(default_factory=dict, description="meshes between gears")
     bearings: dict[Name, Bearing] = Field(default_factory=dict, description="bearings")
-    casings: dict[Name, Casing] = Field(default_factory=dict, description="elastic casings that bearings stand on")
+    casings: dict[Name, Casing] = Field(default_factory=dict, description="elastic casings")
     supports: dict[Name, Support] = Field(default_factory=dict, description="supports to ground")
     couplings: dict[Name, Coupling] = Field(default_factory=dict, description="couplings between shafts")
     nonlinear_elements: dict[Name, NonlinearElement] = Field(
         default_factory=dict, description="force laws between shafts, or a shaft and the ground"
     )
     damping: ModelDamping = Field(default_factory=ModelDamping, description="damping of the model as a whole")
-    loads: dict[Name, Load] = Field(default_factory=dict, description="torques, for several inputs or outputs")
+    loads: dict[Name, Load] = Field(default_factory=dict, description="torques and forces")
     unbalances: dict[Name, Unbalance] = Field(default_factory=dict, description="unbalances of shafts")
     points: dict[Name, Point] = Field(default_factory=dict, description="named points with a direction")
     scatter: dict[str, Scatter] = Field(

@@ -121,6 +121,12 @@ def test_a_designation_says_what_rolls(designation, count, element, pitch, kind,
     assert 1e3 * found["pitch_diameter"] == pytest.approx(pitch)
 
 
+@pytest.mark.parametrize("designation", ["NU 2208", "62206", "SKF 6206"])
+def test_a_designation_of_another_series_is_not_taken_for_one_that_begins_so(designation):
+    # NU 2208 has a bore of 40 mm; NU 220 has one of 100 mm.
+    assert inner_geometry(designation) == ({}, "")
+
+
 def test_shares_of_the_estimate_are_near_the_bearings_that_are_known():
     from rotorgear.forces import designations
 

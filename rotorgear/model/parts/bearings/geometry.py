@@ -111,8 +111,7 @@ class Oil(BearingGeometry):
     inlet_temperature: Temperature | None = Field(None, description="temperature at which the oil flows in")
     heat_share: Ratio = Field(
         1.0,
-        description="share of the power loss of the film that the oil carries away; 1: all of it, 0: the film stays at the "
-        "inlet temperature",
+        description="share of the film's power loss that the oil carries away; 0: the film stays at the inlet temperature",
     )
     specific_heat: SpecificHeat = Field(1900.0, description="specific heat of the oil")
     density: Density = Field(

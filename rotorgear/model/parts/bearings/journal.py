@@ -28,19 +28,19 @@ class JournalGeometry(Oil):
     fits: ClassVar[tuple[float, float]] = (0.3, 3.0)
 
     diameter: PositiveLength = Field(description="diameter of the journal")
-    length: PositiveLength = Field(description="length of the bearing, up to two diameters")
+    length: PositiveLength = Field(description="length of the bearing")
     clearance: PositiveLength = Field(
         description="radial clearance; of lobes where the gap of the centred journal is least"
     )
     cavitation: Literal["reynolds", "half_sommerfeld"] = Field(
         "reynolds",
-        description="how the film cavitates; reynolds: pressure and its slope vanish together; half_sommerfeld: negative "
-        "pressures of the full film are cut",
+        description="reynolds: pressure and its slope vanish together; half_sommerfeld: negative pressures of the full film are "
+        "cut",
     )
     inlet: Angle | None = Field(
         None,
-        description="angle of the oil inlet of a plain bearing, from +x about +z; default: where the gap is widest in the "
-        "static equilibrium at the speed",
+        description="angle of the oil inlet of a plain bearing, from +x about +z; default: where the gap is widest at the static "
+        "equilibrium",
     )
     lobes: Whole = Field(1, description="number of lobes; 1: a plain bearing")
     lobe_arc: Angle | None = Field(None, description="extent of a lobe; default: its share of the circle")

@@ -35,8 +35,9 @@ class RollingElements(BearingGeometry):
 
     designation: str | None = Field(
         None,
-        description="such as 6205, 7218 B, QJ 212, NJ209 or 30209: fills kind, elements, diameters, length and contact angle "
-        "where they are not given; estimated from the outside where nothing is published",
+        description="series and two digits of the bore, with or without a blank, then any suffix: '6206', 'NU 208', '7209 B' "
+        "(B 40, E 25, C 15 deg); fills what is not given of kind, elements, diameters, length and contact angle, estimated from "
+        "the outside where nothing is published",
     )
     kind: Literal["ball", "roller", "tapered", "four-point"] = Field(
         description="ball, cylindrical roller, tapered roller, or ball between two arcs (four-point)"
@@ -48,8 +49,8 @@ class RollingElements(BearingGeometry):
     clearance: NonNegativeLength = Field(0.0, description="radial internal clearance: the whole play along a diameter")
     clearance_class: Literal["C2", "CN", "C3", "C4", "C5"] | None = Field(
         None,
-        description="class of ISO 5753-1 of a deep groove ball bearing, in place of the clearance: the middle of its range, "
-        "before fits and temperature take from it",
+        description="class of ISO 5753-1 of a deep groove ball bearing, in place of the clearance: the middle of its range "
+        "before fits and warmth",
     )
     bore: PositiveLength | None = Field(None, description="bore of the inner ring, above 10 to 120 mm, for the class")
     preload_displacement: NonNegativeLength = Field(
