@@ -236,6 +236,16 @@ def in_words(value: float, dimension: str) -> str:
     return f"{value:.4g} {DIMENSIONS[dimension].unit.replace('*', ' ')}".rstrip()
 
 
+def counted(number: int, what: str) -> str:
+    """So many of what is named in the plural, or by its table: "1 mesh", "4 point masses", "1 frequency"."""
+    words = what.replace("_", " ")
+    if number != 1:
+        return f"{number} {words}"
+    if words.endswith("ies"):
+        return f"1 {words.removesuffix('ies')}y"
+    return f"1 {words.removesuffix('es' if words.endswith(('shes', 'sses', 'ches')) else 's')}"
+
+
 def nearest(name: str, valid: list[str]) -> str:
     """Return the valid name that is closest to `name`, or "" where none is close."""
     import difflib

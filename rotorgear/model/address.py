@@ -8,9 +8,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
+from copy import deepcopy
 from typing import Any
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.model.parts.fields import Part
 from rotorgear.model.parts.old_names import current_address
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import did_you_mean
@@ -54,40 +56,50 @@ def changed(data: Mapping[str, Any], changes: Iterable[tuple[list[Place], Any]])
     # Through text and back: the fastest deep copy of plain values.
     copy: dict[str, Any] = json.loads(json.dumps(data))
     for places, value in changes:
-        for place in places:
-            owner = value_at(copy, place[:-1])
-            key: Any = place[-1]
-            if value is None and isinstance(owner, dict):
-                owner.pop(key, None)
-                continue
-            old = owner[key] if isinstance(owner, list) else owner.get(key)
-            if isinstance(old, dict) and "radial" in old and isinstance(value, str | int | float):
-                # One number for the stiffness or damping of a bearing is the radial one, as on a drawing; the others stay.
-                old["radial"] = value
-                continue
-            # Where a whole number stands, a whole float is one too: numbers of teeth and harmonics are swept in floats.
-            whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
-            owner[key] = int(value) if whole else value
+        _put(copy, places, value)
     return copy
 
 
+def _put(data: dict[str, Any], places: Iterable[Place], value: Any) -> None:
+    """Write a value to some places of the tables of a model; None takes the key away."""
+    for place in places:
+        owner = value_at(data, place[:-1])
+        key: Any = place[-1]
+        if value is None and isinstance(owner, dict):
+            owner.pop(key, None)
+            continue
+        old = owner[key] if isinstance(owner, list) else owner.get(key)
+        if isinstance(old, dict) and "radial" in old and isinstance(value, str | int | float):
+            # One number for the stiffness or damping of a bearing is the radial one, as on a drawing; the others stay.
+            old["radial"] = value
+            continue
+        # Where a whole number stands, a whole float is one too: numbers of teeth and harmonics are swept in floats.
+        whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
+        owner[key] = int(value) if whole else value
+
+
 def with_values(model: Tables, values: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a model with other values at some addresses.
+    """The tables of a model with other values at some addresses, one after the other: a part that is added has its keys then.
 
     Raises:
         ModelError: addresses that lead nowhere, all at once.
     """
     data = tables_of(model)
-    changes = []
     problems: list[Problem] = []
     for address, value in values.items():
+        given = value.model_dump(mode="json", exclude_none=True) if isinstance(value, Part) else value
         try:
-            changes.append((places_of(data, current_address(address)), value))
+            places = places_of(data, current_address(address))
         except ModelError as error:
             problems += error.problems
+            continue
+        for (
+            place
+        ) in places:  # each its own copy: what a later address changes in one is neither another's nor the caller's
+            _put(data, [place], deepcopy(given))
     if problems:
         raise ModelError(problems)
-    return changed(data, changes)
+    return data
 
 
 def _keys(value: Any, part: str, address: str, last: bool) -> list[str | int]:

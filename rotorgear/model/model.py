@@ -23,7 +23,8 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.parts.fields import MOTIONS, Name
 from rotorgear.model.parts.shaft import Shaft
-from rotorgear.model.parts.tables import Tables, counted
+from rotorgear.model.parts.tables import Tables
+from rotorgear.quantity import counted
 
 SCHEMA_VERSION = 1
 
@@ -54,6 +55,8 @@ class Model(Tables):
 
             model.with_("bearings.left.stiffness", "2e8 N/m")
             model.with_({"shafts.rotor.sections[0].length": "80 mm", "operation.speed": "3000 rpm"})
+
+        Several are written one after the other, so a part may be added and its keys changed below.
 
         Args:
             address: of a value or a table, as errors write it; "*" stands for all names or places there. Or several addresses,

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.plots.figure import BLUE, figure_for, label, legend_below, name_axes
+from rotorgear.quantity import counted
 from rotorgear.results.optimise import LayoutMode, OptimiseResult
 from rotorgear.results.scatter import HIGH, LOW, FrequencyBand, ScatterResult
 
@@ -31,7 +32,7 @@ def scatter(result: ScatterResult, fig: Any = None) -> Any:
         MissingExtraError: matplotlib is not installed.
     """
     at = "at standstill" if result.speed_rpm is None else f"at {result.speed_rpm:.6g} rpm"
-    title = f"{result.model.title or 'Scatter'}\nfrequencies {at}, {result.sample_count} samples"
+    title = f"{result.model.title or 'Scatter'}\nfrequencies {at}, {counted(result.sample_count, 'samples')}"
     figure = figure_for(fig, (9.0, 7.5), title)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     numbers = np.arange(1, len(result.bands) + 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ def new_figure(size: tuple[float, float], title: str = "") -> Any:
         MissingExtraError: matplotlib is not installed.
     """
     require("matplotlib", "A plot")
+    # That fonts are listed for the first time, or that one is missing, is no news of a result.
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")

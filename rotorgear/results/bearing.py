@@ -206,7 +206,7 @@ class BearingSheet(ModelResult, kind="bearing"):
         """Its state with stiffness and damping, what is inside, the same over speed, and notes."""
         own = f", its shaft at {self.shaft_speed * RPM_PER_RAD_S:.6g} rpm" if self.shaft_speed != self.speed else ""
         turns = f"{self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
-        yield from (Line(f"{self.bearing}: {self.law}", f", {turns}{own}"), "", self._state())
+        yield from (Line(f"{self.bearing}: {self.law}", f", {turns}{own}"), *self._state())
         if self.oil is not None:
             yield from ("", grid(self._film(self.oil), "", "", left=2, caption="Film", headed=False))
         if self.rolling_elements:
@@ -226,26 +226,30 @@ class BearingSheet(ModelResult, kind="bearing"):
             yield from self._stability()
         yield from (*self.remarks(), "")
 
-    def _state(self) -> Table:
-        """Load, displacement, stiffness and damping of each component; what is rounding beside the largest is 0."""
+    def _state(self) -> Iterator[Block]:
+        """Load, displacement, stiffness and damping of each component; what is rounding beside the largest is 0.
+
+        Damping stands in a table of its own where more than two directions would make one too wide for the terminal.
+        """
         shown = list(range(2 if self.along_shaft else 0, len(self.bearing_load)))
         damps = bool(np.any(self.bearing_damping))
-        parts = [
-            (self.bearing_load[shown, None], 1.0),
-            (self.bearing_displacement[shown, None], 1e6),
-            (self.bearing_stiffness[np.ix_(shown, shown)], 1e-6),
-            *([(self.bearing_damping[np.ix_(shown, shown)], 1e-3)] if damps else []),
-        ]
         names = [_COMPONENTS[i] for i in shown]
-        rows = [
-            (
-                f"{name}, {'N' if shown[k] < 3 else 'N m'}",
-                *(cell for A, by in parts for cell in _cells(by * A[k], by * A)),
-            )
-            for k, name in enumerate(names)
+        parts: list[tuple[list[str], np.ndarray]] = [
+            (["load"], self.bearing_load[shown, None]),
+            (["moves"], 1e6 * self.bearing_displacement[shown, None]),
+            ([f"K {name}" for name in names], 1e-6 * self.bearing_stiffness[np.ix_(shown, shown)]),
         ]
-        heads = ("", "load", "moves", *(f"K {name}" for name in names), *(f"C {name}" for name in names if damps))
-        return grid(rows, *heads, caption="State")
+        damping = (
+            [([f"C {name}" for name in names], 1e-3 * self.bearing_damping[np.ix_(shown, shown)])] if damps else []
+        )
+        tables = {"State": parts, "Damping": damping} if len(names) > 2 else {"State": parts + damping}
+        for caption, columns in tables.items():
+            rows = [
+                (f"{name}, {'N' if shown[k] < 3 else 'N m'}", *(cell for _, A in columns for cell in _cells(A[k], A)))
+                for k, name in enumerate(names)
+            ]
+            if columns:
+                yield from ("", grid(rows, "", *(head for heads, _ in columns for head in heads), caption=caption))
 
     def _film(self, film: Any) -> Iterator[tuple[str, str]]:
         """Load, gap, pressure and heat of the film."""

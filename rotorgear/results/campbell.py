@@ -45,7 +45,7 @@ class Crossing(Record):
         "share of the exciting part in the energy of the mode",
         note=": a mesh in the strain energy, a shaft in the kinetic energy",
         form=".2f",
-        column="takes part %",
+        column="energy\n%",
     )
     excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
 
@@ -62,7 +62,10 @@ class Margin(Record):
     margin: float = of("margin", note=": `mode_hz` over `frequency_hz`, less 1", form="+.2f", column="margin %")
     whirl: str = of("sense of whirl", note=" of that branch for the shaft whose line it is", column="whirl")
     participation: float = of(
-        "share of the exciting part in the energy of the mode", note=", as at a crossing", form=".2f", column="part %"
+        "share of the exciting part in the energy of the mode",
+        note=", as at a crossing",
+        form=".2f",
+        column="energy\n%",
     )
     crossing_speed: float = of(
         "nearest crossing that the line can excite", "rad/s", note="; `null`: none", form=".1f", column="crossing rpm"

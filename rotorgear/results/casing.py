@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.quantity import millimetres
+from rotorgear.quantity import counted, millimetres
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.table import Block, Column, grid, table_of, written
@@ -79,7 +79,7 @@ class CasingRow(Record):
         # Products of inertia of a symmetric body are rounding.
         inertia = self.inertia_kg_m2 * (abs(self.inertia_kg_m2) > _ROUNDING * abs(self.inertia_kg_m2).max())
         yield ("inertia xx yy zz", " ".join(f"{inertia[i, i]:.5g}" for i in range(3)) + " kg m^2")
-        yield ("inertia xy yz zx", " ".join(f"{inertia[i, (i + 1) % 3]:.5g}" for i in range(3)) + " kg m^2")
+        yield ("inertia xy yz zx", " ".join(written(inertia[i, (i + 1) % 3], ".5g") for i in range(3)) + " kg m^2")
         yield ("least Jacobian", f"{self.jacobian_least:.3g} of the straight element's")
         free_of_strain = self.rigid_residual < _STRAINED and self.rigid_frequency_hz < 1e-3 * self.free_frequency_hz[0]
         words = "strain nothing" if free_of_strain else f"are strained: {self.rigid_frequency_hz:.2g} Hz"
@@ -87,7 +87,7 @@ class CasingRow(Record):
         yield ("rigid-body motions", f"{words}: |K R|/|K||R| {compared}")
         fixed = self.fixed_frequency_hz
         reach = f", to {fixed[-1]:.0f} Hz" if len(fixed) else ""
-        yield ("reduced to", f"{self.coordinates} coordinates: {len(fixed)} fixed-interface modes{reach}")
+        yield ("reduced to", f"{self.coordinates} coordinates: {counted(len(fixed), 'fixed-interface modes')}{reach}")
         yield ("seats", f"connection {self.connection}")
         if self.memory_bytes:
             yield ("largest memory", f"{self.memory_bytes / 1e9:.2f} GB")

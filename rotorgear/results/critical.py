@@ -90,7 +90,7 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
         kind = "damped" if self.damped else "undamped"
         title = self.model.title or "Critical speeds"
         yield Line(f"{title}: {kind} critical speeds to {self.top_speed * RPM_PER_RAD_S:.6g} rpm")
-        part = Column("part %", "participation", ".2f", "%", where=lambda one: one.excited, without="none")
+        part = Column("energy\n%", "participation", ".2f", "%", where=lambda one: one.excited, without="none")
         columns = ("speed", "frequency_hz", "line", *(("damping_ratio",) if self.damped else ()), "whirl", part)
         # A critical speed is written by columns.
         keys = {"speed_rpm": "critical_speed_rpm"}

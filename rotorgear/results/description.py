@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from rotorgear.model.parts.tables import counted
+from rotorgear.quantity import counted
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.table import Block, Line, Table, grid, table_of, written

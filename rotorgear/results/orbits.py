@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from rotorgear.quantity import counted
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Line, Table, grid, written
@@ -227,7 +228,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
     def _branch(self, number: int) -> Iterator[Block]:
         own = np.flatnonzero(self.branch == number)
         branch = self.branches[number]
-        yield f"Branch {branch.name}: {_points(len(own))}, {int(self.stable[own].sum())} stable, to {branch.ended}"
+        yield f"Branch {branch.name}: {counted(len(own), 'points')}, {int(self.stable[own].sum())} stable, to {branch.ended}"
         sizes = self.peak_to_peak_of(self)
         rows = []
         for i in own[_spread(len(own))]:
@@ -245,7 +246,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
 
     def _curve(self, curve: SpecialCurve) -> Iterator[Block]:
         name = self.branches[curve.branch].name
-        yield f"Curve of the {curve.kind} of branch {name}: {_points(len(curve.value))}, to {curve.ended}"
+        yield f"Curve of the {curve.kind} of branch {name}: {counted(len(curve.value), 'points')}, to {curve.ended}"
         sizes = self.peak_to_peak_of(curve)
         rows = [
             (
@@ -272,10 +273,6 @@ class OrbitsResult(ModelResult, kind="orbits"):
         ]
         heads = (self._head(), "stable", "deviation", "growth", "|mu|")
         return grid(rows, *heads, left=0, caption="Transients started on orbits")
-
-
-def _points(number: int) -> str:
-    return "1 point" if number == 1 else f"{number} points"
 
 
 def _spread(count: int) -> np.ndarray:

@@ -7,7 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.quantity import RPM_PER_RAD_S, counted
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
 from rotorgear.results.schema import Record, derived, force_and_moment, of
@@ -215,7 +215,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         if self.contact_mesh:
             yield TRANSMISSION_WORDS
         yield "amplitudes are half of peak to peak, each order by itself; forces without their mean"
-        yield f"{len(self.speeds)} speeds, {self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield f"{counted(len(self.speeds), 'speeds')}, {self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
         yield (
             f"solver error {error_words(self.solver_error)} at {self.checked} points checked; "
             f"on a finer mesh the peaks change by {error_words(self.error_estimate)}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rotorgear.drawing import picture_of
 from rotorgear.note import NAMED, as_notes, sentences
+from rotorgear.quantity import counted
 from rotorgear.results.schema import Record, Written, derived, of
 from rotorgear.results.table import Block, Line, as_html, as_rich, table_of, table_over
 from rotorgear.version import VERSION
@@ -195,7 +196,10 @@ class Result(Record):
             return [f"{type(self).__name__}: no table ({type(error).__name__}: {error})"]
         if len(lines) <= _LINES:
             return lines
-        return [*lines[: _LINES - 1], f"... and {len(lines) - _LINES + 1} more lines: result.text() has them all"]
+        return [
+            *lines[: _LINES - 1],
+            f"... and {counted(len(lines) - _LINES + 1, 'more lines')}: result.text() has them all",
+        ]
 
     def _repr_html_(self) -> str:
         try:

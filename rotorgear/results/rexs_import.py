@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rotorgear.quantity import counted
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.table import Block, Line
@@ -35,9 +36,9 @@ class RexsImport(Result, kind="import"):
         """What was read, the assumptions, and what was left out."""
         made = f"REXS {self.version}" + (f" by {self.application}" if self.application else "")
         yield Line(self.file, f": {made}" + (f", load case {self.load_case}" if self.load_case else ""))
-        yield f"{self.shafts} shafts, {self.gears} gears, {self.meshes} meshes, {self.bearings} bearings"
+        yield ", ".join(counted(getattr(self, name), name) for name in ("shafts", "gears", "meshes", "bearings"))
         yield from ("", *self._assumed(), "")
-        yield f"{len(self.assumptions)} assumptions; each stands as a comment in the model file"
+        yield f"{counted(len(self.assumptions), 'assumptions')}; each stands as a comment in the model file"
         yield from self.remarks()
 
     def _assumed(self) -> Iterator[str]:

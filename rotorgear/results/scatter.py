@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.quantity import RPM_PER_RAD_S, counted
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Column, Form, Line, Table, grid, table_of
@@ -137,7 +137,7 @@ class ScatterResult(ModelResult, kind="scatter"):
     def tables(self) -> Iterator[Block]:
         """Bands of modes, margins and load shares, the numbers that make them, and how far to trust them."""
         at = "at standstill" if self.speed_rpm is None else f"at {self.speed_rpm:.6g} rpm"
-        yield Line(self.title or "Scatter", f": scatter {at}, {self.sample_count} samples")
+        yield Line(self.title or "Scatter", f": scatter {at}, {counted(self.sample_count, 'samples')}")
         # Addresses without their last key where that tells them apart all the same.
         whole = [row.address for row in self.numbers]
         short = [address.rpartition(".")[0] for address in whole]
@@ -166,14 +166,14 @@ class ScatterResult(ModelResult, kind="scatter"):
         yield ""
         yield (
             f"basis of {self.basis_size} shapes: frequencies within {self.frequency_basis_error:.0e} of the whole system's at "
-            f"{self.checked_samples} samples that it was not made from"
+            f"{counted(self.checked_samples, 'samples')} that it was not made from"
         )
         lost = [row for row in self.bands if row.found < 0.95]
         if lost:
             modes = ", ".join(f"{row.mode_number} ({100 * row.found:.0f} %)" for row in lost)
             yield f"found again in fewer than 95 % of the samples: modes {modes}"
         if self.failed:
-            yield f"{self.failed} samples have numbers that the model can't have"
+            yield f"{counted(self.failed, 'samples')} with numbers that the model can't have"
         yield from self.remarks()
 
     def _margins(self) -> Table:

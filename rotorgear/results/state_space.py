@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import scipy.linalg as la
 
+from rotorgear.quantity import counted
 from rotorgear.results.frequency_response import BetweenPlaces
 from rotorgear.results.schema import of
 from rotorgear.results.table import Block, Line, error_words, grid
@@ -76,7 +77,10 @@ class StateSpace(BetweenPlaces, kind="state_space"):
         yield from (grid(rows, "kind", "place", "unit", left=3, caption="Inputs and outputs"), "")
         size = f"{2 * self.size} states"
         if self.reduced:
-            size += f": {self.kept_modes} modes and {self.size - self.kept_modes} other shapes of {self.dofs} dofs"
+            size += (
+                f": {counted(self.kept_modes, 'modes')} and {counted(self.size - self.kept_modes, 'other shapes')} "
+                f"of {self.dofs} dofs"
+            )
             changed = error_words(self.reduction_error)
             error = (
                 f"the reduction changes responses up to {self.fmax:.6g} Hz by {changed} of their largest (estimated)"

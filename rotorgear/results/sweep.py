@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rotorgear.old_names import warn_old
+from rotorgear.quantity import counted
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of, rows
@@ -45,9 +46,9 @@ class Reduction(Record):
     @property
     def sentence(self) -> str:
         """One sentence that describes the reduction."""
-        parts = [f"{self.modes} modes up to {_hertz(self.highest)}"] if self.modes else []
+        parts = [f"{counted(self.modes, 'modes')} up to {_hertz(self.highest)}"] if self.modes else []
         parts += [f"{self.rigid} rigid"] if self.rigid else []
-        parts += [f"{self.static} static shapes"] if self.static else []
+        parts += [counted(self.static, "static shapes")] if self.static else []
         return (
             f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): FRF error at the contacts "
             f"{100.0 * self.error:.2g} % up to {_hertz(self.up_to)}"
@@ -205,7 +206,9 @@ class SweepResult(ModelResult, kind="sweep"):
 
     def tables(self) -> Iterator[Block]:
         """The route, the points, the lines of the trajectories that are kept, and notes."""
-        yield Line(f"{self.model.title or 'Sweep'}: {len(self.values)} points over {' and '.join(self.address)}")
+        yield Line(
+            f"{self.model.title or 'Sweep'}: {counted(len(self.values), 'points')} over {' and '.join(self.address)}"
+        )
         yield ""
         if len(self.shape) == 1:
             yield from (self._route(r) for r in range(len(self.run)))
@@ -213,7 +216,7 @@ class SweepResult(ModelResult, kind="sweep"):
         runs = [(p, r) for p in range(len(self.values)) for r in range(len(self.run))]
         yield self._points(runs[:_MOST])
         if len(runs) > _MOST:
-            yield f"... {len(runs) - _MOST} more lines: see --json, --save and --plot"
+            yield f"... {counted(len(runs) - _MOST, 'more lines')}: see --json, --save and --plot"
         if self.portraits is not None:
             yield from self._strongest_lines(self.portraits)
         columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: of the worst contact"

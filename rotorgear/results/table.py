@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.quantity import RPM_PER_RAD_S, counted
 from rotorgear.results.schema import Declared, Record, Row, Rows, place_of
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def short(value: float) -> str:
     """Four digits, without an exponent where that is as short."""
     if not math.isfinite(value):
         return "-"
-    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.4g}"
+    return written(value, ".0f" if 1e3 <= abs(value) < 1e6 else ".4g")
 
 
 def scale(unit: str, shown: str) -> float:
@@ -357,7 +357,6 @@ def _number(value: Any, declared: Declared, column: Column, path: tuple[str | in
 
 def as_rich(blocks: Iterable[Block]) -> RenderableType:
     """The blocks for the terminal, as one rich renderable; brackets in a text are no markup."""
-    from rich.console import Group
     from rich.text import Text
 
     def rendered(block: Block) -> RenderableType:
@@ -367,7 +366,26 @@ def as_rich(blocks: Iterable[Block]) -> RenderableType:
             return Text.assemble((block.bold, "bold"), (block.rest, "dim" if block.dim else ""))
         return Text(block)
 
-    return Group(*map(rendered, blocks))
+    return _Unpadded(list(map(rendered, blocks)))
+
+
+@dataclass(frozen=True)
+class _Unpadded:
+    """Renderables whose lines end with their last word: rich fills each line of a table with blanks."""
+
+    parts: list[Any]
+
+    def __rich_console__(self, console: Any, options: Any) -> Iterator[Any]:
+        from rich.segment import Segment
+
+        for part in self.parts:
+            for line in console.render_lines(part, options, pad=False):
+                while line and not line[-1].text.strip():
+                    line.pop()
+                yield from line[:-1]
+                if line:
+                    yield Segment(line[-1].text.rstrip(), line[-1].style)
+                yield Segment.line()
 
 
 def _rich_table(table: Table) -> Any:
@@ -440,7 +458,7 @@ def html_table(table: Table, *, top: tuple[str | int, ...] | None = None, most: 
     )
     body = "\n".join("<tr>" + "".join(map(shown, row, sides)) + "</tr>" for row in rows)
     rest = len(table.rows) - len(rows)
-    more = f"\n<tr><td colspan={len(table.columns)}>... and {rest} more rows</td></tr>" if rest else ""
+    more = f"\n<tr><td colspan={len(table.columns)}>... and {counted(rest, 'more rows')}</td></tr>" if rest else ""
     caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
     head = f"<thead><tr>{heads}</tr></thead>" if table.headed else ""
     return f"<table>\n{caption}{head}\n<tbody>\n{body}{more}\n</tbody>\n</table>\n"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rotorgear.quantity import counted
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.table import Block, Column, Line, table_of
@@ -54,4 +55,4 @@ class ToothFields(Result, kind="tooth_field"):
         cells = Column("cells", lambda gear: len(gear.cells))
         yield table_of(self, "gears", Column("gear", "name"), nodes, cells, "root_stress")
         pressure = 1e-6 * self.contact.pressure.max(initial=0.0)
-        yield from (f"{len(self.contact.pair)} loaded slices, largest pressure {pressure:.4g} MPa", "")
+        yield from (f"{counted(len(self.contact.pair), 'loaded slices')}, largest pressure {pressure:.4g} MPa", "")

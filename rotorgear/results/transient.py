@@ -252,10 +252,11 @@ class TransientResult(ModelResult, kind="transient"):
                 f"ended at {self.time[-1]:.4g} s, before the {self.settle:.4g} s that are discarded: nothing counts"
             )
         yield Line(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
-        yield from (table_of(self, "contacts", tight=True), "")
-        if self.channel:
-            yield self._channels()
-        yield ""
+        if self.contact:
+            yield from (table_of(self, "contacts", tight=True), "")
+        channels = self._channels()
+        if channels.rows:
+            yield from (channels, "")
         if self.contact:
             yield f"TE: {TRANSMISSION_WORDS}; both peak to peak"
         cost = f"{self.dofs} dofs, {self.steps} steps of {self.step:.4g} s, {self.seconds['total']:.2f} s"

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotorgear.common_units import COMMON_UNITS
-from rotorgear.quantity import DIMENSIONS, QuantityError, _factor_by_pint, millimetres, nearest, parse_quantity
+from rotorgear.quantity import DIMENSIONS, QuantityError, _factor_by_pint, counted, millimetres, nearest, parse_quantity
 
 
 @pytest.mark.parametrize(
@@ -178,3 +178,19 @@ def test_the_nearest_name_ignores_capitals_and_is_empty_for_a_stranger() -> None
 
 def test_lengths_are_written_in_millimetres_without_a_negative_zero() -> None:
     assert [millimetres(z) for z in (0.0275, -0.0, -0.274, 1e3)] == ["27.5 mm", "0 mm", "-274 mm", "1e+06 mm"]
+
+
+@pytest.mark.parametrize(
+    ("number", "what", "words"),
+    [
+        (1, "slices", "1 slice"),
+        (1, "meshes", "1 mesh"),
+        (1, "point_masses", "1 point mass"),
+        (1, "branches", "1 branch"),
+        (1, "frequencies", "1 frequency"),
+        (0, "meshes", "0 meshes"),
+        (2, "frequencies", "2 frequencies"),
+    ],
+)
+def test_one_of_a_thing_is_no_plural(number: int, what: str, words: str) -> None:
+    assert counted(number, what) == words

@@ -32,6 +32,8 @@ _IN_TIME = "only motions over time take it"
 _DAMPS = "deflections at rest have no damping"
 _SHEET = "only the gear sheet takes it"
 _UNDAMPED = "the analysis is undamped (a --speed, even of 0, takes damping in)"
+# Where damping is given, which a warning says that misses it.
+GIVE_DAMPING = "give bearings or meshes a damping, or modal_ratio under [damping]"
 _FLANKS = "only stiffness = 'tooth_fe' looks at the shape of the flanks"
 # Table, keys, analyses that do not take them, and why. Nothing behind a table is the whole part.
 _NOT_TAKEN = (
@@ -226,7 +228,10 @@ def _matrices(
             and f"nonlinear_elements.{name}" not in system.state.tangents
             and element_law(element, 1.0).uses_velocity
         ]
-        yield Note("", "damping matrix", f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps")
+        # The modes are told of it here alone; whoever warns of it says there what to give.
+        remedy = f"; {GIVE_DAMPING}" if analysis == "modes" else ""
+        why = f"empty; only {', '.join(laws)} can damp" if laws else f"nothing damps{remedy}"
+        yield Note("", "damping matrix", why)
 
 
 def _flanks(model: Model, analysis: Analysis) -> Iterator[Note]:

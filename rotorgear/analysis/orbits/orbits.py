@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
+from rotorgear.analysis.common.left_out import GIVE_DAMPING
 from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import check_whole, missed
 from rotorgear.analysis.orbits.family import Outputs, SystemFamily, outputs_of, range_of
@@ -296,8 +297,7 @@ def _warnings(family: SystemFamily, branches: list[Branch], curves: tuple[Specia
     rates = plant.D + plant.D.T
     if not any(law.uses_velocity for law in plant.forces.laws) and not (rates.nnz and abs(rates).max() > 0.0):
         why = "at a resonance its motions have no bound, and no branch comes past one"
-        remedy = "give damping.modal_ratio or the damping of bearings and meshes"
-        yield Note("", "nothing damps the model", f"{why}; {remedy}")
+        yield Note("", "nothing damps the model", f"{why}; {GIVE_DAMPING}")
     ends = [(f"branch {branch.name}", len(branch.nodes), branch.ended) for branch in branches]
     ends += [(f"curve of the {curve.kind}", len(curve.value), curve.ended) for curve in curves]
     for what, count, why in ends:

@@ -12,7 +12,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
-from rotorgear.analysis.common.left_out import left_out
+from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
@@ -37,7 +37,9 @@ _CHECKED_ON_FINER = 4
 # Rounding below this is nothing beside the error of any mesh, and is not told.
 _ROUNDING = 1e-9
 _UNDAMPED = Note(
-    "", "nothing damps the model", "heights near a resonance are those of the nearest frequency; give a damping"
+    "",
+    "nothing damps the model",
+    f"heights near a resonance are those of the nearest frequency; {GIVE_DAMPING}, or --modal-damping",
 )
 
 

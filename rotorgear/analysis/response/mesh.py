@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.discretise import cut_of
+from rotorgear.analysis.common.left_out import GIVE_DAMPING
 from rotorgear.analysis.common.request import FINEST
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer
@@ -185,7 +186,7 @@ def speed_warnings(
     C = plant.system.damping(float(speeds[-1]) if plant.has_tables else top)
     ratios = np.einsum("nm,nm->m", shapes, C @ shapes)[elastic] / (2.0 * w[elastic]) + zeta
     if float(ratios.max()) <= 0.0:
-        why = "amplitudes near a resonance are as high as the nearest speed happens to be; give a damping"
+        why = f"amplitudes near a resonance are as high as the nearest speed happens to be; {GIVE_DAMPING}, or --modal-damping"
         return [Note("", "nothing damps the model", why)]
     if len(speeds) < 2:
         return []
@@ -203,7 +204,7 @@ def speed_warnings(
     if width >= _SPEEDS_A_PEAK * step:
         return []
     if width <= _UNDAMPED * top:
-        why = "its peak is as high as the nearest speed happens to be; give a damping"
+        why = f"its peak is as high as the nearest speed happens to be; {GIVE_DAMPING}, or --modal-damping"
         return [Note("", "nothing damps a resonance that is met", why)]
     apart = f"speeds are {step * RPM_PER_RAD_S:.4g} rpm apart"
     wide = f"the sharpest resonance met is {width * RPM_PER_RAD_S:.2g} rpm wide at half power"

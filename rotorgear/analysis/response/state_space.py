@@ -17,7 +17,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.discretise import pieces
-from rotorgear.analysis.common.left_out import left_out
+from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.points import moving_rows
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, missed, speed_in_si
@@ -40,7 +40,11 @@ from rotorgear.system.system import System
 # Modes are kept up to this multiple of the highest frequency; the static shapes represent the rest.
 _KEPT = 1.5
 ACCURACY = 1e-4
-_UNDAMPED = Note("", "nothing damps the model", "responses are infinite at its natural frequencies")
+_UNDAMPED = Note(
+    "",
+    "nothing damps the model",
+    f"responses are infinite at its natural frequencies; {GIVE_DAMPING}, or --modal-damping",
+)
 # The shift of the static shapes over the highest frequency: above zero, where a free train has none.
 _SHIFT = 0.5
 # Dense matrices of the whole system: beyond this they would not fit into what opens them.

@@ -15,6 +15,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.left_out import GIVE_DAMPING
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.analysis.sensitivity.derivatives import STEP, beside, springs_of
@@ -80,7 +81,7 @@ class ReceptanceModel:
         K, D, M = self._reduced(system, V, x)
         if not np.any(D + D.T):
             raise AnalysisError(
-                "nothing damps the model, and measured responses are damped: give damping in the model or --modal-damping"
+                f"nothing damps the model, and measured responses are damped: {GIVE_DAMPING}, or --modal-damping"
             )
         w = 2.0 * np.pi * self.frequency_hz[:, None, None]
         Z = K + 1j * w * D - w**2 * M

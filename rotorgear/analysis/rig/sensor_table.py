@@ -23,6 +23,7 @@ from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.note import Note
+from rotorgear.quantity import counted
 from rotorgear.uff.datasets import AXES, Nodes, UniversalFile
 
 _COLUMNS = ("point", "node", "direction")
@@ -175,7 +176,7 @@ def _placed(
         if other is None or (other.distance or 0.0) > (sensor.distance or 0.0):
             found[sensor.place] = sensor
     if fewer := len(sensors) - len(found):
-        notes.append(Note("", f"{fewer} sensors share the place of another one that is nearer, and are left out"))
+        notes.append(Note("", f"{counted(fewer, 'sensors')} left out: another one at the same place is nearer"))
     return list(found.values()), notes
 
 

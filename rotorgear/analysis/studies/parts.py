@@ -31,6 +31,7 @@ from rotorgear.gears.tooth_fe.settings import PRESETS, sized
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
+from rotorgear.quantity import counted
 from rotorgear.results.convergence import ConvergenceStudy, MeshConvergenceStudy, MeshRung
 from rotorgear.results.mesh import MeshErrors
 
@@ -187,7 +188,9 @@ def mesh_convergence_study(
     progress(1.0, "done")
     size = finest.mesh_size(modules, space=space)
     layers = f" in {size.face} layers" if size.face else ""
-    words = f"{size.elements} elements a pitch{layers}, {reference.unknowns} dofs, {reference.slices} slices"
+    words = (
+        f"{size.elements} elements a pitch{layers}, {reference.unknowns} dofs, {counted(reference.slices, 'slices')}"
+    )
     return MeshConvergenceStudy(model.title, request.mesh.name, reference.body, request.base_force, words, tuple(rungs))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
-from rotorgear.analysis.common.left_out import left_out
+from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
 from rotorgear.analysis.transient.request import Task
@@ -122,7 +122,9 @@ def transient_warnings(result: TransientResult, task: Task, *, estimated: bool, 
     yield from drift
     damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
     if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
-        why = "what the start sets swinging never dies out; give damping, or a modal damping ratio"
+        why = (
+            f"what the start sets swinging never dies out; {GIVE_DAMPING}, or --modal-damping with --method exponential"
+        )
         yield Note("", "nothing damps", why)
     if estimated and result.status == "success" and not np.isfinite(result.error_estimate):
         why = "the run with twice the step, or with more modes, did not end well"

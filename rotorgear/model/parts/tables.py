@@ -17,12 +17,6 @@ from rotorgear.model.parts.shaft import LIBRARY, Disk, Material, PointMass, Sect
 from rotorgear.model.parts.supports import Bearing, Coupling, NonlinearElement, Support
 
 
-def counted(number: int, table: str) -> str:
-    """A number of parts in words: "1 mesh", "4 point masses"."""
-    words = table.replace("_", " ")
-    return f"{number} {words if number != 1 else words.removesuffix('es' if words.endswith(('meshes', 'masses')) else 's')}"
-
-
 class Tables(Part):
     """All parts of a model by name. Whether they fit each other is checked by `Model`."""
 

@@ -138,6 +138,11 @@ def beside(first: FileMesh, offset: tuple[float, float, float], *, low: float) -
     )
 
 
+def test_the_products_of_inertia_of_a_symmetric_body_are_zeros_without_a_sign(folder: Path) -> None:
+    facts = dict(rg.casing(rg.loads(MODEL, folder=folder), modes=2).casings["box"].facts())
+    assert facts["inertia xy yz zx"] == "0 0 0 kg m^2"
+
+
 def test_parts_that_share_an_edge_or_a_node_are_hinges(folder: Path) -> None:
     one = block((0.1, 0.06, 0.1), (2, 1, 1))
     for offset in ((0.1, 0.0, 0.1), (0.1, 0.06, 0.1)):

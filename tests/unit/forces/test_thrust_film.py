@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 from scipy.integrate import trapezoid
 
 import rotorgear as rg
@@ -133,6 +135,12 @@ def test_a_rotor_stands_on_its_films_and_its_axial_mode_has_their_stiffness(kind
     sheet = rg.bearing(model, "thrust", stability=False, speeds=["6000 rpm"])
     assert sheet.bearing_load[2] == pytest.approx(5000.0, rel=1e-9)
     assert sheet.consistency < 1e-6
+    # The terminal has 80 columns, and breaks no number.
+    out = io.StringIO()
+    Console(file=out, width=200).print(sheet.table())
+    tables = out.getvalue().partition("x, y, z in um")[0]
+    assert "K tilt_y" in tables
+    assert max(map(len, tables.splitlines())) <= 80
     assert 0.0 < sheet.thrust_film.minimum_gap < 60e-6
     assert sheet.thrust_film.power_loss > 0.0
     assert sheet.thrust_film.side_flow > 0.0

@@ -90,6 +90,29 @@ def test_none_takes_a_key_away_and_a_table_or_part_may_be_set(jeffcott: rg.Model
     assert jeffcott.with_(f"bearings.{name}", bearing) == jeffcott
 
 
+def test_a_part_may_be_added_and_its_keys_changed_in_one_call(jeffcott: rg.Model) -> None:
+    part = {"shaft": "rotor", "at": "0.1 m", "stiffness": {"radial": 1e6, "axial": 1e5}}
+    changes = {"bearings.third": part, "bearings.third.at": "0.2 m", "bearings.*.stiffness.radial": "2e6 N/m"}
+    other = jeffcott.with_(changes)
+    assert (
+        other.bearings["third"]
+        == jeffcott.with_("bearings.third", {**part, "at": 0.2})
+        .with_("bearings.third.stiffness", 2e6)
+        .bearings["third"]
+    )
+    # Neither what was given nor another part that was given the same table is changed.
+    assert part["at"] == "0.1 m"
+    twins = jeffcott.with_({"bearings.*": part, "bearings.third": part, "bearings.third.stiffness.axial": 9.0})
+    assert {name: b.stiffness.axial for name, b in twins.bearings.items() if b.stiffness} == {
+        **dict.fromkeys(jeffcott.bearings, 1e5),
+        "third": 9.0,
+    }
+    # A part of the library too, of whose keys one is changed.
+    name, bearing = next(iter(jeffcott.bearings.items()))
+    moved = jeffcott.with_({"bearings.third": bearing, "bearings.third.at": "0.2 m"})
+    assert moved.bearings["third"] == jeffcott.with_(f"bearings.{name}.at", "0.2 m").bearings[name]
+
+
 @pytest.mark.parametrize(
     ("address", "words"),
     [

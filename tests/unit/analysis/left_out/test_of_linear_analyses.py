@@ -104,7 +104,9 @@ def test_an_undamped_analysis_has_no_damping() -> None:
 
 def test_where_nothing_damps_no_motion_decays() -> None:
     found = rg.modal(overhung(), modes=6, speed=100.0)
-    assert says(found, "damping matrix: nothing damps")
+    assert says(
+        found, "damping matrix: nothing damps; give bearings or meshes a damping, or modal_ratio under [damping]"
+    )
     assert np.all(np.abs(found.eigenvalues.real) < 1e-9 * np.abs(found.eigenvalues))
     damped = overhung(**{"damping.rayleigh_beta": 1e-5})
     assert not says(rg.modal(damped, modes=2, speed=100.0), "damping matrix")

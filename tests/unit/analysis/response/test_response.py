@@ -399,6 +399,17 @@ def test_an_undamped_run_up_says_that_its_peaks_are_accidents() -> None:
     pins = {n: {"shaft": "rotor", "at": n, "fixed": ["x", "y"]} for n in ("start", "end")}
     result = rg.response(jeffcott(supports=pins), speeds=[60.0, 120.0])
     assert any("nothing damps" in text for text in result.warnings)
+    # Each of the remedies that the sentence names is one.
+    assert any("damping, or modal_ratio under [damping], or --modal-damping" in text for text in result.warnings)
+    soft = {"shaft": "rotor", "at": "0.5 m", "stiffness": {"radial": 1e5}, "damping": {"radial": 9.0}}
+    remedies: tuple[tuple[dict[str, Any], dict[str, Any]], ...] = (
+        ({"bearings.soft": soft}, {}),
+        ({"damping.modal_ratio": 0.01}, {}),
+        ({}, {"modal_damping": 0.01}),
+    )
+    for changes, options in remedies:
+        damped = rg.response(jeffcott(supports=pins).with_(changes), speeds=[60.0, 120.0], **options)
+        assert not any("nothing damps the model" in text for text in damped.warnings)
 
 
 def test_teeth_that_would_part_are_warned_about() -> None:
