@@ -141,7 +141,7 @@ def export(call: Call) -> None:
 
 def report(call: Call) -> None:
     """One page about a model."""
-    with progress_bar("report") as progress:
+    with progress_bar("report", lines=True) as progress:
         asked = {"output": call["output"]} | call.arguments("report")
         done = rg.report(call.source_path, **asked, progress=progress)
     write_json(call, done.to_dict())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -21,10 +22,10 @@ def console() -> Console:
 
 
 @contextmanager
-def progress_bar(text: str) -> Iterator[Progress]:
-    """Show a bar on stderr while work goes on; silent where stderr is no terminal."""
+def progress_bar(text: str, *, lines: bool = False) -> Iterator[Progress]:
+    """Show a bar on stderr while work goes on; where stderr is no terminal, a line for each new step if `lines`, or nothing."""
     if not sys.stderr.isatty():
-        yield silent
+        yield _in_lines(text) if lines else silent
         return
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
@@ -39,3 +40,17 @@ def progress_bar(text: str) -> Iterator[Progress]:
 
         with listening(report):
             yield report
+
+
+def _in_lines(text: str) -> Progress:
+    """A progress that writes each new step to stderr as a line, with the seconds since the first."""
+    start = time.monotonic()
+    last = ""
+
+    def report(fraction: float, step: str) -> None:
+        nonlocal last
+        if step != last:
+            print(f"{text}: {step}, after {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
+        last = step
+
+    return report

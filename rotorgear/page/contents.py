@@ -24,7 +24,7 @@ from rotorgear.analysis.teeth.gear_sheet import gear
 from rotorgear.analysis.teeth.mesh import mesh
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
-from rotorgear.progress import Progress
+from rotorgear.progress import Progress, silent
 from rotorgear.results.critical import CriticalResult
 from rotorgear.results.standards import StandardsResult
 
@@ -43,13 +43,15 @@ class Contents:
     """Results by the name they have in the page's numbers, their CPU seconds, and what was not computed and why."""
 
     model: Model
+    progress: Progress = silent
     results: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
     seconds_of_all: float = 0.0
 
-    def run(self, name: str, analysis: Callable[[], Any]) -> Any:
-        """Run an analysis; what the model lacks for it is kept as the reason why its section is not there."""
+    def run(self, name: str, begins: float, analysis: Callable[[], Any]) -> Any:
+        """Run an analysis, which begins at a fraction of the whole; what the model lacks for it is kept as the reason why not."""
+        self.progress(begins, name.replace("_", " "))
         start = time.process_time()
         try:
             self.results[name] = analysis()
@@ -68,45 +70,38 @@ def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Conten
         grade: balance quality grade in mm/s.
         progress: callable that is told fraction and step.
     """
-    found = Contents(model)
+    found = Contents(model, progress)
     speed = model.operating_speed
-    progress(0.02, "model")
-    found.run("check", lambda: check(model))
+    found.run("check", 0.02, lambda: check(model))
     if model.meshes:
-        found.run("gear", lambda: gear(model))
-    found.run("static", lambda: static(model))
-    progress(0.1, "modes")
+        found.run("gear", 0.03, lambda: gear(model))
+    found.run("static", 0.05, lambda: static(model))
     highest = max((line.frequency_hz for line in rig), default=0.0)
     wanted = {"fmax": _ABOVE_RIG * highest} if highest else {"modes": MODES}
-    modes = found.run("modal", lambda: modal(model, **wanted))
+    modes = found.run("modal", 0.1, lambda: modal(model, **wanted))
     if rig and modes is not None:
-        found.run("rig", lambda: compare(modes, rig, known_to_hz=wanted.get("fmax")))
+        found.run("rig", 0.18, lambda: compare(modes, rig, known_to_hz=wanted.get("fmax")))
     if speed:
         # The analyses over a range of speeds.
-        progress(0.2, "Campbell diagram")
-        found.run("campbell", lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
-        progress(0.45, "critical speeds")
+        found.run("campbell", 0.2, lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
         # The rules judge the critical speeds of the table: both go as far as the widest margin reaches.
-        speeds = found.run("critical", lambda: critical(model, stop=HIGHEST * speed))
+        speeds = found.run("critical", 0.45, lambda: critical(model, stop=HIGHEST * speed))
         if model.bearings:
-            found.run("critical_map", lambda: critical_map(model, stiffness=_stiffnesses(model)))
+            found.run("critical_map", 0.5, lambda: critical_map(model, stiffness=_stiffnesses(model)))
         else:
             found.missing["critical_map"] = "the model has no bearings"
-        progress(0.55, "rules of standards")
         if speeds is not None:
-            found.run("standards", lambda: _standards(model, critical_speeds=speeds, grade=grade))
+            found.run("standards", 0.55, lambda: _standards(model, critical_speeds=speeds, grade=grade))
         else:
             found.missing["standards"] = found.missing["critical"]
-        progress(0.65, "run-up")
-        found.run("response", lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
+        found.run("response", 0.65, lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
     else:
         for name in ("campbell", "critical", "critical_map", "standards"):
             found.missing[name] = _NO_SPEED
-    progress(0.8, "teeth")
     for name in loaded_meshes(model):
-        found.run(f"mesh {name}", lambda name=name: mesh(model, name))  # type: ignore[misc]
+        found.run(f"mesh {name}", 0.8, lambda name=name: mesh(model, name))  # type: ignore[misc]
     for name in model.casings:
-        found.run(f"casing {name}", lambda name=name: casing(model, name))  # type: ignore[misc]
+        found.run(f"casing {name}", 0.85, lambda name=name: casing(model, name))  # type: ignore[misc]
     return found
 
 

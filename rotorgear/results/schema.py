@@ -22,7 +22,6 @@ from itertools import count
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, dataclass_transform, overload
 
-from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 
 if TYPE_CHECKING:
@@ -292,18 +291,6 @@ def part_of(field: str, k: int, label: str, unit: str, *axes: str, **said: Any) 
 class Row(SimpleNamespace):
     """An entry along axes of a result: what the fields say of it, by their keys in the JSON output."""
 
-    @property
-    def peak_to_peak_dte_m(self) -> float:
-        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
-        return float(self.peak_to_peak_approach_m)
-
-    @property
-    def rms_dte_m(self) -> float:
-        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
-        return float(self.rms_approach_m)
-
 
 class Rows:
     """The fields of a result that are written as a list of rows, one for each entry along the last of its axes.
@@ -312,17 +299,18 @@ class Rows:
     other axes.
     """
 
-    def __init__(self, axes: tuple[str, ...], inner_name: str, inner: Rows | None) -> None:
+    def __init__(self, axes: tuple[str, ...], inner_name: str, inner: Rows | None, made_of: type[Row] = Row) -> None:
         self.axes = axes
         self.inner_name = inner_name
         self.inner = inner
+        self.made_of = made_of
         self.fields: list[Declared] = []
         self.declarations: dict[str, Declared] = {}
         self.keys: list[tuple[Declared, Written]] = []
 
     def emptied(self) -> Rows:
         """The same lists without fields."""
-        return Rows(self.axes, self.inner_name, self.inner and self.inner.emptied())
+        return Rows(self.axes, self.inner_name, self.inner and self.inner.emptied(), self.made_of)
 
     @property
     def all_axes(self) -> tuple[str, ...]:
@@ -364,7 +352,7 @@ class Rows:
                 row[written.key] = one if own.along == own.axes else _arranged(record, one, own.axes, own.along)
             if self.inner is not None:
                 row[self.inner_name] = self.inner.of(record, values, here)
-            made.append(Row(**row))
+            made.append(self.made_of(**row))
         return tuple(made)
 
 
@@ -376,13 +364,16 @@ def _entry(values: Any, at: tuple[Any, ...]) -> Any:
     return entry.item() if getattr(entry, "ndim", 1) == 0 else entry
 
 
-def rows(label: str, axis: str, **within: str) -> Derived[tuple[Row, ...]]:
-    """Declare a list of rows: of the fields that an axis counts; `within`: lists in each row, by the axes that they go along."""
+def rows(label: str, axis: str, made_of: type[Row] = Row, **within: str) -> Derived[tuple[Row, ...]]:
+    """Declare a list of rows: of the fields that an axis counts.
+
+    `within`: lists in each row, by the axes that they go along. `made_of`: the class of the rows of the innermost list.
+    """
     axes = (axis, *within.values())
     names = (*within, "")
     lists: Rows | None = None
     for depth in range(len(axes), 0, -1):
-        lists = Rows(axes[:depth], names[depth - 1], lists)
+        lists = Rows(axes[:depth], names[depth - 1], lists, Row if lists else made_of)
 
     def made(record: Record) -> tuple[Row, ...]:
         own = record.declarations[here.declared.name].record

@@ -12,6 +12,7 @@ from rotorgear.results.portrait import ContactLines, Portrait, Portraits, Spectr
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, grid, written
+from rotorgear.results.transient import ContactRow
 
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
@@ -72,7 +73,7 @@ class SweepResult(ModelResult, kind="sweep"):
     address: tuple[str, ...] = of("address of a parameter", "", "parameter", note=": what was changed")
     unit: tuple[str, ...] = of("unit", "", "parameter", note=' of its values, or `""` for SI')
     shape: np.ndarray = of("points along each parameter", "", "parameter", json=None)
-    points = rows("points", "point", runs="run", contacts="contact")
+    points = rows("points", "point", ContactRow, runs="run", contacts="contact")
     values: np.ndarray = of("values", "", "point", "parameter", note=" of the parameters")
     frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json="mesh_frequency_hz")
     turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "point", json="mesh_periods")

@@ -11,8 +11,25 @@ from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
-from rotorgear.results.schema import Record, Written, derived, of, part_of, rows
+from rotorgear.results.schema import Record, Row, Written, derived, of, part_of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, grid, short, table_of
+
+
+class ContactRow(Row):
+    """An entry along the contacts of a motion over time."""
+
+    @property
+    def peak_to_peak_dte_m(self) -> float:
+        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
+        return float(self.peak_to_peak_approach_m)
+
+    @property
+    def rms_dte_m(self) -> float:
+        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
+        return float(self.rms_approach_m)
+
 
 # What a history of a contact is called, and the table it stands in; the last one by its former name.
 _OF_CONTACTS = {
@@ -112,7 +129,7 @@ class TransientResult(ModelResult, kind="transient"):
     contact_time: np.ndarray = of(
         "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
     )
-    contacts = rows("contacts in the time that counts", "contact")
+    contacts = rows("contacts in the time that counts", "contact", ContactRow)
     contact: tuple[str, ...] = of(
         "name of the contact", "", "contact", note=": mesh and helix", json="name", column="contact"
     )

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.state import Kind, State
 from rotorgear.model.layout.train import Train
@@ -88,6 +89,15 @@ class System:
         # A state may have been found on a model that differs in what it does not depend on, such as modes of its casings.
         self.state = state if state.layout is model.layout else replace(state, layout=model.layout)
         self._last: dict[str, tuple[float, Any]] = {}
+
+    def require_freedom(self) -> None:
+        """Refuse a model in which nothing can move.
+
+        Raises:
+            AnalysisError: it has no degree of freedom.
+        """
+        if self.n == 0:
+            raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
 
     def with_plan(self, plan: Plan) -> System:
         """The same model under the same load on another mesh."""

@@ -319,8 +319,13 @@ class _Diagram:
             warnings=self.warnings(onsets),
             method=f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a "
             f"check: off by at most {bound:.0e}; {len(grid)} speeds, {self.halvings} steps halved to follow the modes"
-            f"{about_state(system.state)}",
+            f"{self._beyond_asked()}{about_state(system.state)}",
         )
+
+    def _beyond_asked(self) -> str:
+        """Why there are more branches than modes were asked for: other modes are the lowest ones at other speeds."""
+        count = self.found.reach.modes
+        return f"; each is among the {count} lowest at some speed" if count and len(self.chains) > count else ""
 
     def left_out(self) -> tuple[str, ...]:
         """What the model holds and the diagram does not."""

@@ -111,11 +111,13 @@ def critical(
         clock.lap("mesh")
         family = SpeedFamily(system, *sorted((low, top)))
         found: list[tuple[ExcitationOrder, Synchronous]] = []
+        counted: list[bool] = []
         for k, line in enumerate(lines):
             progress(0.3 + 0.6 * k / len(lines), line.name)
             limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
             if limit > abs(low):
-                roots = roots_of(system, family, line.order, np.copysign(limit, top), damped)
+                roots, confirmed = roots_of(system, family, line.order, np.copysign(limit, top), damped)
+                counted += confirmed
                 found += [(line, root) for root in roots]
         clock.lap("critical speeds")
         ranges = list(affine_pieces(system, family, top, damped))
@@ -127,7 +129,7 @@ def critical(
         # A line that runs along a mode magnifies the error of its frequency.
         aim = max(FINEST, 0.5 * aim * accuracy / worst)
     ranked = sorted(zip(found, errors, strict=True), key=lambda item: item[0][1].speed)
-    result = _result(system, ranked, lines, (low, top), damped, clock)
+    result = _result(system, ranked, lines, (low, top), damped, counted, clock)
     short = missed(accuracy, worst, "ask for less, or for a lower --to")
     return replace(
         result,
@@ -184,19 +186,24 @@ def _too_slow(system: System, top: float, lines: tuple[ExcitationOrder, ...]) ->
     )
 
 
-def roots_of(system: System, family: SpeedFamily, order: float, top: float, damped: bool) -> list[Synchronous]:
-    """Synchronous speeds of all groups of dofs, as positive speeds.
+def roots_of(
+    system: System, family: SpeedFamily, order: float, top: float, damped: bool
+) -> tuple[list[Synchronous], list[bool]]:
+    """Synchronous speeds of all groups of dofs, as positive speeds, and whether those of each group and range were counted.
 
     They lie between the lowest speed of the family and `top` in rad/s, whose sign is that of the rotation.
     """
     found = []
+    counted = []
     for whole, dofs in itertools.product(affine_pieces(system, family, top, damped), family.groups):
-        for root in synchronous_speeds(whole.cut(dofs), order):
+        roots, confirmed = synchronous_speeds(whole.cut(dofs), order)
+        counted.append(confirmed)
+        for root in roots:
             vector = np.zeros(system.n, complex)
             vector[dofs] = root.vector
             if not _is_rounding(system, np.copysign(root.speed, top), vector):
                 found.append(replace(root, vector=vector))
-    return found
+    return found, counted
 
 
 def _is_rounding(system: System, speed: float, x: np.ndarray) -> bool:
@@ -269,6 +276,7 @@ def _result(
     lines: tuple[ExcitationOrder, ...],
     ends: tuple[float, float],
     damped: bool,
+    counted: list[bool],
     clock: Clock,
 ) -> CriticalResult:
     """The critical speeds found, each with its line and its estimated error, with the looks of their modes."""
@@ -296,7 +304,10 @@ def _result(
             )
         )
     clock.lap("energies")
-    solver = "damped, root of Im s = p W" if damped else "undamped, counted by pivot signs"
+    solver = "damped, root of Im s = p W"
+    if not damped:
+        how = "" if all(counted) else "in part " if any(counted) else "not "
+        solver = f"undamped, {how}counted by pivot signs"
     return CriticalResult(
         model=system.model,
         damped=damped,

@@ -94,7 +94,7 @@ def critical_map(
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
         system = mesh.with_state(with_radial_stiffness(model, about, float(value), top))
-        found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
+        found, _ = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
         found.sort(key=lambda root: root.speed)
         _, _, speeds, seen = looks_of(system, found, top)
         bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))

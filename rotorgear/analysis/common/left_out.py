@@ -282,7 +282,11 @@ def _operating_point(system: System, analysis: Analysis, speed: float | None) ->
         if analysis != "static" and not speed:
             why = "gyroscopic matrix: standstill" if system.gyroscopic.nnz else "the shafts stand still"
         yield Note("operation.speed", "", why, in_words(operation, "speed"))
-    if analysis == "static" or about:
+    if analysis == "static":
+        return
+    if about:
+        # Loaded teeth know their force, and not where the shafts are.
+        yield from _bearing_loads(system)
         return
     if analysis != "response" or _is_determinate(system):
         why = "vibration about the mean state does not depend on it"

@@ -168,8 +168,7 @@ def _on_fine_mesh(
     fixed = isinstance(model, System) or asked.elements is not None
     plan = Plan(asked.elements) if asked.elements else (Plan() if fixed else START)
     system = linear_system(model, [speed], plan, state=state)
-    if system.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    system.require_freedom()
     if not (fixed or asked.error_estimate):
         raise AnalysisError("refining to an accuracy needs the error estimate; give elements to do without")
     target = np.inf if fixed else asked.accuracy or DEFAULT_ACCURACY

@@ -109,8 +109,7 @@ def solved(
     system = flow_system(model, plan, direction=direction_of(speed), kind="static")
     if beside is not None:
         system = system.with_state(replace(system.state, mapped_at=beside.shared_maps))
-    if system.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    system.require_freedom()
     if not is_loaded(system):
         raise AnalysisError(
             "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"

@@ -215,8 +215,7 @@ class PointMaker:
 
     def _made(self, model: Model, speed: float) -> AtRest | Large:
         system = flow_system(model, plan_in_time(self._elements)).with_state(state_in_time(model, speed))
-        if system.n == 0:
-            raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+        system.require_freedom()
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
         # Watched is the approach of each contact in the transverse plane, too, behind the transmission errors.
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse

@@ -114,6 +114,11 @@ def sweep(
         reduction_error,
         elements,
     )
+    if not (model.meshes or model.nonlinear_elements or any(bearing.has_law for bearing in model.bearings.values())):
+        raise AnalysisError(
+            "nothing in the model is nonlinear (no mesh, nonlinear element, rolling bearing or film), so there is no motion to "
+            "classify: rotorgear response gives its motion over speed, rotorgear transient over time"
+        )
     axes = [axis_of(address, values) for address, values in over.items()]
     wanted = wanted_points(portraits, axes)
     with single_thread(0):

@@ -154,7 +154,7 @@ def run_task(
         task: the model made ready. integrator: the method. progress: is told fraction and step.
         grid: steps and records; contact events and statistics are counted anew from the first record that counts.
         stream: keeps chunks while the run goes on. key: settings of the method, which tell another run from this one.
-        text: names a run that only serves another one, which does not go on after an interruption.
+        text: names a run that only serves another one: it does not go on after an interruption, and keeps no histories.
         frames: number of records at the end that keep all displacements.
     """
     local = task.local.local
@@ -165,7 +165,9 @@ def run_task(
     found = Histories(state, h)
     book = LedgerBook(local, h, state.copy(), integrator.damping_rows(local, float(local.rotation.speeds[0])))
     if stream is not None:
-        sizes = f"{h!r} {grid.records} {grid.every} {grid.settled} {local.n} {local.watched_vectors.shape[1]}"
+        sizes = (
+            f"{h!r} {grid.records} {grid.every} {grid.settled} {grid.kept} {local.n} {local.watched_vectors.shape[1]}"
+        )
         rotation = f"{local.rotation.times.tolist()} {local.rotation.speeds.tolist()}"
         settings = {"model": model_hash(task.local.system.model), "run": f"{sizes} {integrator.name} {key} {rotation}"}
         for chunk in stream.begin(settings):
@@ -183,6 +185,12 @@ def run_task(
             "F": records.F,
             "values": task.channels.values(records),
         }
+        if text and records.t.size:
+            found.parts.clear()
+        elif grid.kept > 1:
+            # Counted from the end, so that the last record is one of those that are kept.
+            kept = (grid.records - np.rint(records.t / grid.spacing).astype(int)) % grid.kept == 0
+            part = {name: x[kept] for name, x in part.items()}
         last = records.t > (steps - frames * grid.every + 0.5) * h
         if frames and last.any():
             found.motion.append((records.t[last], records.rows("q", np.eye(local.n), last)))

@@ -10,7 +10,7 @@ from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
-from rotorgear.analysis.transient.request import Task
+from rotorgear.analysis.transient.request import Grid, Task, history_bytes
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import in_words
@@ -151,6 +151,15 @@ def transient_warnings(result: TransientResult, task: Task, *, estimated: bool, 
         if change > _UNSETTLED:
             differ = f"the two halves of the time that counts differ by {100.0 * change:.2g} %"
             yield Note("", what, f"{differ}: not settled, or not periodic; settle longer or run longer")
+
+
+def thinned(task: Task, grid: Grid) -> Iterator[Note]:
+    """Which records the histories of a long run leave out."""
+    if grid.kept > 1:
+        what = f"{grid.kept - 1} of {grid.kept} records of the histories"
+        whole = f"all of them would take {1e-9 * history_bytes(task, grid.records):.3g} GB"
+        reach = f"statistics count every step, but spectra end at {0.5 / (grid.spacing * grid.kept):.4g} Hz"
+        yield Note("", what, f"{whole}; {reach}; more by --records, or less time")
 
 
 def _held(model: Model) -> str:

@@ -5,6 +5,7 @@ A transient made ready, and its runs: the one that counts, and those that choose
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -16,6 +17,7 @@ from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.memory import free_memory
 from rotorgear.model.model import Model
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, forces_at_rest
 from rotorgear.solvers.time.exponential import Exponential
@@ -34,18 +36,24 @@ CONTACT_STEPS = 20
 # Largest system whose complex modes are all found without being asked: dense matrices of 2n.
 _ALL_MODES = 900
 MOST_STEPS = 200_000_000
+# Bytes that the histories of a run fill unless `records` asks for more; they are copied once when the result is made.
+MOST_HISTORY = 1e9
 _LEAST_RECORDS = 4
 _SHORT = 1e-9  # s
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Times of a run: spacing of the records in s, their number, the first that counts, and steps in a spacing at first."""
+    """Times of a run: spacing of the records in s, their number, the first that counts, and steps in a spacing at first.
+
+    `kept`: of so many records the histories hold one.
+    """
 
     spacing: float
     records: int
     settled: int
     every: int
+    kept: int = 1
 
 
 def rotation_of(system: System, speed: float | str | Sequence[tuple[float, float | str]] | None) -> Rotation:
@@ -130,7 +138,31 @@ def grid_of(
         raise AnalysisError(
             f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
         )
-    return Grid(spacing, count, round(settle / spacing), every), fastest
+    return Grid(spacing, count, round(settle / spacing), every, _kept(task, count, records)), fastest
+
+
+def history_bytes(task: Task, records: int) -> float:
+    """What the histories of so many records hold: time, displacement and force of each law, and the channels."""
+    local = task.local.local
+    return 8.0 * records * (1 + 2 * local.m + local.watched_vectors.shape[1] + len(task.channels.names))
+
+
+def _kept(task: Task, count: int, asked: int | None) -> int:
+    """Of how many of the `count` records one is kept; all of those that were asked for.
+
+    Raises:
+        AnalysisError: those that were asked for need more memory than is free.
+    """
+    size = history_bytes(task, count)
+    if asked is None:
+        return max(1, math.ceil(size / MOST_HISTORY))
+    free = free_memory()
+    if free is not None and 2.0 * size > free:
+        raise AnalysisError(
+            f"the histories of {count:.3g} records take {2e-9 * size:.3g} GB while the result is made, and {1e-9 * free:.3g} GB "
+            "are free: ask for fewer records in a period of the fastest mesh (records, --records), or for less time"
+        )
+    return 1
 
 
 def integrator_of(
@@ -236,8 +268,7 @@ def prepare(
     # is linear about another equilibrium, and motions in time take the laws themselves.
     keep = given.state.is_flow and not found.faces
     given = given.with_state(replace(given.state, films=found.films) if keep else found)
-    if given.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    given.require_freedom()
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
     rest = equilibrium(local.local)
     force = forces_at_rest(local.local, tuple(part.law.mean() for part in local.parts))

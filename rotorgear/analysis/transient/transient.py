@@ -24,7 +24,7 @@ from rotorgear.analysis.common.recorded import Clock, recorded
 from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.transient.histories import Histories, Stream, run_task
-from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, transient_warnings
+from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, thinned, transient_warnings
 from rotorgear.analysis.transient.request import Grid, Task, coarser, damped, grid_of, integrator_of, prepare, run_up
 from rotorgear.analysis.transient.statistics import Quantities, of_channels, of_meshes, quantities_of
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
@@ -78,7 +78,8 @@ def transient(
         discard: time of the transient before it, which is computed but not evaluated.
         steps: number of steps in a period of the fastest mesh (default: the step is halved until the accuracy is reached or out
             of reach).
-        records: number of records in a period of the fastest mesh (default: 40).
+        records: number of records in a period of the fastest mesh (default: 40, or fewer where the histories would take more
+            than 1 GB).
         accuracy: wanted relative accuracy of the statistics (default: 0.01, unless `steps` is given).
         method: auto, newmark, hht, generalised-alpha, exponential or explicit.
         modes: number of modes kept by the exponential method, with residual vectors (default: all).
@@ -205,7 +206,7 @@ def _result(
         energy=found.ledger,
         step=grid.spacing / grid.every,
         steps=found.state.step,
-        every=grid.every,
+        every=grid.every * grid.kept,
         error_estimate=largest,
         dofs=local.n,
         method=integrator.name,
@@ -215,7 +216,7 @@ def _result(
         motion_time=np.concatenate([np.zeros(0), *(t for t, _ in found.motion)]),
         motion=shapes,
         status=found.status,
-        left_out=left_out_in_time(task.local, task.largest),
+        left_out=(*left_out_in_time(task.local, task.largest), *thinned(task, grid)),
     )
     notes = [*transient_warnings(result, task, estimated=estimated, keeps_energy=integrator.keeps_energy)]
     if result.status == "success":

@@ -250,7 +250,6 @@ class DampedModes:
         vectors: (n, m) complex, the largest component is 1.
         rigid: (m,) True for the zero eigenvalue of each rigid vector. A drift partner is not listed.
         backward_error: (m,) ||Q v|| / ((|lambda|^2 ||M|| + |lambda| ||D|| + ||K||) ||v||), scaled to unit diagonals.
-        zero_count: how many of the 2n eigenvalues are exactly zero, drift partners included.
         complete: True when these are all the finite eigenvalues there are.
         method: "dense" or "block Arnoldi".
     """
@@ -259,7 +258,6 @@ class DampedModes:
     vectors: np.ndarray
     rigid: np.ndarray
     backward_error: np.ndarray
-    zero_count: int
     complete: bool
     method: str
 
@@ -327,7 +325,6 @@ def damped_modes(
             vectors=with_largest_one(V * quadratic.scale[:, None]),
             rigid=np.arange(values.size) < listed.shape[1],
             backward_error=errors,
-            zero_count=inverse.zeros.shape[1],
             complete=bool(np.isinf(reach)) and values.size == R.shape[1] + found.size,
             method="dense" if np.isinf(reach) else "block Arnoldi",
         )

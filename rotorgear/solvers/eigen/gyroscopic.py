@@ -99,7 +99,6 @@ def counted_modes(problem: NearUndamped, s: np.ndarray, V: np.ndarray, count: in
         vectors=with_largest_one(V),
         rigid=np.arange(len(values)) < rigid.shape[1],
         backward_error=problem.backward_errors(values, V, problem.applied(values, V)),
-        zero_count=2 * problem.rigid.shape[1],
         complete=False,
         method=f"{basis}, counted by pivot signs",
     )

@@ -82,8 +82,11 @@ class Synchronous:
     residual: float
 
 
-def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
+def synchronous_speeds(family: Affine, order: float) -> tuple[list[Synchronous], bool]:
     """All speeds above `low` and up to `high` at which an oscillating mode has the frequency `order` times the speed, ascending.
+
+    Returns:
+        The speeds, and whether a count by pivot signs confirms that none is missing; False where they can't be counted.
 
     Raises:
         ConvergenceError: a root does not converge to 1e-10, or a count by pivot signs (undamped systems) misses one.
@@ -105,8 +108,9 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
                 if root is not None and not any(_same(root, other, family.M) for other in roots):
                     roots.append(root)
             roots = sorted((r for r in roots if family.low < r.speed <= family.high), key=lambda root: root.speed)
-            if _count_agrees(family, order, roots):
-                return roots
+            agrees = _count_agrees(family, order, roots)
+            if agrees is not False:
+                return roots, agrees is True
     raise ConvergenceError(
         f"a count by pivot signs does not confirm the {len(roots)} critical speeds of order {order:g} that were found",
         roots,
@@ -208,21 +212,21 @@ def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
     return bool(abs(np.vdot(x, M @ y)) ** 2 > 0.98 * (abs(np.vdot(x, M @ x)) * abs(np.vdot(y, M @ y))))
 
 
-def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> bool:
-    """Pivot signs of K - W^2 H at both ends of the range against the signs of x^H H x; True where the pair is not Hermitian.
+def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> bool | None:
+    """Pivot signs of K - W^2 H at both ends of the range against the signs of x^H H x; None where these can't be counted.
 
     An eigenvalue of K - m H falls through zero at m = W^2 where x^H H x > 0 and rises where it is negative.
     """
     skew = abs(family.D1 + family.D1.T)
     if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
-        return True
+        return None  # the pair is not Hermitian
     H = family.inertia(order)
     ends = (max(family.low, 1e-4 * 0.999 * min([family.high, *(r.speed for r in roots)])), family.high)
     if any(abs(r.speed - end) < 1e-7 * end for r in roots for end in ends):
-        return True  # a root on the very end can't be counted
+        return None  # a root on the very end can't be counted
     signs = [np.sign(np.vdot(r.vector, H @ r.vector).real) for r in roots]
     try:
         below = [factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).negative_count() for W in ends]
     except ConvergenceError:
-        return True  # no factors without row exchanges: nothing to count with
+        return None  # no factors without row exchanges: nothing to count with
     return below[1] - below[0] == int(sum(signs))

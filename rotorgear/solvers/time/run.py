@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -51,6 +52,7 @@ def run(
     fixed_speed = system.rotation.is_constant or system.G is None or not system.G.nnz
     stepper: Stepper | None = None
     first = state.step
+    begun = time.monotonic()
     while state.step < schedule.steps:
         steps = min(CHUNK * schedule.every, schedule.steps - state.step)
         if not fixed_speed:
@@ -72,7 +74,8 @@ def run(
         if records.status:
             raise ConvergenceError(_stopped(records.status, (state.step + 1) * schedule.h, schedule.h))
         share = (state.step - first) / max(schedule.steps - first, 1)
-        progress(share, f"step {state.step} of {schedule.steps}")
+        left = (time.monotonic() - begun) * (1.0 / share - 1.0)
+        progress(share, f"step {state.step} of {schedule.steps}, about {left:.0f} s left")
     return solutions
 
 

@@ -28,6 +28,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     arguments = ["report", str(STAGE), "-o", str(place / "a.html"), "--rig", str(place / "rig.csv")]
     done = CliRunner().invoke(app, [*arguments, "--json", str(place / "a.json"), "--turntable"])
     assert done.exit_code == 0, done.output
+    # It tells on stderr which analysis it has come to, and for how long it runs; its stdout holds what it wrote.
+    steps = [
+        line.removeprefix("report: ").partition(", after ") for line in done.stderr.splitlines() if ", after " in line
+    ]
+    assert [step for step, _, _ in steps][:3] == ["check", "gear", "static"]
+    assert {"modal", "rig", "campbell", "critical map", "page", "done"} <= {step for step, _, _ in steps}
+    seconds = [float(after.removesuffix(" s")) for _, _, after in steps]
+    assert seconds == sorted(seconds)
+    assert done.stdout.startswith("wrote ")
+    assert ", after " not in done.stdout
     return place
 
 

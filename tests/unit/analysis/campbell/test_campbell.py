@@ -83,6 +83,17 @@ def test_the_speed_table_of_a_bearing_is_followed_exactly() -> None:
         assert np.nanmin(np.abs(2.0 * np.pi * row - np.sqrt(2.0 * k / 10.0))) < 1e-7
 
 
+def test_more_branches_than_modes_that_were_asked_for_are_lowest_ones_somewhere_and_said_to_be() -> None:
+    rotor = rg.load(MODELS / "jeffcott.toml")
+    found = rg.campbell(rotor, modes=4, points=21)
+    assert len(found) == 5
+    rank = np.argsort(np.argsort(found.natural_frequency_hz, axis=1), axis=1)
+    assert np.all((rank < 4).any(axis=0))
+    assert not np.all(rank < 4)
+    assert "each is among the 4 lowest at some speed" in found.method
+    assert "lowest at some speed" not in rg.campbell(rotor, modes=2, points=5).method
+
+
 def test_a_speed_outside_of_a_bearings_table_is_refused() -> None:
     rows = [{"speed": speed, "stiffness": {"radial": 1e6, "axial": 1e6}} for speed in (100.0, 900.0)]
     with pytest.raises(rg.AnalysisError, match="table"):

@@ -110,3 +110,17 @@ def test_free_rotations_of_shafts_that_nothing_joins_are_no_critical_speeds() ->
         bearings={"left": {"shaft": "held", "at": "start", "stiffness": {"radial": 1e7}}},
     )
     assert rg.critical(rotor).speeds == ()
+
+
+def test_the_method_says_a_count_by_pivot_signs_where_there_was_one() -> None:
+    model = dual_spool()
+    assert rg.critical(model, stop="9000 rpm", damped=False).method.endswith("undamped, counted by pivot signs")
+    assert "pivot signs" not in rg.critical(model, stop="9000 rpm").method
+    # Stiffnesses that change with the speed are no pair of Hermitian matrices: there is nothing to count with.
+    name, bearing = next(iter(model.bearings.items()))
+    assert bearing.stiffness is not None
+    rows = [{"speed": f"{rpm} rpm", "stiffness": {"radial": k}} for rpm, k in ((0, 1e7), (20000, 3e7))]
+    changed = model.with_({f"bearings.{name}.stiffness": None, f"bearings.{name}.table": rows})
+    found = rg.critical(changed, stop="9000 rpm", damped=False)
+    assert len(found)
+    assert found.method.endswith(("undamped, not counted by pivot signs", "undamped, in part counted by pivot signs"))

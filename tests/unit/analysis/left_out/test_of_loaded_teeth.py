@@ -66,6 +66,21 @@ def law_of(local: LocalModel, mesh: str = "pair") -> Any:
     return next(part.law for part in local.parts if part.part == f"meshes.{mesh}")
 
 
+def test_weight_and_a_push_that_bearings_carry_are_named_and_change_no_mode_of_loaded_teeth() -> None:
+    push = {"loads.push": {"shaft": "one", "at": "end", "force": [400.0, -900.0, 0.0]}}
+    weight = {"operation.gravity": [0.0, -9.81, 0.0]}
+    model = loaded()
+    heavy = model.with_(push | weight)
+    for found in (rg.modal(heavy, modes=4, elements=1), rg.critical(heavy, stop="9000 rpm", elements=1)):
+        assert says(found, "loads.push", "bearings carry it, and the contacts do not feel where the shafts are")
+        assert says(found, "operation.gravity", "bearings carry it")
+    assert not says(rg.modal(model, modes=4, elements=1), "bearings carry it")
+    assert modes(heavy) == pytest.approx(modes(model), rel=1e-12)
+    # A torque changes what the teeth carry.
+    turned = model.with_("loads.push", {"shaft": "one", "at": "end", "moment": [0.0, 0.0, 5.0]})
+    assert not says(rg.modal(turned, modes=4, elements=1), "loads.push", "bearings carry it")
+
+
 def test_the_mean_tangent_that_is_named_is_the_stiffness_of_modes() -> None:
     said = sentence(rg.modal(loaded(), modes=2, elements=1), "ripple of loaded teeth; the mean tangent is taken")
     share, taken = numbers(said)[:2]

@@ -272,6 +272,15 @@ def test_kinds_of_motion_by_the_stated_criterion() -> None:
     assert period_of(np.tile(torus[:7], (20, 1)), extent) == 7
 
 
+def test_a_rotor_without_anything_nonlinear_is_refused_with_the_commands_for_it() -> None:
+    unbalance = {"unbalances.u": {"shaft": "rotor", "at": "start", "magnitude": 1e-5}}
+    rotor = rg.load(PAIR.parent / "jeffcott.toml").with_(unbalance)
+    with pytest.raises(
+        rg.AnalysisError, match=r"nothing in the model is nonlinear .*rotorgear response .*rotorgear transient"
+    ):
+        rg.sweep(rotor, {"operation.speed": ["3000 rpm"]}, **SHORT)
+
+
 def test_the_common_period_of_several_meshes() -> None:
     assert common_period([Fraction(8), Fraction(3)]) == (Fraction(8), 8)
     assert common_period([Fraction(29), Fraction(29 * 26, 113)]) == (Fraction(29), 113)

@@ -120,7 +120,6 @@ def test_the_frequency_scale_never_changes_the_answer(n, scale):
 def test_a_free_chain_has_one_rigid_row_and_no_noise_pair(n):
     M, K, _ = bar(n)
     modes = damped_modes(M, 0.01 * K, K, count=6, rigid_vectors=np.ones((n, 1)))
-    assert modes.zero_count == 2
     np.testing.assert_array_equal(modes.rigid, [True] + [False] * 5)
     omega2 = (2 * np.sin(np.arange(1, 6) * np.pi / (2 * n))) ** 2
     np.testing.assert_allclose(modes.eigenvalues, np.append(0.0, _proportional(omega2, 0.0, 0.01)[:5]), rtol=1e-11)
@@ -131,7 +130,6 @@ def test_a_free_chain_has_one_rigid_row_and_no_noise_pair(n):
 def test_drag_on_a_rigid_motion_leaves_one_zero_and_one_real_eigenvalue(n):
     M, K, _ = bar(n)
     modes = damped_modes(M, 1e-4 * M, K, count=4, rigid_vectors=np.ones((n, 1)))
-    assert modes.zero_count == 1
     assert modes.eigenvalues[0] == 0.0
     assert modes.eigenvalues[1] == pytest.approx(-1e-4, rel=1e-10)
     assert modes.eigenvalues[2].imag == pytest.approx(2 * np.sin(np.pi / (2 * n)), rel=1e-3)
@@ -140,7 +138,6 @@ def test_drag_on_a_rigid_motion_leaves_one_zero_and_one_real_eigenvalue(n):
 
 def test_a_free_gyroscopic_particle_has_two_zeros_and_a_precession():
     modes = _modes(2.0 * np.eye(2), 6.0 * np.array([[0, 1], [-1, 0]]), np.zeros((2, 2)), rigid_vectors=np.eye(2))
-    assert modes.zero_count == 2
     np.testing.assert_allclose(modes.eigenvalues, [0.0, 0.0, 3.0j], atol=1e-14)
     assert modes.vectors[1, 2] / modes.vectors[0, 2] == pytest.approx(-1j, abs=1e-13)  # -9 x + 9 j y = 0
 
@@ -148,7 +145,6 @@ def test_a_free_gyroscopic_particle_has_two_zeros_and_a_precession():
 def test_a_rigid_motion_coupled_to_an_elastic_one_by_gyroscopic_terms_drifts_with_it():
     g = 5.0  # x is free, y held by a spring: a steady drift of x bends y, so zero is double and s^2 = -(k + g^2)
     modes = _modes(np.eye(2), g * np.array([[0, 1], [-1, 0]]), np.diag([0.0, 7.0]), rigid_vectors=[[1.0], [0.0]])
-    assert modes.zero_count == 2
     np.testing.assert_allclose(modes.eigenvalues, [0.0, 1j * np.sqrt(7.0 + g**2)], rtol=1e-14)
     assert np.max(modes.backward_error) < 1e-15
 
@@ -156,7 +152,6 @@ def test_a_rigid_motion_coupled_to_an_elastic_one_by_gyroscopic_terms_drifts_wit
 def test_a_rigid_motion_of_an_unsymmetric_stiffness_is_deflated_with_its_left_vector():
     K = np.array([[1.0, -1.0, 0.0], [-1.0, 3.0, -2.0], [0.3, -2.3, 2.0]])  # rows sum to zero, columns do not
     modes = _modes(np.eye(3), np.zeros((3, 3)), K, rigid_vectors=np.ones((3, 1)))
-    assert modes.zero_count == 2
     roots = np.linalg.eigvals(K)
     expected = np.sort(np.sqrt(roots[np.abs(roots) > 1e-8].astype(complex)).real)
     np.testing.assert_allclose(modes.eigenvalues.imag, np.append(0.0, expected), rtol=1e-13)
@@ -166,7 +161,6 @@ def test_rigid_copies_count_once_each_in_the_sparse_solver():
     M, K, _ = copies(6, *bar(70))
     R = np.kron(np.eye(6), np.ones((70, 1)))
     modes = damped_modes(M, 0.1 * K, K, count=12, rigid_vectors=R)
-    assert modes.zero_count == 12
     assert np.count_nonzero(modes.rigid) == 6
     np.testing.assert_allclose(np.abs(modes.eigenvalues[6:]), 2 * np.sin(np.pi / 140), rtol=1e-11)
     assert np.count_nonzero(damped_modes(M, 0.1 * K, K, count=4, rigid_vectors=R).rigid) == 4

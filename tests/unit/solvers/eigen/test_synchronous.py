@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,5 +59,16 @@ def test_every_crossing_of_a_dense_sweep_is_a_root(order: float) -> None:
         for one, other in zip(*gaps, strict=True):
             if one > 0.0 >= other:
                 crossed.append(low + (high - low) * one / (one - other))
-    found = [root.speed for root in synchronous_speeds(family, order)]
+    found = [root.speed for root in synchronous_speeds(family, order)[0]]
     assert found == pytest.approx(crossed, rel=1e-3)
+
+
+def test_a_count_confirms_speeds_of_a_conservative_rotor_and_none_of_a_damped_one() -> None:
+    found, counted = synchronous_speeds(spinning(), 1.0)
+    assert found
+    assert not counted
+    free = spinning()
+    none = sp.csc_array(free.M.shape)
+    found, counted = synchronous_speeds(replace(free, D0=none, K1=none), 1.0)
+    assert found
+    assert counted
