@@ -26,6 +26,7 @@ from rotorgear.analysis.static.forces import (
 from rotorgear.analysis.static.sensitivity import sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded
+from rotorgear.analysis.static.thrust import soft_along_shaft
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State
@@ -251,6 +252,7 @@ def _warnings(equilibrium: Equilibrated, faces: tuple[MeshFace, ...]) -> list[No
     ]
     for name, face in zip(lines.names, equilibrium.faces, strict=True):
         notes += [Note(f"meshes.{name}", note) for note in face.warnings] if face is not None else []
+    notes += soft_along_shaft(equilibrium)
     force = dict(zip(lines.names, equilibrium.force, strict=True))
     stiffness = dict(zip(lines.names, lines.stiffness, strict=True))
     what = "the shafts misalign the flanks over the face, which the teeth do not feel"
