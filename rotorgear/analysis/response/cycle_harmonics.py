@@ -12,6 +12,8 @@ import numpy as np
 # Harmonics of a given curve that count: up to this one, and not below this share of the strongest.
 HIGHEST = 10
 SMALLEST = 0.01
+# Of the size of a curve: what is rounding, and no harmonic, however small the strongest is.
+ROUNDING = 1e-12
 # Harmonics of a given curve that are looked at, so that what is left out has a size.
 SEEN = 100
 # Harmonics of loaded teeth below the first share of the strongest are minor ones. They are left out while all of them together
@@ -65,8 +67,11 @@ def harmonics_of_pulse(duration: float, at: float) -> np.ndarray:
 
 
 def strong(coefficients: np.ndarray) -> tuple[list[tuple[int, complex]], float]:
-    """Numbers and coefficients of the harmonics that count, and the largest other one relative to the strongest."""
-    size = np.abs(coefficients)
+    """Numbers and coefficients of the harmonics that count, and the largest other one relative to the strongest.
+
+    The coefficients are those of a curve of size 1.
+    """
+    size = np.where(np.abs(coefficients) > ROUNDING, np.abs(coefficients), 0.0)
     largest = float(size.max(initial=0.0))
     counts = (size > SMALLEST * largest) & (np.arange(len(size)) < HIGHEST)
     rest = float(size[~counts].max(initial=0.0))
@@ -81,15 +86,20 @@ def harmonics_of_cycle(values: np.ndarray) -> np.ndarray:
     return np.asarray(2.0 * np.fft.fft(values, axis=0)[1 : count + 1] / len(values))
 
 
-def that_matter(values: np.ndarray, periods: int = 1) -> tuple[list[int], set[int], float, float]:
+def that_matter(
+    values: np.ndarray, periods: int = 1, sizes: np.ndarray | float = 0.0
+) -> tuple[list[int], set[int], float, float]:
     """Which harmonics of values (p, c) over a cycle of some mesh periods are needed for their peak to peak.
 
-    The first orders of the mesh and of the cycle are among them, too.
+    The first orders of the mesh and of the cycle are among them, too. Values that vary by no more than the rounding of `sizes`
+    (c,), of which they are a part, do not vary.
 
     Returns:
         Their numbers, rising; those of them that are large by themselves; the largest of the others, relative to the strongest;
         and the largest change of a peak to peak without the others, relative to it, or to a tenth of the largest one.
     """
+    rounding = ROUNDING * np.maximum(sizes, np.abs(values).max(axis=0))
+    values = np.where(np.ptp(values, axis=0) > rounding, values, 0.0)
     spectrum = np.fft.rfft(values, axis=0)
     spectrum[0] = 0.0
     size = np.abs(spectrum).max(axis=1)
@@ -112,7 +122,7 @@ def that_matter(values: np.ndarray, periods: int = 1) -> tuple[list[int], set[in
     while count < min(len(order) - 1, _MOST) and change(count) > _PEAK_TO_PEAK:
         count += max(1, count // 16)
     # Rounding is no harmonic, and the highest of an even number of values has no phase.
-    numbers = sorted(int(n) for n in order[:count] if size[n] > 1e-12 * largest and 2 * n < len(values))
+    numbers = sorted(int(n) for n in order[:count] if size[n] > ROUNDING * largest and 2 * n < len(values))
     major = {n for n in numbers if size[n] > _MINOR * largest}
     weak = float(np.delete(size, numbers).max(initial=0.0)) / largest
     return (numbers, major, weak, change(count)) if weak > 1e-9 else (numbers, major, 0.0, 0.0)

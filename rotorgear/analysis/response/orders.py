@@ -23,6 +23,7 @@ from itertools import chain
 import numpy as np
 
 from rotorgear.analysis.response.cycle_harmonics import (
+    ROUNDING,
     SEEN,
     harmonics_of_cycle,
     harmonics_of_line,
@@ -163,7 +164,9 @@ def _of_history(history: LoadHistory) -> tuple[list[tuple[int, np.ndarray]], flo
     found = np.zeros((SEEN, 6), complex)
     for name, values in zip(history.components, history.values, strict=True):
         angles, turned = history.whole_turn(values)
-        found[:, COMPONENTS.index(name)] = harmonics_of_line(angles / (2.0 * np.pi), turned)
+        column = harmonics_of_line(angles / (2.0 * np.pi), turned)
+        column[np.abs(column) <= ROUNDING * np.abs(turned).max()] = 0.0
+        found[:, COMPONENTS.index(name)] = column
     scale = np.maximum(np.abs(found).max(axis=0), 1e-300)
     size = (np.abs(found) / scale).max(axis=1)
     kept, rest = strong(size.astype(complex))
@@ -258,7 +261,8 @@ def _loaded_teeth(setup: Setup, blank: Order, left: list[Note]) -> Iterable[_Par
         k = np.where(joint.stiffness > 0.0, joint.stiffness, np.inf)
         approach = np.where(joint.own >= 0, joint.pressed(cycle), 0.0)
         deflections = np.hstack([f / k, approach - approach.mean(axis=0)])
-        numbers, major, weak, change = that_matter(deflections, cycle.periods)
+        sizes = np.hstack([np.abs(setup.mean_force) / k, np.abs(approach).max(axis=0)])
+        numbers, major, weak, change = that_matter(deflections, cycle.periods, sizes)
         if weak > 0.0:
             which = f"orders of their loaded teeth of up to {100.0 * weak:.2g} % of the strongest"
             size = f"they would change its peak to peak at a crawl by {100.0 * change:.2g} %"

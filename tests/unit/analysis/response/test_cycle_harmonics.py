@@ -15,6 +15,7 @@ from rotorgear.analysis.response.cycle_harmonics import (
     strong,
     that_matter,
 )
+from rotorgear.errors import AnalysisError
 from tests.models import spur_pair
 
 MESH = 24 * 1500.0 / 60.0
@@ -123,5 +124,29 @@ def test_the_first_orders_of_the_mesh_are_kept_beside_larger_ones_of_the_shaft()
     assert weak == 0.0
 
 
-def test_a_constant_has_no_harmonics() -> None:
+def test_a_constant_has_no_harmonics_and_neither_has_its_rounding() -> None:
     assert that_matter(np.full((64, 2), 3.0)) == ([], set(), 0.0, 0.0)
+    rounded = 3.0 + 4e-16 * np.random.default_rng(1).integers(-2, 3, (64, 2))
+    assert that_matter(rounded) == ([], set(), 0.0, 0.0)
+    assert that_matter(rounded - 3.0, sizes=np.full(2, 3.0)) == ([], set(), 0.0, 0.0)
+    assert strong(harmonics_of_pieces(((0.0, 0.3, 0.3), (0.31, 0.3, 0.3), (0.77, 0.3, 0.3)))) == ([], 0.0)
+
+
+@pytest.mark.parametrize("stiffness", ["iso", "2.1e8 N/m"])
+def test_a_mesh_of_constant_stiffness_excites_nothing(stiffness: str) -> None:
+    """The rounding of constant pieces was five orders of the mesh, with forces of 1e-12 N."""
+    model = spur_pair(meshes__pair__transmission_error=[], meshes__pair__stiffness=stiffness)
+    with pytest.raises(AnalysisError, match="nothing excites"):
+        rg.response(model, points=5)
+
+
+def test_a_constant_table_over_the_angle_excites_nothing_beside_an_unbalance() -> None:
+    table = {"over": "angle", "places": [0.3, 1.1, 4.9], "components": ["force_y", "moment_x"]}
+    values = [[100.0 / 3.0] * 3, [7.0 / 3.0] * 3]
+    model = spur_pair(meshes__pair__transmission_error=[], meshes__pair__stiffness="2.1e8 N/m").with_(
+        {
+            "loads.weight": rg.Load(shaft="one", at="start", history=table | {"values": values}),
+            "unbalances.u": rg.Unbalance(shaft="two", at="start", magnitude=1e-5),
+        }
+    )
+    assert [order.split()[0] for order in rg.response(model, points=5).orders] == ["shaft"]
