@@ -32,7 +32,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Files and Python": ("commands", "python", "api", "rexs"),
     "Trust": ("accuracy", "validation", "seeds", "extreme"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
-    "Development": ("architecture", "CONTRIBUTING"),
+    "Development": ("CONTRIBUTING",),
 }
 # The page that stands beside docs/; other files there are shown as texts.
 _BESIDE = "CONTRIBUTING.md"

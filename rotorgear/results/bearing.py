@@ -215,9 +215,12 @@ class BearingSheet(ModelResult, kind="bearing"):
             yield from ("", self._speeds())
         mean = "means over a pitch of the rolling elements; " if self.averaged else ""
         finer = "on a grid of twice the cells" if self.oil is not None else "with twice the positions in a pitch"
+        seen = (
+            f"twice their change {finer}" if self.oil is not None or self.rolling_elements else "tangents of a formula"
+        )
         yield from ("", f"{mean}x, y, z in um, tilts in urad; K and C in N/um, N/urad, N m/urad and kN s/m")
         yield (
-            f"error: K and C {error_words(self.error_estimate)}, twice their change {finer}; the law at the state printed "
+            f"error: K and C {error_words(self.error_estimate)}, {seen}; the law at the state printed "
             f"differs from the load of the gearbox by {error_words(self.consistency)}"
         )
         total = self.seconds["total"]

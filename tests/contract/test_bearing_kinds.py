@@ -63,7 +63,8 @@ def test_the_walk_sees_names_and_texts_and_no_prose(tmp_path: Path) -> None:
 
 def test_the_kinds_are_the_fields_of_a_bearing_that_have_a_geometry() -> None:
     kinds = Bearing.kinds()
-    assert list(kinds) == ["rolling", "journal", "thrust"]
+    assert {"rolling", "journal", "thrust"} <= set(kinds)
+    assert {"stiffness", "table", "pedestal"}.isdisjoint(kinds)
     assert all(issubclass(kind, BearingGeometry) for kind in kinds.values())
     assert all(kind.ring in kind.model_fields for kind in kinds.values())
 

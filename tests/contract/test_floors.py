@@ -40,9 +40,9 @@ FLOORS = {
 
 
 def planned_rooms() -> dict[str, dict[str, set[str]]]:
-    """Which room of a floor may import which other one, from the table of docs/architecture.md; "" holds files beside rooms."""
+    """Which room of a floor may import which other one, from the table of CONTRIBUTING.md; "" holds files beside rooms."""
     rooms: dict[str, dict[str, set[str]]] = {}
-    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for name, imports in re.findall(r"^\| `([a-z_/]+)` \| .* \| ([a-z_, -]+) \|$", page, re.MULTILINE):
         floor, _, room = name.partition("/")
         rooms.setdefault(floor, {})[room] = set(imports.split(", ")) - {"-"}

@@ -46,6 +46,15 @@ def test_links_of_the_package_page_are_absolute_or_words() -> None:
     assert "Validation" in plain
 
 
+def test_errors_and_times_in_the_readme_are_those_of_the_page_of_accuracy() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    told = set(re.findall(r"[\w.+-]+", (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")))
+    table = "\n".join(line for line in readme.splitlines() if line.startswith("| ") and "ratio" not in line)
+    numbers = re.findall(r"\b\d+\.\d+(?:e-\d+)?\b", table)
+    assert len(numbers) > 15
+    assert [number for number in numbers if number not in told and f"{number}," not in told] == []
+
+
 def test_every_dependency_states_an_oldest_version_that_can_be_installed() -> None:
     project = PROJECT["project"]
     stated = [
