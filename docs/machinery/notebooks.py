@@ -19,12 +19,17 @@ from machinery.session import PythonSession
 from machinery.snippets import ROOT, SnippetError, environment
 
 FOLDER = ROOT / "docs" / "notebooks"
-_DOTS_PER_INCH = 64  # of stored pictures: some 30 kB each
+# Of stored pictures: some 20 kB each.
+_DOTS_PER_INCH = 80
+_COLOURS = 64
 _SHOW = f"""
 def _show(value, picture):
     from matplotlib.figure import Figure
+    from PIL import Image
     if isinstance(value, Figure):
         value.savefig(picture, dpi={_DOTS_PER_INCH})
+        with Image.open(picture) as drawn:
+            drawn.convert("RGB").quantize({_COLOURS}, dither=Image.Dither.NONE).save(picture, optimize=True)
     elif value is not None:
         print(repr(value))
 """
