@@ -26,7 +26,7 @@ from rotorgear.analysis.static.forces import (
 from rotorgear.analysis.static.sensitivity import sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded
-from rotorgear.analysis.static.thrust import soft_along_shaft
+from rotorgear.analysis.static.axial_travel import soft_along_shaft
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State

@@ -2,7 +2,7 @@
 
 A helical mesh presses its flanks together by its deflection, and each of its shafts moves by z along its axis: along the flank
 normal that is z sin(beta_b). Where it is many times the deflection, softness of bearings along the shaft decides what the drive
-yields to its torque: a stiffness that is missing in the file, or bearings that do not take thrust well.
+yields to its torque: a stiffness that is missing in the file, or bearings that do not carry along the axis well.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rotorgear.note import Note
 
 # Bearings as stiff along as across give about 1.
 _SOFT = 3.0
-# Below this share of the thrust of a mesh, bearings carry what others leave, as on a shaft with two thrusts in balance.
+# Below this share of the axial force of a mesh, bearings carry what two meshes leave that nearly balance on their shaft.
 _CARRIED = 0.1
 
 
@@ -43,17 +43,15 @@ def soft_along_shaft(equilibrium: Equilibrated) -> Iterator[Note]:
         ]
         if not holding:
             continue
-        thrust = abs(sum(force[name][2] for name in holding))
+        carried = abs(sum(force[name][2] for name in holding))
         moved = min((travel[name] for name in holding), key=abs)
         times = max(abs(moved) * lean / pressed for lean, _, pressed in pushed)
-        if times < _SOFT or thrust < _CARRIED * max(lean * own for lean, own, _ in pushed):
+        if times < _SOFT or carried < _CARRIED * max(lean * own for lean, own, _ in pushed):
             continue
         stiffness = sum(abs(force[name][2] / travel[name]) for name in holding)
         names = " and ".join(f"bearings.{name}" for name in holding)
         hold = f"{'hold' if len(holding) > 1 else 'holds'} it there with {1e-6 * stiffness:.3g} N/um (force over way)"
-        remedy = (
-            "check the axial stiffness given there, or hold the shaft by a contact angle, a preload or a thrust bearing"
-        )
+        remedy = "check the axial stiffness given there, or hold the shaft by angular-contact or preloaded bearings"
         what = f"moves along its axis {times:.1f} times as far as its teeth give way, measured along the flank normal"
         yield Note(f"shafts.{shaft}", what, f"{names} {hold}: {remedy}", f"{1e6 * moved:+.3g} um")
 
