@@ -1,4 +1,4 @@
-"""Synthetic rigs: a split-torque gearbox whose stiffnesses nobody knows, measured with noise. The maker of docs/rig.md too.
+"""Synthetic rigs: a split-torque gearbox whose stiffnesses nobody knows, measured with noise.
 
     python -m validation.studies.rigs           200 rigs: do stated intervals cover the truth, and are modes paired right? (long)
     python -m validation.studies.rigs 20        so many rigs
