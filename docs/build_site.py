@@ -43,6 +43,7 @@ _STYLE = """
 .md-grid { max-width: 72rem; }
 .md-typeset table:not([class]) th, .md-typeset table:not([class]) td { min-width: 0; padding: 0.4em 0.7em; }
 .md-typeset table:not([class]) td:last-child { min-width: 10rem; }
+.md-typeset td code { word-break: normal; }
 .md-typeset td:first-child code { white-space: nowrap; }
 .md-typeset math[display="block"] { overflow-x: auto; padding: 0.4em 0; }
 """

@@ -118,8 +118,8 @@ RULES: dict[type[BaseModel], str] = {
         [conventions](conventions.md#mesh-of-a-parallel-axis-pair).""",
     Bearing: """
         Give `stiffness` (and `damping`), a `table` over speed, `rolling` elements, a `journal` or a `thrust` bearing.
-        A stiffness of one number, `{ radial = "1e8 N/m" }`, holds x and y alone, not z: give one bearing of the shaft an
-        `axial` one, too. A bearing holds no torsion unless told to. See
+        A stiffness of one number, `{ radial = "1e8 N/m" }` or that of an address in `--over`, is along x and y alone, not z:
+        give one bearing of the shaft an `axial` one, too. A bearing holds no torsion unless told to. See
         [Bearings](bearings.md).""",
     TableRow: """
         At least two rows, speeds rising. A speed outside the table is refused, never extrapolated.""",

@@ -16,7 +16,9 @@ import pytest
 from tests.paths import ROOT
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-MOST_PAGES = 32
+# Pages that go into others yet count for one more each, as long as they stand by themselves.
+OWN = [name for name in ("architecture", "extreme", "seeds") if (ROOT / "docs" / f"{name}.md").exists()]
+MOST_PAGES = 28 + len(OWN)
 
 
 def test_every_page_has_a_place_in_the_menu() -> None:

@@ -47,7 +47,7 @@ class LoadHistory(Part):
 
     over: Literal["time", "angle"] = Field(description="what the places are")
     places: tuple[float, ...] = Field(description="times in s or angles in rad, rising; a turn of angles begins again")
-    components: tuple[_Component, ...] = Field(description="names of the components that are given")
+    components: tuple[_Component, ...] = Field(description="components that are given")
     values: tuple[tuple[float, ...], ...] = Field(description="of each component at the places, in N and N m")
 
     @model_validator(mode="after")

@@ -134,7 +134,7 @@ class CornerImpact(Part):
 
 
 class Mesh(Part):
-    """Two gears in mesh. Everything that follows from the gears and the axes is computed, not asked for."""
+    """Two gears in mesh. What follows from gears and axes is computed."""
 
     pinion: str = Field(description="name of the gear that is called the pinion")
     gear: str = Field(description="name of its mate")

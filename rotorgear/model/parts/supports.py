@@ -201,7 +201,7 @@ ElementDof = Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion"]
 
 
 class NonlinearElement(Part):
-    """A general nonlinear element: a force law on a shaft, against the ground or against another shaft."""
+    """A force law on a shaft, against the ground or against another shaft."""
 
     law: str = Field(description="name of the force law, of the package or registered from Python")
     shaft: str = Field(description="name of the shaft")
