@@ -17,7 +17,7 @@ from tests.paths import ROOT
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 # Pages that go into others yet count for one more each, as long as they stand by themselves.
-OWN = [name for name in ("architecture", "extreme", "seeds") if (ROOT / "docs" / f"{name}.md").exists()]
+OWN = [name for name in ("extreme", "seeds") if (ROOT / "docs" / f"{name}.md").exists()]
 MOST_PAGES = 28 + len(OWN)
 
 
