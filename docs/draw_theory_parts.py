@@ -2,12 +2,13 @@
 python docs/draw_theory_parts.py [FOLDER for copies as PNG]
 
 All curves are computed by the program; models and meshes are those of the pages on loaded teeth, bearings, casings and gear
-bodies. It takes some seconds.
+bodies. It takes a minute.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 import tempfile
 from dataclasses import replace
@@ -28,13 +29,10 @@ plt.rcParams |= {"font.size": 9.0, "svg.hashsalt": "rotorgear", "axes.spines.top
 
 
 def from_page(page: str) -> None:
-    """Write the files that a page shows into this folder, and run the block of Python that makes the mesh of casings."""
-    blocks = marked_blocks(DOCS / f"{page}.md")
-    for block in blocks:
+    """Write the files that a page shows into this folder."""
+    for block in marked_blocks(DOCS / f"{page}.md"):
         if block.verb == "file":
             Path(block.argument).write_text(block.text, encoding="utf-8")
-    if page == "casings":
-        exec(next(block.text for block in blocks if block.language == "python"), {})
 
 
 def contact(figure: Figure) -> None:
@@ -200,7 +198,7 @@ def bodies(figure: Figure) -> None:
     from rotorgear.model.layout.casings import casing_settings
 
     left, right = figure.subplots(1, 2)
-    settings = casing_settings(rg.load("box.toml"), "box")
+    settings = casing_settings(rg.load("geared_box.toml"), "box")
     fe = finite_element_body(settings)
     whole = held_modes(fe, 12).frequency
     reference, _, _ = reduce(fe, None)
@@ -256,6 +254,7 @@ def main() -> None:
     copies = Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
+        shutil.copytree(DOCS.parent / "models", "models")
         for page in ("mesh", "bearings", "casings"):
             from_page(page)
         for draw, name in ((contact, "contact"), (teeth, "teeth"), (bearings, "bearings"), (bodies, "bodies")):
