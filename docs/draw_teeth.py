@@ -16,6 +16,7 @@ import pyvista as pv
 
 ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "pictures" / "mesh_stress.png"
+INPUTS = ("validation/cases/tooth_fe_contact/helical.toml",)  # for docs/machinery/made.py
 ENLARGED = 200.0
 # Equivalent stress in MPa at the end of the colours: the fillets have some 90, the ends of contact lines much more.
 MOST = 120.0

@@ -1,13 +1,16 @@
 """Bring the docs up to date:  python docs/update.py
 
 With names of pages or generators, only those, their long blocks too:  python docs/update.py mesh commands
+With names of pictures, these are drawn again:  python docs/update.py bearing.png
 With --check it changes nothing, and fails where something but seconds would change.
+With --same it notes that pictures or tables still show what is right:  python docs/update.py --same bearing.png
 
 Every number on a page is printed by a command beside it. This runs the marked blocks of all pages (the marks stand in
 `machinery/snippets.py`), puts in what they print now, and writes the generated pages. A generator is a file
 `docs/generate_*.py` with a function `pages() -> dict[str, str]`: the text of each page by its path from the top of the
 repository. With `LONG = True` at its top it only runs with --long. So do the notebooks and the long blocks of pages, where
-these are not named. A generator with `site_pages()` as well keeps a summary here, and the whole page is made with the site.
+these are not named, and the pictures that are older than what they show (see `machinery/made.py`). A generator with
+`site_pages()` adds whole pages to the site, of which the repository keeps a summary.
 """
 
 from __future__ import annotations
@@ -15,6 +18,8 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import os
+import shlex
+import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Collection, Iterator
@@ -23,8 +28,9 @@ from pathlib import Path
 from types import ModuleType
 
 from machinery.comparison import difference, texts_agree
+from machinery.made import Made, pictures, record, stale, tables
 from machinery.notebooks import notebooks, run_notebook
-from machinery.snippets import ROOT, SnippetError, pages, rewritten, run_page
+from machinery.snippets import ROOT, Block, SnippetError, pages, rewritten, run_command, run_page
 
 DOCS = Path(__file__).resolve().parent
 
@@ -84,6 +90,42 @@ def notebook_changes(file: Path) -> Iterator[tuple[Path, str, str]]:
         yield file, old, new
 
 
+def draw(wanted: Collection[Made]) -> None:
+    """Draw pictures again, each command once beside the models; where that fails, after the quick blocks of its page, or all.
+
+    Raises:
+        SnippetError: a command fails all the same.
+    """
+    for page, command in dict.fromkeys((made.page, made.command) for made in wanted):
+        of_command = [made for made in wanted if (made.page, made.command) == (page, command)]
+        block = Block(DOCS / f"{page}.md", 0, "console", "run", command, 0, True, "")
+        with tempfile.TemporaryDirectory() as directory:
+            place = Path(directory)
+            shutil.copytree(ROOT / "models", place / "models")
+            for blocks in ("none", "quick", "all"):
+                if blocks != "none":
+                    list(run_page(block.page, place, long=blocks == "all"))
+                try:
+                    run_command(block, _with_paths(command, place), place)
+                    break
+                except SnippetError:
+                    if blocks == "all":
+                        raise
+            for made in of_command:
+                if made.left:
+                    shutil.copyfile(place / made.left, DOCS / "pictures" / made.name)
+                print(f"docs/pictures/{made.name}: drawn")
+        record([made.name for made in of_command])
+
+
+def _with_paths(command: str, directory: Path) -> str:
+    """A command with the whole paths of the files of the repository that are not in a directory."""
+    words = shlex.split(command)
+    return shlex.join(
+        str(ROOT / word) if (ROOT / word).is_file() and not (directory / word).exists() else word for word in words
+    )
+
+
 def write(page: Path, text: str) -> None:
     """Write a page beside its place and move it there."""
     page.parent.mkdir(parents=True, exist_ok=True)
@@ -110,6 +152,8 @@ def update(check: bool, long: bool, names: Collection[str] = ()) -> tuple[int, i
                     print(difference(old, new))
                 else:
                     write(page, new)
+            if source.suffix == ".md" and not check and (long or names):
+                record([made.name for made in tables() if made.page == source.stem and not made.by_hand])
         except SnippetError as error:
             failed += 1
             print(error, file=sys.stderr)
@@ -125,9 +169,31 @@ def main() -> int:
         "--check", action="store_true", help="change nothing; fail where something but seconds would change"
     )
     parser.add_argument("--long", action="store_true", help="run the generators and blocks that take long, too")
-    parser.add_argument("names", nargs="*", help="pages or generators, such as mesh or commands; default: all")
+    parser.add_argument("names", nargs="*", help="pages, generators or pictures, such as mesh, commands or bearing.png")
+    parser.add_argument(
+        "--same", action="store_true", help="note that the named pictures and tables still show what is right"
+    )
     options = parser.parse_args()
-    changed, failed = update(options.check, options.long, options.names)
+    if options.same:
+        unknown = set(options.names) - {made.name for made in (*pictures(), *tables())}
+        if unknown:
+            parser.error(f"no picture or long table of these names: {', '.join(sorted(unknown))}")
+        record(options.names)
+        return 0
+    of_pictures = {made.name: made for made in pictures() if made.is_picture}
+    names = [name for name in options.names if name not in of_pictures]
+    changed = failed = 0
+    if names or not options.names:
+        changed, failed = update(options.check, options.long, names)
+    old = [sentence.split()[0] for sentence in stale()]
+    wanted = options.names or (old if options.long else [])
+    try:
+        draw([made for name, made in of_pictures.items() if name in wanted and not options.check])
+    except SnippetError as error:
+        failed += 1
+        print(error, file=sys.stderr)
+    for sentence in stale():
+        print(sentence)
     return 1 if failed or (changed and options.check) else 0
 
 

@@ -9,6 +9,8 @@ A mark is an HTML comment on the line before a fenced block:
     <!-- run exit=2: ... -->      the same for a command that ends with this code; `<!-- run exit=2 -->` for `console`
     <!-- run long: ... -->        a block of seconds to minutes on which no other depends: run with the long tests, and where its
                                   page is brought up to date; also `<!-- run long -->`
+    <!-- made: python -m ... -->  the block is what this command once printed, and never run from here: it takes hours or other
+                                  programs, or prints times; `made.py` tells where it is older than its script
     <!-- file: gearbox.toml -->   the block is written to this file
 
 The blocks of a page run in order, in one directory that starts with a copy of `models/`. Commands are `rotorgear` and
@@ -24,7 +26,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from machinery.comparison import merged, texts_agree
@@ -33,9 +35,10 @@ from machinery.session import PythonSession
 ROOT = Path(__file__).resolve().parents[2]
 PRINT_WIDTH = 100
 LONGEST_RUN = 300  # seconds
+LONGEST_LONG_RUN = 3600
 
 _FENCE = re.compile(r"^( *)(`{3,}|~{3,})\s*([\w-]*)[^`]*$")
-_MARK = re.compile(r"^\s*<!--\s*(run|output|file)\b(\s+long)?(?:\s+exit=(\d+))?\s*(?::\s*(.*?))?\s*-->\s*$")
+_MARK = re.compile(r"^\s*<!--\s*(run|output|file|made)\b(\s+long)?(?:\s+exit=(\d+))?\s*(?::\s*(.*?))?\s*-->\s*$")
 
 
 class SnippetError(Exception):
@@ -46,11 +49,11 @@ class SnippetError(Exception):
 class Block:
     """A marked block: its page, the line of its fence (from 1), its language, its mark, and its text.
 
-    An output of a long block is long, as that is.
+    An output of a long block is long, as that is. Blocks that differ in nothing but their line are equal.
     """
 
     page: Path
-    line: int
+    line: int = field(compare=False)
     language: str
     verb: str
     argument: str
@@ -129,8 +132,9 @@ def _check_mark(blocks: list[Block]) -> None:
         and block.language == "console"
         and not block.text.startswith("$ "),
         "a file needs a name inside the directory": block.verb == "file" and not _is_inside(block.argument),
+        "made needs a command": block.verb == "made" and not block.argument,
         "output takes no argument": block.verb == "output" and bool(block.argument),
-        "long is for run only": block.long and block.verb == "file",
+        "long is for run only": block.long and block.verb in ("file", "made"),
         "exit= is for commands only": bool(block.exit_code) and (block.verb != "run" or block.language == "python"),
         "output needs a marked python block before it": block.verb == "output"
         and not any(b.language == "python" for b in blocks[:-1]),
@@ -149,9 +153,10 @@ def run_page(page: Path, directory: Path, *, long: bool = True) -> Iterator[Outc
     """Run the marked blocks of a page in a directory, with or without long ones; yield each block that shows an output.
 
     Raises:
-        SnippetError: where a block fails.
+        SnippetError: where a block fails, or the blocks of the page are others when the last one has run.
     """
-    blocks = [block for block in marked_blocks(page) if long or not block.long]
+    at_first = marked_blocks(page)
+    blocks = [block for block in at_first if block.verb != "made" and (long or not block.long)]
     directory.mkdir(parents=True, exist_ok=True)
     if blocks and (ROOT / "models").is_dir():
         shutil.copytree(ROOT / "models", directory / "models", dirs_exist_ok=True)
@@ -165,17 +170,20 @@ def run_page(page: Path, directory: Path, *, long: bool = True) -> Iterator[Outc
             elif block.verb == "output":
                 yield _outcome(block, block.text, printed)
             elif block.argument:
-                yield _outcome(block, block.text, _run_command(block, block.argument, directory))
+                yield _outcome(block, block.text, run_command(block, block.argument, directory))
             elif block.language == "console":
                 yield _console(block, directory)
             else:
                 ok, printed = session.run(block.text)
                 if not ok:
                     raise SnippetError(f"{block.place}: this block fails:\n{printed}")
+    if marked_blocks(page) != at_first:
+        raise SnippetError(f"{page.name}: its blocks were edited while they ran; run them again")
 
 
 def _outcome(block: Block, page: str, printed: str) -> Outcome:
-    return Outcome(block, printed, page if texts_agree(page, printed) else merged(page, printed))
+    new = page if texts_agree(page, printed) else merged(page, printed)
+    return Outcome(block, printed, None if new is None else "\n".join(line.rstrip() for line in new.split("\n")))
 
 
 def _console(block: Block, directory: Path) -> Outcome:
@@ -185,7 +193,7 @@ def _console(block: Block, directory: Path) -> Outcome:
     new: list[str | None] = []
     for command, shown in zip(chunks[::2], chunks[1::2], strict=True):
         text = shown.rstrip("\n")
-        printed = _run_command(block, command, directory)
+        printed = run_command(block, command, directory)
         outcome = _outcome(block, text.removeprefix("\n"), printed)
         all_printed += [f"$ {command}", printed]
         lines_after = shown[len(text) :]
@@ -194,14 +202,19 @@ def _console(block: Block, directory: Path) -> Outcome:
     return Outcome(block, "\n".join(all_printed), whole)
 
 
-def _run_command(block: Block, command: str, directory: Path) -> str:
-    """Return what a command prints, errors included, as a reader sees them at a terminal."""
+def run_command(block: Block, command: str, directory: Path) -> str:
+    """Return what a command prints, errors included, as a reader sees them at a terminal.
+
+    Raises:
+        SnippetError: it is none of rotorgear or python, takes too long, or ends with another code than its block says.
+    """
     words = shlex.split(command)
     programs = {
         "rotorgear": [sys.executable, "-m", "rotorgear"],
         "python": [sys.executable],
         "python3": [sys.executable],
     }
+    longest = LONGEST_LONG_RUN if block.long else LONGEST_RUN
     if not words or words[0] not in programs:
         raise SnippetError(f"{block.place}: can't run '{command}': commands on a page are rotorgear and python")
     try:
@@ -212,11 +225,11 @@ def _run_command(block: Block, command: str, directory: Path) -> str:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            timeout=LONGEST_RUN,
+            timeout=longest,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise SnippetError(f"{block.place}: '{command}' was not done in {LONGEST_RUN} s") from None
+        raise SnippetError(f"{block.place}: '{command}' was not done in {longest} s") from None
     printed = run.stdout.decode("utf-8", errors="replace").replace("\r\n", "\n")
     if run.returncode != block.exit_code:
         raise SnippetError(
@@ -242,22 +255,34 @@ def environment() -> dict[str, str]:
 
 
 def rewritten(page: Path, outcomes: list[Outcome]) -> str:
-    """Return the text of a page with the outputs that were printed now.
+    """Return the text of a page with the outputs that were printed now; what was edited around its blocks meanwhile stays.
 
     Raises:
-        SnippetError: where an output with gaps changed so much that its gaps can't be found again.
+        SnippetError: where an output with gaps changed so much that its gaps can't be found again, or a block is gone.
     """
     text = page.read_text(encoding="utf-8")
     lines = text.splitlines()
-    for outcome in reversed(outcomes):
+    places = _places_now(page, [outcome.block for outcome in outcomes])
+    for outcome, start in reversed(list(zip(outcomes, places, strict=True))):
         if outcome.agrees:
             continue
         if outcome.new is None:
             raise SnippetError(
                 f"{outcome.block.place}: place the '...' of this block by hand; printed was:\n{outcome.printed}"
             )
-        start = outcome.block.line
         indent = " " * (len(lines[start - 1]) - len(lines[start - 1].lstrip()))
         old = len(outcome.block.text.splitlines())
         lines[start : start + old] = [(indent + line).rstrip() for line in outcome.new.splitlines()]
     return "\n".join(lines) + ("\n" if text.endswith("\n") else "")
+
+
+def _places_now(page: Path, blocks: list[Block]) -> list[int]:
+    """The lines of blocks as their page stands now, which may have been edited since they were read."""
+    now = iter(marked_blocks(page))
+    places = []
+    for block in blocks:
+        same = next((one for one in now if one == block), None)
+        if same is None:
+            raise SnippetError(f"{block.place}: this block was edited while the page ran; run it again")
+        places.append(same.line)
+    return places

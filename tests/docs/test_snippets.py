@@ -188,6 +188,48 @@ def test_an_update_changes_the_outputs_that_differ_and_nothing_else(page: Path, 
     assert all(outcome.agrees for outcome in run_page(page, tmp_path / "two"))
 
 
+def test_outputs_stand_in_their_blocks_where_the_page_was_edited_while_they_ran(page: Path, tmp_path: Path) -> None:
+    outcomes = list(run_page(page, tmp_path / "one"))
+    page.write_text(
+        "# Another head\n\nand a sentence.\n\n" + PAGE.replace("1. In a list", "\n1. In the list"), encoding="utf-8"
+    )
+    expected = page.read_text(encoding="utf-8").replace("4.1000", "4.1429").replace("wrong", "gone")
+    assert rewritten(page, outcomes) == expected
+
+
+def test_an_output_whose_block_was_edited_while_it_ran_is_refused(page: Path, tmp_path: Path) -> None:
+    outcomes = list(run_page(page, tmp_path / "one"))
+    page.write_text(PAGE.replace("4.1000", "4.2000"), encoding="utf-8")
+    with pytest.raises(SnippetError, match="edited while the page ran"):
+        rewritten(page, outcomes)
+
+
+def test_a_page_whose_code_was_edited_while_it_ran_is_refused(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    code = (
+        f"from pathlib import Path\npage = Path({str(page)!r})\npage.write_text(page.read_text().replace('AND', 'OR'))"
+    )
+    page.write_text(
+        f"<!-- run -->\n```python\n{code}\n```\n<!-- file: a.txt -->\n```text\nAND\n```\n", encoding="utf-8"
+    )
+    with pytest.raises(SnippetError, match="edited while they ran"):
+        list(run_page(page, tmp_path / "run"))
+
+
+def test_blanks_at_the_ends_of_lines_go_and_what_was_made_elsewhere_stays(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    made = "<!-- made: python -m nowhere -->\n```text\n9   \n```\n"
+    page.write_text(f"{made}<!-- run: python -c \"print('a  b  ')\" -->\n```text\na b   \n```\n", encoding="utf-8")
+    outcomes = list(run_page(page, tmp_path / "run"))
+    assert [outcome.agrees for outcome in outcomes] == [False]
+    assert rewritten(page, outcomes).splitlines() == [
+        *made.splitlines(),
+        *page.read_text().splitlines()[4:6],
+        "a b",
+        "```",
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
@@ -198,6 +240,7 @@ def test_an_update_changes_the_outputs_that_differ_and_nothing_else(page: Path, 
         ("<!-- output -->\n```text\n1\n```\n", "python block before"),
         ("<!-- file: ../away.toml -->\n```toml\n```\n", "inside the directory"),
         ("<!-- run exit=1 -->\n```python\n```\n", "commands only"),
+        ("<!-- made -->\n```text\n1\n```\n", "needs a command"),
         ("<!-- file long: a.toml -->\n```toml\n```\n", "long is for run"),
         ("<!-- run: rm -r . -->\n```text\n```\n", "rotorgear and python"),
         ("<!-- run: python -c 'raise SystemExit(1)' -->\n```text\n```\n", "ended with code 1, expected 0"),
