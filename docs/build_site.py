@@ -30,7 +30,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Parts": ("mesh", "bearings", "casings", "model_file"),
     "Design": ("report", "rig"),
     "Files and Python": ("commands", "python", "api", "rexs"),
-    "Trust": ("accuracy", "validation", "seeds", "extreme"),
+    "Trust": ("accuracy", "validation"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Development": ("CONTRIBUTING",),
 }

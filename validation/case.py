@@ -29,6 +29,8 @@ from rotorgear.old_names import warn_old
 
 FOLDER = Path(__file__).resolve().parent / "cases"
 SHOWN_ONLY = float("inf")
+# What the rows are made from, for docs/machinery/made.py.
+INPUTS = ("validation/cases/*/*.csv", "validation/cases/*/*.toml", "validation/cases/*/*.py")
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 from validation.case import Case, Expectation, read_cases
 from validation.measure import Solver
 from validation.quantities import FORCED, SHEET, TEETH, words
-from validation.table import Row, printed
+from validation.table import Row, overview, printed
 
 
 def run(cases: Sequence[Case]) -> Iterator[Row]:
@@ -77,16 +77,19 @@ def describe(line: Expectation) -> str:
     return ", ".join(parts)
 
 
-def main(wanted: Sequence[str] = (), json_file: Path | None = None) -> int:
+def main(wanted: Sequence[str] = (), json_file: Path | None = None, *, by_case: bool = False) -> int:
     """Run cases by name (all where none is named), print the table, write JSON on request; 0 where all pass, else 1.
+
+    `by_case`: print a line a case in place of all lines.
 
     Raises:
         AnalysisError: there is no case of that name.
     """
     start = time.perf_counter()
-    rows = list(run(read_cases(wanted)))
+    cases = read_cases(wanted)
+    rows = list(run(cases))
     seconds = time.perf_counter() - start
-    sys.stdout.write(printed(rows))
+    sys.stdout.write(overview({case.name: case.title for case in cases}, rows) if by_case else printed(rows))
     judged = [row for row in rows if row.judged]
     failed = [row for row in judged if not row.passed]
     shown = len(rows) - len(judged)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 HEAD = ("case", "what", "expected", "got", "error", "allowed", "", "dofs", "time")
@@ -66,6 +66,16 @@ def verdict(row: Row) -> str:
     if not row.judged:
         return "shown"
     return "pass" if row.passed else "FAIL"
+
+
+def overview(titles: Mapping[str, str], rows: Sequence[Row]) -> str:
+    """A line a case, by its name and title: how many lines are judged, how many of them pass, and how many are only shown."""
+    lines = [f"{'case':24}  {'what':65}  judged  passed  shown"]
+    for name, title in titles.items():
+        judged = [row for row in rows if row.case == name and row.judged]
+        shown = sum(row.case == name for row in rows) - len(judged)
+        lines.append(f"{name:24}  {title:65}  {len(judged):6}  {sum(row.passed for row in judged):6}  {shown:5}")
+    return "\n".join(lines) + "\n"
 
 
 def printed(rows: Sequence[Row]) -> str:

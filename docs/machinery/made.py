@@ -10,8 +10,8 @@ what it shows:
 * a script or module of the repository, modules that the words after it name in its folder, and those outside of the package that
   they import: the definition of its rows, its rules of judging and its way of printing; the models whose names stand in them as
   texts; the files that a module lists as INPUTS;
-* of a picture of `rotorgear VERB`, the modules of rotorgear/plots/ that draw it; of what all pictures share, the colours and other
-  constants.
+* of a picture of `rotorgear VERB`, the modules of rotorgear/plots/ that draw it; of what all pictures share, the colours and
+  other constants.
 
 The package itself is left out: with it every commit would ask for hours of runs. That its numbers are still those of the pages is
 for the tests that repeat a few of them. Comments, docstrings and the layout of a model file do not count.

@@ -1,18 +1,24 @@
 """Tries every hole that was found and prints what happens now:  python -m tests.extreme
 
+`--cases` prints every stiff or extreme case with its error, warning or refusal, and `--counts` how many there are of each kind.
+
 A line is "right", "refused" or "flagged" when all its tests pass, "skipped" when one of them can't run here, else "OPEN", and the
 exit code is then 1.
 """
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import io
 import sys
 
+import mpmath as mp
 import pytest
 
+from tests.extreme import outcomes as found
 from tests.extreme.holes import HOLES, Hole
+from tests.extreme.references import DIGITS
 
 
 class Outcomes:
@@ -36,7 +42,20 @@ class Outcomes:
 
 
 def main() -> int:
-    """Run the tests and print a line for each hole."""
+    """Print what is asked for."""
+    parser = argparse.ArgumentParser(prog="python -m tests.extreme", description="Stiff and extreme cases.")
+    parser.add_argument("--cases", action="store_true", help="every case with its error, warning or refusal")
+    parser.add_argument("--counts", action="store_true", help="how many cases there are of each kind")
+    options = parser.parse_args()
+    tables = (found.computed, found.flagged, found.refused, found.conditioning) if options.cases else ()
+    with mp.workdps(DIGITS):
+        for table in (*tables, *((found.counts,) if options.counts else ())):
+            print(found.aligned(table()))
+    return 0 if options.cases or options.counts else tried()
+
+
+def tried() -> int:
+    """Run the tests of the holes and print a line for each; 1 where one is open."""
     outcomes = Outcomes()
     wanted = list(dict.fromkeys(f"{hole.file}::{test}" for hole in HOLES for test in hole.tests))
     said = io.StringIO()

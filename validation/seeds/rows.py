@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -81,6 +82,16 @@ def entries(system: str) -> list[dict[str, str]]:
     """Return the lines of NAME.csv."""
     with (FOLDER / f"{system}.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def counts() -> str:
+    """A line a system: its rows, and how many of them have each verdict."""
+    lines = [f"{'':8}{'rows':>4}  {'  '.join(VERDICTS)}"]
+    for system in SYSTEMS:
+        found = Counter(line["verdict"] for line in entries(system))
+        cells = "  ".join(f"{found[verdict]:{len(verdict)}}" for verdict in VERDICTS)
+        lines.append(f"{system:8}{found.total():4}  {cells}")
+    return "\n".join(lines)
 
 
 def rows(system: str, *, quick: bool = False) -> list[Row]:
