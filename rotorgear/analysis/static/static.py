@@ -13,6 +13,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_or_operating
 from rotorgear.analysis.common.stations import displacement_places, shapes_at_stations
 from rotorgear.analysis.static.along_faces import decided_by_loads, equilibrate_along_faces, misalignments
+from rotorgear.analysis.static.axial_travel import soft_along_shaft
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.forces import (
     bearing_forces,
@@ -26,7 +27,6 @@ from rotorgear.analysis.static.forces import (
 from rotorgear.analysis.static.sensitivity import sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded
-from rotorgear.analysis.static.axial_travel import soft_along_shaft
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.state import State
