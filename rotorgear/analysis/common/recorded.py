@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import inspect
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import wraps
+from numbers import Real
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
@@ -15,7 +16,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.names import estimated
-from rotorgear.model.checks.plausibility import implausible
+from rotorgear.model.checks.plausibility import implausible, implausible_speed
 from rotorgear.model.model import Model, model_hash
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record
@@ -24,6 +25,8 @@ P = ParamSpec("P")
 R = TypeVar("R", bound=Result)
 # They say how the work is done or watched, and change no number.
 _NOT_SETTINGS = ("progress", "stream", "executor", "critical_speeds")
+# Arguments that are speeds of the input shaft; a transient's may be pairs of time and speed.
+_SPEEDS = ("speed", "speed_to", "start", "stop", "speeds")
 
 
 def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
@@ -49,11 +52,36 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         result = analysis(*args, **kwargs)
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         seconds = {"total": time.perf_counter() - start} | result.seconds
-        doubts = (*implausible(subject.layout), *estimated(subject.layout)) if isinstance(subject, Model) else ()
-        warnings = (*result.warnings, *(doubt for doubt in doubts if doubt not in result.warnings))
+        doubts = (*_doubts(subject, dict(given)), *estimated(subject.layout)) if isinstance(subject, Model) else ()
+        warnings = tuple(dict.fromkeys((*result.warnings, *doubts)))
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 
     return run
+
+
+def _doubts(model: Model, given: Mapping[str, Any]) -> Iterator[str]:
+    """Sentences on values of a model, and on what an analysis was asked for, that are far from all that is built.
+
+    A text carries its unit; a bare number is in SI, where 12000 is no rpm.
+    """
+    yield from implausible(model.layout)
+    for name in _SPEEDS:
+        if bare := [abs(value) for value in _numbers(given.get(name))]:
+            yield from implausible_speed(model.layout, name, max(bare))
+    over = given.get("over")
+    for address, values in over.items() if isinstance(over, Mapping) else ():
+        if bare := [value for value in _numbers(values) if address != "speed"]:
+            for extreme in {min(bare), max(bare)}:
+                yield from implausible(model.with_(address, extreme).layout)
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """The bare numbers of an argument: itself, those of a list, or the second ones of pairs."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        yield float(value)
+    elif isinstance(value, list | tuple | np.ndarray | range):
+        for entry in value:
+            yield from _numbers(entry[-1] if isinstance(entry, list | tuple) and entry else entry)
 
 
 def _no_model(subject: Any) -> str:

@@ -38,7 +38,7 @@ _ANGLE = 4.0 * math.pi
 
 
 def implausible(layout: Layout) -> Iterator[str]:
-    """Yield a sentence on every value that is far from all that is built."""
+    """Yield a sentence on every value of a model that is far from all that is built."""
     judged = chain(
         _materials(layout),
         _shafts(layout),
@@ -49,6 +49,15 @@ def implausible(layout: Layout) -> Iterator[str]:
         _bodies(layout),
         _operation(layout),
     )
+    return _sentences(judged)
+
+
+def implausible_speed(layout: Layout, address: str, speed: float) -> Iterator[str]:
+    """Yield a sentence on a speed (rad/s) of the input shaft that is beyond all that is built."""
+    return _sentences(_speed(layout, address, speed))
+
+
+def _sentences(judged: Iterable[Judged]) -> Iterator[str]:
     for address, value, (low, high), got, usual, slips in judged:
         if not low <= value <= high:
             slip = slips if isinstance(slips, str) else slips[value > high]
@@ -262,7 +271,7 @@ def _operation(layout: Layout) -> Iterator[Judged]:
     yield "damping.modal_ratio", ratio, (0.0, 0.5), f"{ratio:.4g}", "0.005 to 0.05", "percent meant?"
     yield "damping.rayleigh_beta", beta, (0.0, 1e-2), f"{beta:.4g} s", "up to {1:g} s", "us meant?"
     yield "damping.rayleigh_alpha", alpha, (0.0, 1e4), f"{alpha:.4g} 1/s", "up to {1:g} 1/s", UNIT
-    yield from [item for item in _speeds(layout) if item[1] > item[2][1]][:1]
+    yield from _speed(layout, "operation.speed", model.operating_speed or 0.0)
     # Stress of the thickest section of a shaft under its own weight in the middle between its ends.
     for name, shaft in model.shafts.items():
         thick = _thickest(shaft.sections)
@@ -280,16 +289,19 @@ def _operation(layout: Layout) -> Iterator[Judged]:
         yield from _angles(address, part)
 
 
-def _speeds(layout: Layout) -> Iterator[Judged]:
-    """Speeds of shafts, gears and bearings: the first that is beyond all that is built is told."""
+def _speed(layout: Layout, address: str, speed: float) -> list[Judged]:
+    """What a speed of the input shaft does to shafts, gears and bearings: the first that is beyond all that is built is told."""
+    return [item for item in _speeds(layout, address, speed) if item[1] > item[2][1]][:1]
+
+
+def _speeds(layout: Layout, address: str, speed: float) -> Iterator[Judged]:
+    """Speeds of shafts, gears and bearings."""
     model = layout.model
-    if not model.operating_speed:
-        return
-    speeds = {name: abs(model.operating_speed * layout.train.ratio(name)) for name in model.shafts}
+    speeds = {name: abs(speed * layout.train.ratio(name)) for name in model.shafts}
 
     def row(shaft: str, value: float, most: float, what: str, usual: str) -> Judged:
         got = f"{speeds[shaft] * RPM_PER_RAD_S:.4g} rpm of shaft '{shaft}', {what}"
-        return "operation.speed", value, (0.0, most), got, usual, "rpm meant?"
+        return address, value, (0.0, most), got, usual, "rpm meant?"
 
     def runs(shaft: str, diameter: float, most: float, what: str) -> Judged:
         value = 0.5 * diameter * speeds[shaft]

@@ -11,6 +11,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.model.checks.plausibility import implausible
+from tests.models import spur_pair
 
 MODELS = Path(__file__).parents[3] / "models"
 # Address, the value that slipped, and what the warning asks.
@@ -203,3 +204,27 @@ def test_a_train_in_torsion_alone_may_stand_anywhere_along_z():
     assert modes.frequency_hz[-1] == pytest.approx(np.sqrt(1e8 / mass) / 2.0 / np.pi, rel=1e-9)
     with pytest.raises(rg.RotorgearError, match="faces that overlap"):
         rg.loads('motions = ["bending", "torsion"]\n' + text)
+
+
+@pytest.mark.parametrize(
+    ("ask", "argument"),
+    [
+        (lambda model, speed: rg.modal(model, speed=speed, modes=2), "speed"),
+        (lambda model, speed: rg.static(model, speed=-speed), "speed"),
+        (lambda model, speed: rg.campbell(model, stop=speed, points=3, modes=2), "stop"),
+        (lambda model, speed: rg.response(model, speeds=[100.0, speed], modal_damping=0.02), "speeds"),
+        (lambda model, speed: rg.transient(model, speed=[(0.0, 100.0), (1e-3, speed)], time=1e-3), "speed"),
+        (lambda model, speed: rg.sweep(model, {"operation.speed": [speed]}, discard=2, sample=2), "operation.speed"),
+    ],
+    ids=["modal", "static", "campbell", "response", "transient", "sweep"],
+)
+def test_a_bare_number_as_a_speed_is_asked_about_and_a_text_is_not(ask, argument) -> None:
+    model = spur_pair()
+    doubts = [text for text in ask(model, 9000.0).warnings if "rpm meant?" in text]
+    assert len(doubts) == 1
+    assert doubts[0].startswith(f"{argument}: 8.594e+04 rpm of shaft 'one'")
+    assert not any("rpm meant?" in text for text in ask(model, 150.0).warnings)
+
+
+def test_a_speed_with_its_unit_is_meant() -> None:
+    assert not any("rpm meant?" in text for text in rg.modal(spur_pair(), speed="90000 rpm", modes=2).warnings)
