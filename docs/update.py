@@ -30,7 +30,7 @@ from types import ModuleType
 from machinery.comparison import difference, texts_agree
 from machinery.made import Made, pictures, record, stale, tables
 from machinery.notebooks import notebooks, run_notebook
-from machinery.snippets import ROOT, Block, SnippetError, pages, rewritten, run_command, run_page
+from machinery.snippets import ROOT, Block, SnippetError, marked_blocks, pages, rewritten, run_command, run_page
 
 DOCS = Path(__file__).resolve().parent
 
@@ -91,7 +91,7 @@ def notebook_changes(file: Path) -> Iterator[tuple[Path, str, str]]:
 
 
 def draw(wanted: Collection[Made]) -> None:
-    """Draw pictures again, each command once beside the models; where that fails, after the quick blocks of its page, or all.
+    """Draw pictures again, by the blocks of their page that say the command, or beside the models, or after all blocks.
 
     Raises:
         SnippetError: a command fails all the same.
@@ -99,10 +99,13 @@ def draw(wanted: Collection[Made]) -> None:
     for page, command in dict.fromkeys((made.page, made.command) for made in wanted):
         of_command = [made for made in wanted if (made.page, made.command) == (page, command)]
         block = Block(DOCS / f"{page}.md", 0, "console", "run", command, 0, True, "")
+        runs = [one for one in marked_blocks(block.page) if command in " ".join([one.argument, *one.text.split()])]
         with tempfile.TemporaryDirectory() as directory:
             place = Path(directory)
             shutil.copytree(ROOT / "models", place / "models")
-            for blocks in ("none", "quick", "all"):
+            if runs:  # a later block may change the files that it reads
+                list(run_page(block.page, place, long=runs[0].long))
+            for blocks in () if runs else ("none", "quick", "all"):
                 if blocks != "none":
                     list(run_page(block.page, place, long=blocks == "all"))
                 try:
