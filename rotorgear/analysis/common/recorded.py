@@ -70,7 +70,8 @@ def _doubts(model: Model, given: Mapping[str, Any]) -> Iterator[str]:
             yield from implausible_speed(model.layout, name, max(bare))
     over = given.get("over")
     for address, values in over.items() if isinstance(over, Mapping) else ():
-        if bare := [value for value in _numbers(values) if address != "speed"]:
+        # Names without a dot, as speed or the torque of a mesh map, are no addresses.
+        if bare := [value for value in _numbers(values) if "." in address]:
             for extreme in {min(bare), max(bare)}:
                 yield from implausible(model.with_(address, extreme).layout)
 
