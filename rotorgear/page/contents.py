@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -22,6 +21,7 @@ from rotorgear.analysis.standards.standards import HIGHEST, judged
 from rotorgear.analysis.static.static import static
 from rotorgear.analysis.teeth.gear_sheet import gear
 from rotorgear.analysis.teeth.mesh import mesh
+from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -52,13 +52,13 @@ class Contents:
     def run(self, name: str, begins: float, analysis: Callable[[], Any]) -> Any:
         """Run an analysis, which begins at a fraction of the whole; what the model lacks for it is kept as the reason why not."""
         self.progress(begins, name.replace("_", " "))
-        start = time.process_time()
+        start = cpu_seconds()
         try:
             self.results[name] = analysis()
         except RotorgearError as error:
             self.missing[name] = str(error)
             return None
-        self.seconds[name] = time.process_time() - start
+        self.seconds[name] = cpu_seconds() - start
         return self.results[name]
 
 

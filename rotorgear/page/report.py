@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -12,6 +11,7 @@ from typing import Any
 
 from rotorgear.analysis.common.recorded import setting
 from rotorgear.analysis.rig.rig_file import read_rig_lines
+from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import replacing
 from rotorgear.export.hdf5 import read
@@ -94,9 +94,9 @@ def report(
             expected = "a convergence study was expected (rotorgear accuracy --save)"
             raise AnalysisError(f"{path}: {expected}, this is a {stored.kind} result")
         studies.append(stored)
-    start = time.process_time()
+    start = cpu_seconds()
     found = computed(built, lines, grade, progress)
-    found.seconds_of_all = time.process_time() - start
+    found.seconds_of_all = cpu_seconds() - start
     numbers = {
         "analysis": "report",
         "title": built.title,

@@ -223,8 +223,7 @@ class BearingSheet(ModelResult, kind="bearing"):
             f"error: K and C {error_words(self.error_estimate)}, {seen}; the law at the state printed "
             f"differs from the load of the gearbox by {error_words(self.consistency)}"
         )
-        total = self.seconds["total"]
-        yield f"{self.cpu_seconds:.5f} s of CPU for the bearing at one speed and load, {total:.2f} s in all"
+        yield f"{self.cpu_seconds:.5f} CPU s for the bearing at one speed and load, {self.cost} in all"
         if self.film is not None:
             yield from self._stability()
         yield from (*self.remarks(), "")

@@ -202,7 +202,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         if not crossings:
             excited = f"{sum(item.excited for item in self.crossings)} of them of modes that the line can excite"
             yield f"{len(self.crossings)} crossings, {excited}; --crossings lists them"
-        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield f"{self.dofs} dofs, {self.cost}; {self.method}"
         estimates = self.error_estimate[np.isfinite(self.error_estimate)]
         if estimates.size:
             yield f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}"

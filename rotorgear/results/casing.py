@@ -60,7 +60,7 @@ class CasingRow(Record):
     seats: tuple[CasingSeat, ...] = of("bearing seats", "", "seat", record=CasingSeat)
     notes: tuple[str, ...] = of("sentences", "", "note", note=" on what was done with the mesh")
     memory_bytes: float | None = of("largest memory of the process", "B", note=", or `null`")
-    seconds: dict[str, float] = of("wall time", "s", "STEP")
+    seconds: dict[str, float] = of("CPU time", "s", "STEP")
     points: np.ndarray = of("points of the surface", "m", "point", "xyz", json=None)
     triangles: np.ndarray = of("triangles of the surface", "", "triangle", "corner", json=None)
     free_shapes: np.ndarray = of(
@@ -91,7 +91,7 @@ class CasingRow(Record):
         yield ("seats", f"connection {self.connection}")
         if self.memory_bytes:
             yield ("largest memory", f"{self.memory_bytes / 1e9:.2f} GB")
-        yield ("seconds", ", ".join(f"{step} {value:.1f}" for step, value in self.seconds.items()))
+        yield ("CPU seconds", ", ".join(f"{step} {value:.1f}" for step, value in self.seconds.items()))
 
 
 class CasingSurvey(Result, kind="casing"):

@@ -151,7 +151,7 @@ class SweepRung(Record):
 
     steps: int = of("steps", note=" in a period of the fastest mesh", column="steps")
     count: int = of("periods sampled (least common periods)", column="periods")
-    seconds: float = of("wall time", "s", note=" of one run, CPU time")
+    seconds: float = of("CPU time", "s", note=" of one run")
     exponent: float = of("mean of the largest Lyapunov exponents", form="+.3f", column="LE")
     scatter: float = of("standard deviation of these exponents over the runs", form=".3f", column="scatter")
     stated: float = of("standard error that one run states", note=", the median", form=".3f", column="stated")
@@ -189,12 +189,12 @@ class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy
         kinds = ", ".join(sorted({kind for rung in self.rungs for kind in rung.motion}))
         at = "" if self.speed is None else f" at {self.speed * RPM_PER_RAD_S:.6g} rpm"
         yield from (Line(f"{self.title}: one point{at} from {self.runs} states ({kinds})"), "")
-        time = Column("seconds", "seconds", lambda seconds: f"{seconds:.3f} s")
+        time = Column("CPU s", "seconds", ".3f")
         values = ("exponent", "scatter", "stated", "peak_to_peak", "peak_to_peak_scatter", "dynamic_factor", "error")
         yield from (table_of(self, "rungs", "steps", "count", time, *values), "")
         yield (
             "LE: largest Lyapunov exponent per period of the fastest mesh; scatter: standard deviation over the states; stated: "
-            "standard error that one run states; seconds: CPU time of one run; error: of p-p and K_dyn, against "
+            "standard error that one run states; CPU s: of one run; error: of p-p and K_dyn, against "
             f"{self.reference}"
         )
         yield from (*self.remarks(), "")

@@ -98,7 +98,7 @@ class CriticalResult(AboutEquilibrium, kind="critical"):
         # The residuals' power of ten; below 1e-12 they are rounding.
         bound = 10.0 ** math.ceil(math.log10(max(self.worst_residual, 1e-12)))
         worst = max((one.error_estimate for one in self.speeds), default=0.0)
-        yield from ("", f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}")
+        yield from ("", f"{self.dofs} dofs, {self.cost}; {self.method}")
         yield f"substituted back: |w - p W| / (p W) at most {bound:.0e}"
         yield f"estimated relative discretisation error of the speeds at most {error_words(worst)}"
         yield from self.remarks()

@@ -142,7 +142,7 @@ class FrequencyResponse(BetweenPlaces, kind="frf"):
                     size = f"{'' if peak.resolved else '> '}{peak.size:.3e}"
                     rows.append((entry, place, f"{peak.frequency_hz:.2f}", size, self.unit(o, i, quantity)))
         yield from ("", grid(rows, "force at", "response at", "peak Hz", quantity, "unit", left=2, caption="Peaks"), "")
-        yield f"{counted(len(hz), 'frequencies')}, {self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield f"{counted(len(hz), 'frequencies')}, {self.dofs} dofs, {self.cost}; {self.method}"
         yield (
             f"residual {error_words(self.residual)} of the forces inside; on a finer mesh the peaks change by "
             f"{error_words(self.error_estimate)}"

@@ -317,7 +317,7 @@ class MeshResult(Result, kind="mesh"):
             # Teeth in the plane take nothing worth a word.
             told = self.memory_bytes is not None and any(np.ptp(helix.z) > 0.0 for helix in self.helix)
             memory = f", {1e-9 * (self.memory_bytes or 0.0):.1f} GB" if told else ""
-            yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s{memory}"
+            yield f"{self.dofs} dofs, {self.cost}{memory}"
 
     def _cycle(self) -> Iterator[tuple[str, str, str, str]]:
         """Rows of what the mesh does over its cycle: name, value, the same per width of a helix, estimated error."""

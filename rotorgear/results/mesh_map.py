@@ -69,4 +69,4 @@ class MeshMap(OverLoads, kind="mesh_map"):
         heads = ("torque", "misalignment", "STE pp", "order 1", "2", "3", "p_max", "K_Hbeta", "k mean")
         yield from (grid(rows, *heads, caption="Over torque and misalignment", no_wrap=True), "")
         yield from self.remarks()
-        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s"
+        yield f"{self.dofs} dofs, {self.cost}"

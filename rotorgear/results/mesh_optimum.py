@@ -74,7 +74,7 @@ class MeshOptimum(OverLoads, kind="mesh_optimum"):
         yield from self.remarks()
         if self.status != "success":
             yield f"Warning: {self.status}"
-        yield from (f"{self.seconds['total']:.1f} s", "", "for the model file:", *self.lines.splitlines())
+        yield from (f"{self.cost}", "", "for the model file:", *self.lines.splitlines())
 
     def _at_loads(self) -> Table:
         """What the best flanks do at each operating point, and in the mean."""

@@ -178,7 +178,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
             kinetic = Column("kinetic, by part", lambda k: _largest(self.kinetic_energy, k))
             strain = Column("strain, by part", lambda k: _largest(self.strain_energy, k))
             yield table_over(self, "mode", number, kinetic, strain, caption="Energy shares", titled=True)
-        yield from ("", f"{self.dofs} dofs, {self.mesh_text}, {self.seconds['total']:.2f} s; {self.method}")
+        yield from ("", f"{self.dofs} dofs, {self.mesh_text}, {self.cost}; {self.method}")
         estimates = self.error_estimate[np.isfinite(self.error_estimate)]
         if estimates.size:
             yield f"error: estimated relative error of each frequency; largest {estimates.max():.1e}"

@@ -205,7 +205,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
         if self.contact:
             shown = "p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact"
         yield from ("", f"|mu|: largest Floquet multiplier; {shown}", f"{self.dofs} dofs; {self.method}")
-        yield f"{self.cpu_per_point:.3g} s a point, {self.seconds['total']:.2f} s in all"
+        yield f"{self.cpu_per_point:.3g} CPU s a point, {self.cost} in all"
         if self.error_estimate == self.error_estimate:
             yield f"error estimate {self.error_estimate:.1e} of the motions' coefficients"
         yield from (*self.remarks(), "")

@@ -215,7 +215,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         if self.contact_mesh:
             yield TRANSMISSION_WORDS
         yield "amplitudes are half of peak to peak, each order by itself; forces without their mean"
-        yield f"{counted(len(self.speeds), 'speeds')}, {self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield f"{counted(len(self.speeds), 'speeds')}, {self.dofs} dofs, {self.cost}; {self.method}"
         yield (
             f"solver error {error_words(self.solver_error)} at {self.checked} points checked; "
             f"on a finer mesh the peaks change by {error_words(self.error_estimate)}"

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 # The screen shows so many lines of a result, a notebook so many rows of a table; `text()` has them all.
 _LINES = 40
 _WIDTH = 80
+# Compilation below these CPU seconds goes untold.
+_WORTH_TELLING = 1.0
 
 
 def _said(key: str) -> Written:
@@ -56,7 +58,7 @@ class Result(Record):
     kinds: ClassVar[dict[str, type[Result]]] = {}
 
     seconds: dict[str, float] = of(
-        "wall time",
+        "CPU time",
         "s",
         "STEP",
         json=(
@@ -105,6 +107,13 @@ class Result(Record):
         cls.analysis_word = analysis or kind
         if kind:
             Result.kinds[kind] = cls
+
+    @property
+    def cost(self) -> str:
+        """CPU seconds in words, and how many of them went into compilation."""
+        compilation = self.seconds.get("compilation", 0.0)
+        words = f" ({compilation:.2f} of them compilation)" if compilation >= _WORTH_TELLING else ""
+        return f"{self.seconds['total']:.2f} CPU s{words}"
 
     @property
     def ended_early(self) -> bool:

@@ -74,4 +74,4 @@ class RootStress(Result, kind="root_stress"):
         yield f"{self.pinion_torque_n_m:.6g} N m on the pinion, preset {self.preset}, {self.positions} positions"
         yield from ("", upright(self, "gears", "largest principal stress", *_TOLD), "")
         yield from self.remarks()
-        yield f"{self.seconds['total']:.1f} s"
+        yield f"{self.cost}"

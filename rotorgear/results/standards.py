@@ -101,5 +101,5 @@ class StandardsResult(ModelResult, kind="standards"):
         verdict = Column("", "verdict", left=False)
         yield from (table_of(self, "checks", "rule", "part", "value", "limit", unit, verdict), "")
         yield from (f"{rule.name} ({rule.source}): {rule.formula}" for rule in self.rules)
-        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield f"{self.dofs} dofs, {self.cost}; {self.method}"
         yield from (*self.remarks(), "")

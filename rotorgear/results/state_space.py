@@ -88,4 +88,4 @@ class StateSpace(BetweenPlaces, kind="state_space"):
         else:
             size += f", twice the {self.dofs} dofs: nothing is reduced"
             error = f"for frequencies up to {self.fmax:.6g} Hz"
-        yield from (f"{size}; {self.seconds['total']:.2f} s", error, *self.remarks())
+        yield from (f"{size}; {self.cost}", error, *self.remarks())

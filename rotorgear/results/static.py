@@ -250,7 +250,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
             yield from ("", self.operating_points())
         yield from ("", self._moves(), "")
         yield "tilts and twist in urad; L and R: helix at the smaller and the larger z"
-        yield f"{self.dofs} dofs, {self.seconds['total']:.2f} s; {self.method}"
+        yield f"{self.dofs} dofs, {self.cost}; {self.method}"
         if self.faces:
             agreed = (
                 f"; shafts and faces agreed in {self.passes} pass{'es'[: 2 * (self.passes != 1)]}"

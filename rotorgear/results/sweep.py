@@ -37,7 +37,7 @@ class Reduction(Record):
     up_to: float = of("frequency up to which they were compared", "Hz")
     frequencies: int = of("at how many frequencies")
     bases: int = of("how many bases there are")
-    seconds: float = of("wall time", "s", note=" to find and check them")
+    seconds: float = of("CPU time", "s", note=" to find and check them")
 
     @property
     def error(self) -> float:
@@ -232,7 +232,7 @@ class SweepResult(ModelResult, kind="sweep"):
             f"{100.0 * self.tolerance:g} % of the peak to peak; chaotic: LE > {self.chaos:g}"
         )
         a_period = f"{fewest if fewest == most else f'{fewest} to {most}'} steps a mesh period"
-        yield from (f"{self.dofs} dofs, {a_period}, {self.seconds['total']:.2f} s", self.method)
+        yield from (f"{self.dofs} dofs, {a_period}, {self.cost}", self.method)
         if self.reduction:
             yield self.reduction.sentence
         yield from (*self.remarks(), "")

@@ -276,7 +276,7 @@ class TransientResult(ModelResult, kind="transient"):
             yield from (channels, "")
         if self.contact:
             yield f"TE: {TRANSMISSION_WORDS}; both peak to peak"
-        cost = f"{self.dofs} dofs, {self.steps} steps of {self.step:.4g} s, {self.seconds['total']:.2f} s"
+        cost = f"{self.dofs} dofs, {self.steps} steps of {self.step:.4g} s, {self.cost}"
         yield f"{cost}; {self.method} ({self.reason})"
         if self.error_estimate == self.error_estimate:
             more_modes = ", and one of more modes" if "modes with" in self.method else ""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-import time
 from dataclasses import replace
 from pathlib import Path
 
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.model.load import loads
 from rotorgear.model.model import model_hash
@@ -41,7 +41,7 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
         AnalysisError: no REXS file, a planetary, worm or bevel stage, or no such load case.
         ModelError: values are missing that nothing can replace, or the model would not be sound; all of them.
     """
-    clock = time.perf_counter()
+    clock = Clock()
     document = read_document(path)
     source = Path(path).name
     refuse_other_kinds(document, source)
@@ -70,6 +70,7 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
         model = loads(whole, source)
     except ModelError as error:
         raise ModelError(error.problems, f"{source}, read as a model") from None
+    clock.lap("import")
     return RexsImport(
         file=source,
         version=document.version,
@@ -85,7 +86,7 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
         warnings=tuple(account.warnings),
         method=f"REXS {document.version}",
         model_hash=model_hash(model),
-        seconds={"total": time.perf_counter() - clock},
+        seconds=clock.total(),
         settings={"load_case": load_case},
     )
 

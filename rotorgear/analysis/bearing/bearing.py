@@ -6,7 +6,6 @@ zero.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -31,6 +30,7 @@ from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
 from rotorgear.analysis.modal.modal import ModalRequest, modal
 from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.static.state_at import state_at
+from rotorgear.cpu import compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.inside import OilField, RollingLoads
 from rotorgear.forces.law import CYCLE_POINTS, ForceLaw
@@ -106,9 +106,9 @@ def bearing(
     progress(0.0, "equilibrium of the gearbox")
     state = law_at(laws_of(own, given), address)
     law = state.part.law
-    started = time.process_time()
+    started = cpu_seconds() - compiling_seconds()
     here = carried(state, law, given)
-    seconds = time.process_time() - started
+    seconds = cpu_seconds() - compiling_seconds() - started
     consistency = relative(here.force - state.force, state.force)
     progress(0.2, "error estimate")
     other = carried(state, on_grid(law, 2.0), given, 2 * CYCLE_POINTS)

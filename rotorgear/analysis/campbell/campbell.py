@@ -26,7 +26,7 @@ from rotorgear.analysis.common.casings import casing_warnings, reduction_errors,
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
 from rotorgear.analysis.modal.modal import ModalRequest
@@ -34,6 +34,7 @@ from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.state_at import linear_system
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent

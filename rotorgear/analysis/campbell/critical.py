@@ -24,13 +24,14 @@ from rotorgear.analysis.common.casings import reduction_errors, with_casing_mode
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.left_out import left_out
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
 from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.state_at import linear_system
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments

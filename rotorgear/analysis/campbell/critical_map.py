@@ -15,10 +15,11 @@ from rotorgear.analysis.campbell.crossings import whirl_for
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
 from rotorgear.analysis.common.excitation import excitation_orders
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import whirl_numbers
 from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.static.state_at import state_at
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.spring import constant_spring
 from rotorgear.model.layout.state import State

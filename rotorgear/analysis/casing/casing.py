@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
 
-from rotorgear.analysis.common.recorded import Clock
 from rotorgear.analysis.common.request import quantity
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.reduction import MeshModes, free_modes, held_modes, reduce, rigid_residual
 from rotorgear.casings.settings import BEYOND
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.memory import largest_memory
 from rotorgear.model.layout.casings import casing_settings
@@ -48,7 +47,7 @@ def casing(
     Raises:
         AnalysisError: no casing of that name, or what is wrong with its mesh. MissingExtraError: meshio or scikit-fem is missing.
     """
-    started = time.perf_counter()
+    clock = Clock()
     if not 1 <= modes <= _MOST_MODES:
         raise AnalysisError(f"modes: got {modes}, expected a number from 1 to {_MOST_MODES}")
     highest = None if fmax is None else quantity(fmax, "frequency", "fmax")
@@ -57,10 +56,11 @@ def casing(
         one: _row(model, one, modes, highest, part_of(progress, number / len(names), (number + 1) / len(names)))
         for number, one in enumerate(names)
     }
+    clock.lap("casings")
     return CasingSurvey(
         title=model.title,
         casings=rows,
-        seconds={"total": time.perf_counter() - started},
+        seconds=clock.total(),
         method="Craig-Bampton with residual shapes; modes by Lanczos on the factored stiffness",
         model_hash=model_hash(model),
         settings={"name": name, "modes": modes, "fmax": highest},

@@ -9,6 +9,8 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from itertools import islice
 from typing import Any, Protocol
 
+from rotorgear.cpu import taken, timed
+
 # Seconds between two looks at work that takes long.
 _EVERY = 1.0
 
@@ -45,12 +47,13 @@ def in_order(
     try:
         while True:
             room = getattr(pool, "ahead", 2 * (workers or os.cpu_count() or 1)) - len(waiting)
-            waiting.extend(pool.submit(function, *task) for task in islice(rest, max(0, room)))
+            some = islice(rest, max(0, room))
+            waiting.extend(pool.submit(timed, function, *task) for task in some)
             if not waiting:
                 return
             while own and watch and wait([waiting[0]], timeout=_EVERY).not_done:
                 watch()
-            yield waiting[0].result()
+            yield taken(waiting[0].result())
             waiting.popleft()
     finally:
         stop()

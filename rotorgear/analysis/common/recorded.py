@@ -4,7 +4,6 @@ values of the model that make no sense."""
 from __future__ import annotations
 
 import inspect
-import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import wraps
@@ -14,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.names import estimated
 from rotorgear.model.checks.plausibility import implausible, implausible_speed
@@ -43,7 +43,7 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(analysis)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
-        start = time.perf_counter()
+        clock = Clock()
         bound = signature.bind(*args, **kwargs)
         bound.apply_defaults()
         (_, subject), *given = bound.arguments.items()
@@ -51,7 +51,8 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
             raise AnalysisError(f"{analysis.__name__}: {_no_model(subject)}")
         result = analysis(*args, **kwargs)
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
-        seconds = {"total": time.perf_counter() - start} | result.seconds
+        clock.lap("analysis")
+        seconds = result.seconds or clock.total()
         doubts = (*_doubts(subject, dict(given)), *estimated(subject.layout)) if isinstance(subject, Model) else ()
         warnings = tuple(dict.fromkeys((*result.warnings, *doubts)))
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
@@ -120,21 +121,3 @@ def setting(value: Any) -> Any:
     if isinstance(value, Path):
         return str(value)
     return getattr(value, "__name__", None) or repr(value)
-
-
-class Clock:
-    """Seconds that went into each step."""
-
-    def __init__(self) -> None:
-        self.laps: dict[str, float] = {}
-        self._last = time.perf_counter()
-
-    def lap(self, name: str) -> None:
-        """Add the time since the last lap to a step."""
-        now = time.perf_counter()
-        self.laps[name] = self.laps.get(name, 0.0) + now - self._last
-        self._last = now
-
-    def total(self) -> dict[str, float]:
-        """Seconds by step, and their sum as "total"."""
-        return {**self.laps, "total": sum(self.laps.values())}

@@ -8,7 +8,6 @@ says so.
 
 from __future__ import annotations
 
-import time
 import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
@@ -16,6 +15,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of
@@ -167,19 +167,19 @@ def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, np.ndarray,
             tracemalloc.start()
         tracemalloc.reset_peak()
         before = tracemalloc.get_traced_memory()[0]
-        start = time.process_time()
+        start = cpu_seconds()
         try:
             result = run()
-            first = time.process_time() - start
+            first = cpu_seconds() - start
             memory = tracemalloc.get_traced_memory()[1] - before
         finally:
             if not watched:
                 tracemalloc.stop()
         seconds: list[float] = []
         while len(seconds) < repeat or (repeat > 1 and len(seconds) < _MOST and sum(seconds) < _SHORT):
-            start = time.process_time()
+            start = cpu_seconds()
             run()
-            seconds.append(time.process_time() - start)
+            seconds.append(cpu_seconds() - start)
             if seconds[-1] > _LONG:
                 break
     return result, np.array(seconds or [first]), memory

@@ -12,7 +12,7 @@ from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.notes import gathering, mode_warnings
 from rotorgear.analysis.common.points import point_amplitudes
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.modal import refine
@@ -25,6 +25,7 @@ from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, errors_of, 
 from rotorgear.analysis.modal.solve import Modes, Wanted, solve
 from rotorgear.analysis.modal.whirl import whirl_of, whirl_words
 from rotorgear.analysis.static.state_at import linear_system
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model

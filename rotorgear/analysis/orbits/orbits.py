@@ -7,7 +7,6 @@ Error of motions along a branch: from twice the harmonics and instants, or from 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
@@ -15,12 +14,13 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.left_out import GIVE_DAMPING
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed
 from rotorgear.analysis.orbits.family import Outputs, SystemFamily, outputs_of, range_of
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches, special_curves
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
 from rotorgear.analysis.transient.notes import left_out_in_time
+from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -170,12 +170,12 @@ def orbits(
             # Of small systems transients from rest cost little.
             small = _coordinates(plant) <= MOST_COORDINATES
             from_rest = partial(settled, problem, family, progress=progress) if small else None
-            used = time.process_time()
+            used = cpu_seconds() - compiling_seconds()
             first = first_node(problem, family, from_transient=from_transient, progress=progress)
             branches = main_branches(problem, first, plan, progress, from_rest)
             if switch:
                 branches += [twice for branch in branches for twice in doubled_branches(branch, plan, progress)]
-            used = time.process_time() - used
+            used = cpu_seconds() - compiling_seconds() - used
             progress(0.95, "error estimate")
             error = largest_error(branches[0], outputs.columns)
             if accuracy is None or error <= accuracy or isinstance(problem, ShootingOrbits):

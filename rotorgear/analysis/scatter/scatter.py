@@ -7,7 +7,6 @@ that holds nominal modes and what the numbers add to them, at a small share of t
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -33,6 +32,7 @@ from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.analysis.static.static import solved
 from rotorgear.analysis.transient.histories import Stream
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model, model_hash
 from rotorgear.model.parts.operation import Scatter
@@ -128,7 +128,7 @@ def scatter(
     share_of(participation, "participation", "0.01")
     spreads = spreads_of(model, _given(model, free, sigma, tolerance, distribution, sharing))
     check_speed_is_fixed(spreads.numbers.addresses, "--speed, and compare runs")
-    begun = clock.perf_counter()
+    clock = Clock()
     with single_thread(0):
         plan = Plan(elements or 1)
         if not elements:
@@ -148,7 +148,7 @@ def scatter(
         study, error, checked, lines_left = _study(
             spreads, at, plan, modes, participation, sharing, Z[:samples], part_of(progress, 0.05, 0.3)
         )
-        laps = {"basis": clock.perf_counter() - begun}
+        clock.lap("basis")
         settings = {
             "model": model_hash(model),
             "run": f"{samples} {sampling} {seed} {sobol} {spreads.size} {spreads.numbers.addresses} {modes} {at} {plan} "
@@ -165,10 +165,10 @@ def scatter(
             blocks.append(block)
             running(len(blocks) / len(starts), f"{min(len(blocks) * _BLOCK, len(Z))} of {len(Z)} samples")
         values = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-        laps["samples"] = clock.perf_counter() - begun - laps["basis"]
+        clock.lap("samples")
         known = {"sampling": sampling, "checked_samples": checked, "frequency_basis_error": error}
         result = gathered(study, Z, values, samples, seed, least_margin, **known)
-    laps["total"] = clock.perf_counter() - begun
+    clock.lap("samples")
     notes = (
         "damping: natural frequencies are those of the undamped rotating system",
         *lines_left,
@@ -179,7 +179,7 @@ def scatter(
         ),
     )
     progress(1.0, "done")
-    return replace(result, left_out=notes, seconds=laps)
+    return replace(result, left_out=notes, seconds=clock.total())
 
 
 def _given(

@@ -3,7 +3,6 @@ of a periodic motion."""
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,6 +17,7 @@ from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equati
 from rotorgear.analysis.orbits.verify import run_periods
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.analysis.transient.transient import transient
+from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -190,9 +190,9 @@ def sweep_convergence_study(
     rungs = []
     for number, (n, count) in enumerate(plans):
         progress(0.2 + 0.8 * number / len(plans), f"{n} steps, {count} periods")
-        begun = clock.process_time()
+        begun = cpu_seconds()
         runs = run(n, count)
-        seconds = clock.process_time() - begun
+        seconds = cpu_seconds() - begun
         exponents = runs.lyapunov[0, :, 0]
         mean = sizes(runs).mean(axis=1)
         scatter = sizes(runs).std(axis=1, ddof=1)

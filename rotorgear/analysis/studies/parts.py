@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +21,7 @@ from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.teeth.errors import error_parts
 from rotorgear.analysis.teeth.request import mesh_request, solve_helices
+from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, mesh_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
@@ -143,11 +143,11 @@ def mesh_convergence_study(
 
     def solved(pair: ToothPair, told: Progress) -> tuple[ContactProblem, MeshCycle, float, float]:
         """The contact, its cycle, and CPU seconds of the compliances and of the cycle."""
-        start = time.process_time()
+        start = cpu_seconds()
         problem = contact_problem(pair, part_of(told, 0.0, 0.8), fresh=True)
-        middle = time.process_time()
+        middle = cpu_seconds()
         cycle = mesh_cycle(problem, request.base_force, np.arange(POSITIONS) / POSITIONS, part_of(told, 0.8, 1.0))
-        return problem, cycle, middle - start, time.process_time() - middle
+        return problem, cycle, middle - start, cpu_seconds() - middle
 
     runs: list[tuple[str, ToothPair]] = [
         (name, replace(teeth, fe=sized(teeth.fe, size, modules)))

@@ -13,7 +13,6 @@ then, and the frequencies need not hit them.
 from __future__ import annotations
 
 import hashlib
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
@@ -21,6 +20,7 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.common.casings import rates
+from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction
 from rotorgear.solvers.batch.columns import PRESCRIBED
@@ -111,7 +111,7 @@ class Reducer:
         Raises:
             AnalysisError: no basis reaches the wanted error.
         """
-        begun = time.perf_counter()
+        begun = cpu_seconds()
         first = max(points, key=lambda point: abs(point.speed))
         local = first.local
         scale = scale_of(first.local)
@@ -161,7 +161,7 @@ class Reducer:
                 top / (2.0 * np.pi),
                 probes.count,
                 1,
-                time.perf_counter() - begun,
+                cpu_seconds() - begun,
             )
         )
         return [(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points]

@@ -15,8 +15,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.request import mesh_request, solve_helices
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import root_section, tooth_outline
 from rotorgear.gears.loaded.contact_points import patch_loads

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
 from rotorgear.analysis.teeth.request import MeshRequest, SolvedHelices, mesh_request, solve_helices
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair

@@ -11,10 +11,11 @@ from itertools import product
 
 import numpy as np
 
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import quantity
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
 from rotorgear.analysis.teeth.request import MeshRequest, mesh_request, solve_helices
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.face import load_per_width
 from rotorgear.gears.loaded.tooth_contact import contact_problem

@@ -20,10 +20,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import quantity
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
 from rotorgear.analysis.teeth.mesh_map import MeshFigures, figures_at, operating_points, operating_values
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.loaded.tooth_contact import contact_problem

@@ -20,13 +20,14 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.common.recorded import Clock, recorded
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.transient.histories import Histories, Stream, run_task
 from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, thinned, transient_warnings
 from rotorgear.analysis.transient.request import Grid, Task, coarser, damped, grid_of, integrator_of, prepare, run_up
 from rotorgear.analysis.transient.statistics import Quantities, of_channels, of_meshes, quantities_of
+from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.note import Note

@@ -17,16 +17,20 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.compiled_once import CompiledOnce
+from rotorgear.cpu import CompilationWatch
 from rotorgear.disk_cache import user_cache_folder
 from rotorgear.errors import MissingExtraError
 from rotorgear.fingerprint import fingerprint
 
 try:
     import numba
+    from numba.core import event
     from numba.core.errors import NumbaExperimentalFeatureWarning
 except ImportError:
     raise MissingExtraError("Integration in time", "numba", "transient") from None
 
+# The lock is held while a function is compiled, or read from the disk.
+event.register("numba:compiler_lock", event.Listener.register(CompilationWatch)())
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 # Places in the package whose functions are compiled, or compiled into others.
 COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/batch", "solvers/periodic")
