@@ -134,12 +134,12 @@ RULES: dict[type[BaseModel], str] = {
     CornerImpact: """
         The force of each helix, beside the contact force.""",
     RollingElements: """
-        With a `designation` no other key is required. It is one of the series 60, 62, 63 (deep groove), 70, 72, 73 (angular
-        contact), QJ 0, 2, 3 (four-point), N, NU, NJ, NUP 2 and 3 (cylindrical), 302, 303, 313, 320, 322, 323 (tapered). O
-        arrangement: `contact_angle` positive at the smaller z, negative at the larger, X the other way round. With a `stiffness`
-        beside them (along x, y, axial and tilt), statics and linear analyses keep that and say so; without one, statics solves
-        for the contacts, and linear analyses take the tangent there, the mean over a pitch of the elements. Transients and
-        sweeps follow the contacts.""",
+        With a `designation` no other key is required. It is one of the series 60, 62, 63, 64, 160, 618, 619 (deep groove), 70,
+        72, 73, 718, 719 (angular contact), QJ 0, 2, 3 (four-point), N, NU, NJ, NUP 2, 3, 4, 10, 22, 23 (cylindrical), 302, 303,
+        313, 320, 322, 323, 329 to 332 (tapered). O arrangement: `contact_angle` positive at the smaller z, negative at the
+        larger, X the other way round. With a `stiffness` beside them (along x, y, axial and tilt), statics and linear analyses
+        keep that and say so; without one, statics solves for the contacts, and linear analyses take the tangent there, the mean
+        over a pitch of the elements. Transients and sweeps follow the contacts.""",
     JournalGeometry: """
         The film carries across; what holds the shaft along z is a support or a bearing of its own. Statics, transients and
         sweeps solve its pressure, linear analyses take its stiffness and damping at the static equilibrium, over speed.

@@ -6,9 +6,16 @@ Rotors and Foundations (Springer 1993), also M. I. Friswell et al., Dynamics of 
     balls    k = k_b Z^(2/3) D^(1/3) f^(1/3) cos^(5/3)(alpha),  k_b = 13e6 N^(2/3) m^(-4/3)
     rollers  k = k_r Z^0.9 l^0.8 f^0.1 cos^1.9(alpha),          k_r = 1.0e9 N^0.9 m^(-1.8)
 
-with Z elements of diameter D and length l, contact angle alpha and static load f. Most of these are not known, so that the result
-is an order of size: elements of 0.3 times the difference of the diameters, and a load of a tenth of the static rating. Elements
-that are equally loaded have an axial stiffness of 2 tan^2(alpha) times the radial one.
+with Z elements of diameter D and length l, contact angle alpha and static load f, of which the most loaded element takes
+s f/(Z cos(alpha)), s = 4.37 of balls and 4.08 of rollers (Stribeck). Under a thrust F all elements take F/(Z sin(alpha)), so that
+the same contacts have the axial stiffness
+
+    balls    k = s^(2/3) k_b Z^(2/3) D^(1/3) F^(1/3) sin^(5/3)(alpha)
+    rollers  k = s^0.9 k_r Z^0.9 l^0.8 F^0.1 sin^1.9(alpha)
+
+A radial bearing is estimated at a tenth of its radial static rating, with an axial stiffness of 2 tan^2(alpha) times the radial
+one, as of elements that are equally loaded; where the file has an axial static rating, and for a thrust bearing, at a tenth of
+that. Elements are those of `designations`. The result is an order of size.
 """
 
 from __future__ import annotations
@@ -17,6 +24,15 @@ import math
 import re
 from typing import TypeAlias
 
+from rotorgear.forces.designations import (
+    BALLS,
+    THRUST,
+    bore_of_code,
+    designated,
+    outer_diameter,
+    rolling_elements,
+    words_of,
+)
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.shafts import ShaftPart
@@ -25,69 +41,84 @@ from rotorgear.rexs.toml_text import Names, Table, quantity, row, text
 
 _BALL = 13e6
 _ROLLER = 1.0e9
-# Diameter of the elements over the difference of outer diameter and bore, and the share of their circle that they fill.
-_ELEMENT = 0.3
-_FILLED = {"ball": 0.6, "roller": 0.8}
-# Factors of the static rating, ISO 76: C_0 = 12.3 Z D^2 for balls and 44 (1 - D/d_m) Z l D for rollers, in N and mm.
-_RATING = {"ball": 12.3e6, "roller": 44e6}
+# Factors of the static ratings, across and along, ISO 76, in N and mm: times Z D^2 of balls, (1 - D cos(alpha)/d_m) Z l D of
+# rollers, and cos(alpha) or sin(alpha).
+_RATING = {True: (12.3e6, 49e6), False: (44e6, 220e6)}
 _LOAD = 0.1
-# Contact angle of a deep groove bearing under a thrust.
+# Load of the most loaded element of balls and of rollers over the mean, times cos(alpha), without clearance (Stribeck).
+_STRIBECK = {True: 4.37, False: 4.08}
+# Contact angle of a deep groove bearing under a thrust, and what the flanges of cylindrical rollers are taken for.
 _WORKING_ANGLE = math.radians(15.0)
-# ISO 15: D = d + f d^0.9 in mm by the series of diameters.
-_DIAMETER_SERIES = {"7": 0.34, "8": 0.45, "9": 0.62, "0": 0.84, "1": 1.12, "2": 1.48, "3": 1.92, "4": 2.56}
-_BORE_CODES = {"00": 10.0, "01": 12.0, "02": 15.0, "03": 17.0}
+# From here on a bearing carries along the shaft; and from here on nothing across.
+_THRUST = math.radians(45.0)
+_ALONG = math.radians(89.0)
 
 
-# Bore and outer diameter in m, and the words that say where they come from.
-Size: TypeAlias = tuple[float, float, str]
+# Bore, outer diameter and width (nan: not known) in m, and the words that say where they come from.
+Size: TypeAlias = tuple[float, float, float, str]
 
 
 def size_of_designation(designation: str) -> Size | None:
-    """Bore and outer diameter by a designation such as 6305-2Z, NUP204E, 33014 or K 50x58x25; None where it says none."""
+    """Size by a designation such as 6305-2Z, NUP204E, 33014, NA 4908 or K 50x58x25; None where it says none."""
     sizes = re.search(r"(\d+(?:\.\d+)?)\s*[xX*]\s*(\d+(?:\.\d+)?)", designation)
     if sizes:
-        bore = float(sizes[1])
-        outer = float(sizes[2])
-        return (1e-3 * bore, 1e-3 * outer, "designation") if 0.0 < bore < outer else None
+        bore = 1e-3 * float(sizes[1])
+        outer = 1e-3 * float(sizes[2])
+        return (bore, outer, math.nan, "designation") if 0.0 < bore < outer else None
+    found = designated(designation, anywhere=True)
+    if found is not None:
+        return found.bore, found.outer, found.width, f"designation {found.name}, ISO 15"
     digits = re.search(r"\d{3,6}", designation)
     if digits is None:
         return None
-    code = digits[0][-2:]
-    bore = _BORE_CODES.get(code, 5.0 * float(code))
-    series = _DIAMETER_SERIES.get(digits[0][-3])
-    if series is None or bore <= 0.0:
-        return None
-    return 1e-3 * bore, 1e-3 * (bore + series * bore**0.9), "designation, ISO 15"
+    bore = bore_of_code(digits[0][-2:])
+    outer = outer_diameter(bore, digits[0][-3])
+    return None if math.isnan(outer) else (bore, outer, math.nan, "designation, ISO 15")
 
 
-def estimated(kind: str, size: Size, static_rating: float | None, contact_angle: float) -> tuple[float, float, str]:
-    """Radial and axial stiffness in N/m of a "ball" or "roller" bearing by its size, and what they were estimated from.
+def estimated(
+    kind: str, size: Size, ratings: tuple[float | None, float | None], contact_angle: float, reason: str
+) -> tuple[float, float, str, str]:
+    """Radial and axial stiffness in N/m of a type of bearing by its size, and what each was estimated from.
 
     Args:
-        kind: of its elements.
-        size: bore and outer diameter.
-        static_rating: C_0 in N, or None: by ISO 76.
-        contact_angle: in rad; of the axial stiffness, where 0, that of a deep groove bearing under a thrust.
+        kind: of `designations`, such as "deep groove" or "thrust ball".
+        size: bore, outer diameter and width.
+        ratings: radial and axial static rating in N, each None where the file has none: by ISO 76.
+        contact_angle: in rad; 0: none across, a working angle along the shaft.
+        reason: where that angle is from.
     """
-    bore, outer, source = size
-    element = _ELEMENT * (outer - bore)
-    pitch = 0.5 * (outer + bore)
-    count = max(4.0, math.floor(_FILLED[kind] * math.pi * pitch / element))
-    if not static_rating or static_rating <= 0.0:
-        shape = 1.0 if kind == "ball" else 1.0 - element / pitch
-        static_rating = _RATING[kind] * shape * count * element**2
-    load = _LOAD * static_rating
-    tilt = math.cos(contact_angle)
-    if kind == "ball":
-        radial = _BALL * count ** (2.0 / 3.0) * element ** (1.0 / 3.0) * load ** (1.0 / 3.0) * tilt ** (5.0 / 3.0)
-    else:
-        radial = _ROLLER * count**0.9 * element**0.8 * load**0.1 * tilt**1.9
+    bore, outer, width, source = size
+    balls = kind in BALLS
+    count, element, pitch, length = rolling_elements(kind, bore, outer, width)
+    across, along = math.cos(contact_angle), math.sin(contact_angle)
+    area = count * element * (element if balls else length * (1.0 - element * across / pitch))
+    radial_rating, axial_rating = (
+        given if given and given > 0.0 else factor * area * part
+        for given, factor, part in zip(ratings, _RATING[balls], (across, along), strict=True)
+    )
+    # Of elements that all point along the load.
+    power = 2.0 / 3.0 if balls else 0.9
+    own = _BALL * (count**2 * element) ** (1.0 / 3.0) if balls else _ROLLER * count**0.9 * length**0.8
+    radial = own * (_LOAD * radial_rating) ** (1.0 - power) * across ** (1.0 + power)
+    angle = f"alpha = {math.degrees(contact_angle or _WORKING_ANGLE):.4g} deg ({reason})"
+    words = f"2 tan²(alpha) of the radial one, {angle}"
     axial = 2.0 * math.tan(contact_angle or _WORKING_ANGLE) ** 2 * radial
-    words = (
-        f"{kind}s by Krämer's formula with {count:.0f} of {1e3 * element:.2g} mm and {load:.2g} N, from {1e3 * bore:.4g} x "
+    if ratings[1] or contact_angle >= _THRUST:
+        direction = math.sin(contact_angle or _WORKING_ANGLE)
+        axial = _STRIBECK[balls] ** power * own * (_LOAD * axial_rating) ** (1.0 - power) * direction ** (1.0 + power)
+        rating = "axial static rating of the file" if ratings[1] else "axial static rating by ISO 76"
+        words = f"a thrust of {_LOAD * axial_rating:.2g} N, a tenth of the {rating}, {angle}"
+    if contact_angle >= _THRUST:
+        radial = axial / (2.0 * math.tan(contact_angle) ** 2) if contact_angle < _ALONG else 0.0
+    inside = (
+        f"{words_of(kind)} bearing, Krämer's formula with {count} of {1e3 * element:.2g} mm, from {1e3 * bore:.4g} x "
         f"{1e3 * outer:.4g} mm ({source})"
     )
-    return radial, axial, words
+    load = f"{_LOAD * radial_rating:.2g} N"
+    if contact_angle >= _THRUST:
+        load = "the axial one over 2 tan²(alpha)" if radial else "carries nothing across"
+    return radial, axial, f"{inside}, {load}" + (f", {angle}" if contact_angle else ""), f"{inside}, {words}"
 
 
 # A stiffness outside these bounds, in N/m and in N m/rad, is a placeholder for rigid (1e20, 1e23) or for free (0).
@@ -101,9 +132,50 @@ _ONE_PLACE = 1e-5
 _FITS = 0.35
 # Radial stiffness in N/m of a bearing of which neither kind nor size is known.
 _UNKNOWN = 2e8
-# Outer diameter over bore where the shaft's diameter is all that is known.
-_SERIES_2 = 1.48
-_ROLLER_WORDS = ("roller", "needle", "barrel", "tapered", "cylindrical")
+# Outer diameter over bore of shafts beside the table, where the shaft's diameter is all that is known.
+_OUTER_OVER_BORE = 1.8
+# Types by words of the file, the first that all stand there.
+_TYPE_WORDS = (
+    (("axial", "spherical"), "spherical thrust"),
+    (("axial", "roller"), "thrust roller"),
+    (("axial", "needle"), "thrust roller"),
+    (("axial",), "thrust ball"),
+    (("thrust", "roller"), "thrust roller"),
+    (("thrust",), "thrust ball"),
+    (("tapered",), "tapered"),
+    (("taper_roller",), "tapered"),
+    (("spherical",), "spherical"),
+    (("barrel",), "spherical"),
+    (("needle",), "needle"),
+    (("roller",), "cylindrical"),
+    (("cylindrical",), "cylindrical"),
+    (("four_point",), "four-point"),
+    (("self_aligning",), "self-aligning"),
+    (("angular",), "angular"),
+    (("ball",), "deep groove"),
+)
+# Contact angle in rad by the type, where neither the file nor the designation has one.
+_TYPE_ANGLES = {
+    "angular": math.radians(40.0),
+    "double angular": math.radians(30.0),
+    "four-point": math.radians(35.0),
+    "self-aligning": math.radians(10.0),
+    "tapered": math.radians(14.0),
+    "spherical": math.radians(11.0),
+    "thrust ball": 0.5 * math.pi,
+    "thrust roller": 0.5 * math.pi,
+    "spherical thrust": math.radians(50.0),
+}
+# Types that words for balls and for rollers leave open.
+_LIKE = {"deep groove": BALLS, "cylindrical": ("cylindrical", "tapered", "spherical", *THRUST[1:])}
+_AXIAL_RATINGS = (
+    "axial_static_load_rating",
+    "static_axial_load_rating",
+    "static_load_rating_axial",
+    "axial_static_capacity",
+    "static_axial_capacity",
+    "static_capacity_axial",
+)
 _PLAIN_WORDS = ("plain", "journal", "slide", "sliding", "hydrodynamic")
 _HELD_WORDS = ("both_directions", "positive", "negative", "true")
 _FREE_WORDS = ("no_direction", "none", "false", "no")
@@ -176,19 +248,22 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
     tilt = _given(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
     takes_radial = account.truth(part, "radial_force_absorption") is not False
     takes_axial = _takes_axial(part, designation, structure)
-    guessed = (0.0, 0.0, "")
+    guessed = (0.0, 0.0, "", "")
     if (takes_radial and radial is None) or (takes_axial and axial is None):
         guessed = _guess(part, seat, designation, structure)
     one_way = account.text(part, "axial_force_absorption") in ("positive", "negative")
-    of_radial = "2 tan²(alpha) of the radial one" + ("; held both ways, not one" if one_way else "")
+    of_axial = guessed[3] + ("; held both ways, not one" if one_way else "")
     # Stiffness by direction; the comment says which of it the file did not give.
     stiffness: dict[str, str] = {}
     reasons: list[str] = []
     for key, takes, value, guess, why in (
         ("radial", takes_radial, radial, guessed[0], guessed[2]),
-        ("axial", takes_axial, axial, guessed[1], of_radial),
+        ("axial", takes_axial, axial, guessed[1], of_axial),
     ):
         if not takes:
+            continue
+        if value is None and not guess:
+            account.left_out.append(f"{part}: its {key} stiffness: {why}")
             continue
         if value is None:
             value = float(f"{guess:.3g}")
@@ -236,47 +311,68 @@ def _takes_axial(part: Component, designation: str, structure: Structure) -> boo
     for word in map(str.lower, words):
         if word in (*_FREE_WORDS, *_HELD_WORDS):
             return word in _HELD_WORDS
-    # Where the file says nothing, the kind decides: cylindrical rollers N and NU and needles move freely along the shaft.
-    return _kind(part, designation, structure) == "ball" or "tapered" in account.text(part, "bearing_type")
+    # Where the file says nothing, the type decides: cylindrical rollers N and NU and needles move freely along the shaft.
+    letters = designation.upper()
+    return (
+        _kind(part, designation, structure)[0] not in ("plain", "unknown", "needle", "cylindrical") or "NUP" in letters
+    )
 
 
-def _kind(part: Component, designation: str, structure: Structure) -> str:
+def _kind(part: Component, designation: str, structure: Structure) -> tuple[str, float, str]:
+    """Type of a bearing, "plain" or "unknown", its contact angle in rad (0: none), and where that is from."""
     account = structure.account
     words = f"{account.text(part, 'bearing_type', 'type_of_bearing')} {part.type}".lower()
     if any(word in words for word in _PLAIN_WORDS):
-        return "plain"
-    if "ball" in words:
-        return "ball"
-    if any(word in words for word in _ROLLER_WORDS):
-        return "roller"
+        return "plain", 0.0, ""
+    by_words = next((kind for need, kind in _TYPE_WORDS if all(word in words for word in need)), "")
+    found = designated(designation, anywhere=True) or designated(part.name, anywhere=True)
+    # A word of the file that says no more than balls or rollers leaves the rest to the designation.
+    general = by_words in ("", "deep groove", "cylindrical")
+    if found is not None and (found.type == by_words or (general and (not by_words or found.type in _LIKE[by_words]))):
+        return found.type, found.contact_angle, found.reason
     letters = designation.upper().replace("NOT A CATALOGUE BEARING:", "").strip()
-    first = letters[:1]
-    if letters.startswith(("N", "K", "HK", "RN")) or (first in ("2", "3") and len(letters) > 4):
-        return "roller"
-    return "ball" if first in ("6", "7", "1") else "unknown"
+    if not by_words and letters.startswith(("N", "K", "HK", "RN")):
+        by_words = "cylindrical" if letters.startswith("N") and not letters.startswith("NA") else "needle"
+    return by_words or "unknown", _TYPE_ANGLES.get(by_words, 0.0), f"usual of a {by_words} bearing"
 
 
 def _guess(
     part: Component, seat: tuple[ShaftPart, float], designation: str, structure: Structure
-) -> tuple[float, float, str]:
+) -> tuple[float, float, str, str]:
     """Estimated radial and axial stiffness in N/m, and the words that say from what."""
     account = structure.account
-    kind = _kind(part, designation or part.name, structure)
+    kind, angle, reason = _kind(part, designation or part.name, structure)
     by_designation = size_of_designation(designation or part.name)
     if kind in ("plain", "unknown") and by_designation is None:
-        return _UNKNOWN, _UNKNOWN / 10.0, f"a placeholder of {_UNKNOWN:.0e} N/m for a bearing of unknown size and kind"
+        words = f"a placeholder of {_UNKNOWN:.0e} N/m for a bearing of unknown size and kind"
+        return _UNKNOWN, _UNKNOWN / 10.0, words, f"a tenth of {words}"
     bore = account.number(part, ("inner_diameter", "bore_diameter"), "length")
     outer = account.number(part, ("outer_diameter",), "length")
-    stated = (bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None
+    width = account.number(part, ("width",), "length") or math.nan
+    stated = (bore, outer, width, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None
     d = seat[0].diameter(seat[1])
-    by_shaft = (d, d + 1e-3 * _SERIES_2 * (1e3 * d) ** 0.9, "diameter of the shaft, series 2 of ISO 15")
+    by_table = outer_diameter(d, "2")
+    outside = _OUTER_OVER_BORE * d if math.isnan(by_table) else by_table
+    by_shaft = (d, outside, math.nan, "diameter of the shaft, series 2 of ISO 15")
     sizes = filter(None, (stated, by_designation, size_of_designation(part.name)))
     size = next((item for item in sizes if abs(item[0] - d) <= _FITS * d), by_shaft)
-    rating = account.number(part, ("static_capacity", "static_load_rating", "radial_static_load_rating"), "rating")
+    radial_rating = account.number(
+        part, ("static_capacity", "static_load_rating", "radial_static_load_rating"), "rating"
+    )
+    axial_rating = account.number(part, _AXIAL_RATINGS, "rating")
     rows = structure.parts_of(part, "rolling_bearing_row")
-    angles = [angle for row_ in rows if (angle := account.number(row_, ("pressure_angle", "contact_angle"), "angle"))]
-    angle = angles[0] if angles and 0.0 < abs(angles[0]) < math.radians(60.0) else 0.0
-    return estimated("roller" if kind == "roller" else "ball", size, rating, abs(angle))
+    for one in (part, *rows):
+        given = account.number(one, ("pressure_angle", "contact_angle"), "angle")
+        if given and 0.0 < abs(given) <= 0.5 * math.pi + 1e-9:
+            angle, reason = abs(given), "of the file"
+            break
+    if kind in THRUST or angle >= _THRUST:
+        axial_rating = axial_rating or radial_rating
+    if kind in ("plain", "unknown"):
+        kind = "deep groove"
+    if not angle:
+        reason = "thrust by flanges" if kind in ("cylindrical", "needle") else "a deep groove bearing under a thrust"
+    return estimated(kind, size, (radial_rating, axial_rating), angle, reason)
 
 
 def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> Table | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.ball_bearing import BallBearing
-from rotorgear.forces.designations import inner_geometry
+from rotorgear.forces.designations import designated, inner_geometry
 from rotorgear.forces.roller_bearing import RollerBearing
 from rotorgear.forces.rolling import LINE_CONTACT
 from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
@@ -121,16 +122,86 @@ def test_a_designation_says_what_rolls(designation, count, element, pitch, kind,
     assert 1e3 * found["pitch_diameter"] == pytest.approx(pitch)
 
 
-@pytest.mark.parametrize("designation", ["NU 2208", "62206", "SKF 6206"])
-def test_a_designation_of_another_series_is_not_taken_for_one_that_begins_so(designation):
-    # NU 2208 has a bore of 40 mm; NU 220 has one of 100 mm.
+@pytest.mark.parametrize("designation", ["62206", "SKF 6206", "6288", "22210", "51108", "2210", "33102"])
+def test_a_designation_that_rolling_elements_do_not_have_is_not_taken_for_one_that_begins_so(designation):
     assert inner_geometry(designation) == ({}, "")
+
+
+@pytest.mark.parametrize(
+    ("designation", "bore", "outer", "width"),
+    # Boundary dimensions that makers print.
+    [
+        ("NU 2208", 40, 80, 23),
+        ("NU 220", 100, 180, 34),
+        ("N 1012", 60, 95, 18),
+        ("NJ 2312", 60, 130, 46),
+        ("NUP 415", 75, 190, 45),
+        ("6003", 17, 35, 10),
+        ("6408", 40, 110, 27),
+        ("16012", 60, 95, 11),
+        ("61815", 75, 95, 10),
+        ("61906", 30, 47, 9),
+        ("6224", 120, 215, 40),
+        ("7310 BEP", 50, 110, 27),
+        ("30313", 65, 140, 33),
+        ("32016 X", 80, 125, 29),
+        ("33114", 70, 120, 37),
+        ("33208", 40, 80, 32),
+        ("32915", 75, 105, 20),
+        ("22316 E", 80, 170, 58),
+        ("1208", 40, 80, 18),
+        ("2308", 40, 90, 33),
+        ("24026", 130, 200, None),
+        ("23928", 140, 190, None),
+        ("23236", 180, 320, None),
+        ("24122", 110, 180, None),
+        ("51112", 60, 85, None),
+        ("51210", 50, 78, None),
+        ("51315", 75, 135, None),
+        ("51416", 80, 170, None),
+        ("29420 E", 100, 210, None),
+    ],
+)
+def test_a_designation_has_the_boundary_dimensions_of_its_series(designation, bore, outer, width):
+    found = designated("maker's " + designation, anywhere=True)
+    assert found is not None
+    assert (1e3 * found.bore, 1e3 * found.outer) == (pytest.approx(bore), pytest.approx(outer))
+    if width is not None:
+        assert 1e3 * found.width == pytest.approx(width)
+
+
+@pytest.mark.parametrize(
+    ("designation", "degrees", "reason"),
+    [
+        ("7310 CD", 15, "letter C"),
+        ("7012-C-T-P4S", 15, "letter C"),
+        ("7306 A5", 25, "letter A5"),
+        ("7306 ACD", 25, "letter AC"),
+        ("7306 A", 30, "letter A"),
+        ("7306 AW", 40, "no letter of an angle"),
+        ("7306 BECBP", 40, "letter B"),
+        ("7306 C3", 40, "no letter of an angle"),
+        ("7306 CN", 40, "no letter of an angle"),
+        ("71912 E", 25, "letter E"),
+    ],
+)
+def test_the_letters_behind_an_angular_contact_bearing_are_those_of_makers(designation, degrees, reason):
+    found = designated(designation)
+    assert (math.degrees(found.contact_angle), found.reason) == (pytest.approx(degrees), reason)
+
+
+def test_rollers_of_wider_bearings_are_longer():
+    lengths = [inner_geometry(name)[0]["length"] for name in ("NU 1010", "NU 210", "NU 2210")]
+    assert lengths == sorted(lengths)
+    assert inner_geometry("32213")[0]["length"] > 1.2 * inner_geometry("30213")[0]["length"]
+    # Balls of thin bearings fit between the faces of their rings.
+    assert inner_geometry("16014")[0]["element_diameter"] < 0.013
 
 
 def test_shares_of_the_estimate_are_near_the_bearings_that_are_known():
     from rotorgear.forces import designations
 
-    for name, (count, element, pitch, _) in list(designations._KNOWN.items()):
+    for name, (count, element, pitch, *_) in list(designations._KNOWN.items()):
         known = dict(designations._KNOWN)
         designations._KNOWN.pop(name)
         try:
@@ -174,10 +245,24 @@ def test_a_pair_by_designation_carries_its_shaft_and_says_what_is_estimated():
     assert not any("NJ209" in note for note in sheet.warnings)
 
 
+def test_given_elements_take_the_place_of_estimated_ones_and_a_published_angle_is_said():
+    given = 'designation = "6210", elements = 11, element_diameter = "12.7 mm", pitch_diameter = "70.5 mm"'
+    law = rg.loads(TEXT % given).bearings["front"].rolling
+    assert (law.elements, law.element_diameter, law.pitch_diameter) == pytest.approx((11, 12.7e-3, 70.5e-3))
+    assert law.estimate == ("", "", "")
+    angular = rg.loads(TEXT % 'designation = "7310 CD"').bearings["front"].rolling
+    assert "15 deg (letter C)" in angular.estimate[2]
+    assert "elements estimated" in angular.estimate[0]
+    known = rg.loads(TEXT % 'designation = "7218"').bearings["front"].rolling
+    assert known.estimate[2] == "7218: 40 deg (no letter of an angle)"
+
+
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
-        ('designation = "1209"', "designation of the series"),
+        ('designation = "1209"', "got '1209', expected a designation of the series .* self-aligning ball bearing"),
+        ('designation = "6288"', r"front\.rolling\.designation: got '6288', expected a designation of the series"),
+        ('designation = "6210", element_diameter = "21 mm", elements = 8', "between its bore 50 mm and outside 90 mm"),
         ('designation = "6211", elements = 9', "10 as 6211 has it"),
         ('designation = "7218 B", arrangement = "O"', "row_distance"),
         ('designation = "6211", arrangement = "X", row_distance = "20 mm"', "with their contact_angle"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +11,9 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.forces.rolling import contact_ellipses, point_contact
 from rotorgear.rexs.document import Component, Document, Relation, Value
-from tests.unit.rexs.documents import SAMPLE, changed, sample, with_component, without, write_json
+from tests.unit.rexs.documents import SAMPLE, bearinx, changed, sample, with_component, without, write_json
 
 MM = "mm"
 
@@ -260,7 +262,76 @@ def test_a_designation_says_bore_and_outer_diameter(designation: str, bore: floa
     size = size_of_designation(designation)
     assert size is not None
     assert 1e3 * size[0] == pytest.approx(bore)
-    assert 1e3 * size[1] == pytest.approx(outer, rel=0.12)  # the series of ISO 15, not its table
+    assert 1e3 * size[1] == pytest.approx(outer)
+
+
+def bearing_33(tmp_path: Path, **attributes: Value) -> tuple[rg.RexsImport, rg.Model]:
+    """The bearing of the shaft of 50 mm of the second sample, with other attributes."""
+    result = imported(changed(bearinx(), "33", **attributes), tmp_path)
+    return result, rg.loads(result.toml)
+
+
+def of_33(found: tuple[rg.RexsImport, rg.Model]) -> tuple[float, float, str]:
+    """Its radial and axial stiffness, and its comment."""
+    result, model = found
+    text = result.toml.partition("id 33)")[2].partition("stiffness =")
+    name = result.toml.partition("id 33)")[2].partition("[bearings.")[2].partition("]")[0]
+    matrix = model.bearings[name].stiffness
+    return matrix.radial or 0.0, matrix.axial or 0.0, text[0]
+
+
+@pytest.mark.parametrize(
+    ("designation", "kind", "degrees", "reason"),
+    [
+        ("33010", "radial_tapered_roller_bearing", 12.0, "series 330"),
+        ("7210 CD", "radial_angular_contact_ball_bearing", 15.0, "letter C"),
+        ("7210 BEP", "radial_angular_contact_ball_bearing", 40.0, "letter B"),
+        ("QJ 210", "radial_four_point_contact_ball_bearing", 35.0, "series QJ2"),
+        ("22210 E", "radial_spherical_roller_bearing", 9.5, "series 222"),
+        ("without a number", "radial_tapered_roller_bearing", 14.0, "usual of a tapered bearing"),
+    ],
+)
+def test_an_imported_bearing_has_the_angle_of_its_type_and_says_why(
+    designation: str, kind: str, degrees: float, reason: str, tmp_path: Path
+) -> None:
+    given = {"catalogue_designation": Value(designation), "bearing_type": Value(kind)}
+    radial, axial, said = of_33(bearing_33(tmp_path, **given))
+    assert axial / radial == pytest.approx(2.0 * math.tan(math.radians(degrees)) ** 2, rel=0.01)
+    assert f"alpha = {degrees:g} deg ({reason})" in said
+
+
+def test_an_angle_of_the_file_counts_up_to_a_thrust_bearing(tmp_path: Path) -> None:
+    angle = Value("60", "deg")
+    radial, axial, said = of_33(bearing_33(tmp_path, contact_angle=angle, static_capacity=Value("80", "kN")))
+    assert axial / radial == pytest.approx(6.0, rel=0.01)
+    assert "alpha = 60 deg (of the file)" in said
+    assert "a thrust of 8e+03 N" in said
+
+
+@pytest.mark.parametrize("name", ["axial_static_load_rating", "static_capacity"])
+def test_a_thrust_bearing_is_as_stiff_along_as_balls_that_share_its_load(name: str, tmp_path: Path) -> None:
+    given = {"catalogue_designation": Value("51210"), "bearing_type": Value("axial_grooved_ball_bearing")}
+    radial, axial, said = of_33(bearing_33(tmp_path, **given, **{name: Value("134", "kN")}))
+    assert radial == 0.0
+    assert "from 50 x 78 mm" in said
+    # Hertz contacts of the same balls in grooves of .52 D, equally loaded along the shaft.
+    count, ball, pitch = 17, 11.2e-3, 64e-3
+    steel = 210e9 / (1.0 - 0.3**2)
+    c = point_contact(contact_ellipses(ball, pitch, 0.52 * ball, 0.52 * ball, 0.5 * math.pi), steel)
+    load = 13.4e3
+    hertz = 1.5 * load / (load / count / c) ** (2.0 / 3.0)
+    assert f"{count} of {1e3 * ball:.2g} mm" in said
+    assert axial == pytest.approx(hertz, rel=0.1)
+
+
+def test_the_axial_static_rating_of_a_radial_bearing_is_used(tmp_path: Path) -> None:
+    given = {"catalogue_designation": Value("7210 B")}
+    plain = of_33(bearing_33(tmp_path, **given))
+    one = of_33(bearing_33(tmp_path, **given, axial_static_load_rating=Value("60", "kN")))
+    two = of_33(bearing_33(tmp_path, **given, axial_static_load_rating=Value("120", "kN")))
+    assert one[0] == plain[0]
+    assert two[1] / one[1] == pytest.approx(2.0 ** (1.0 / 3.0), rel=0.01)
+    assert "axial static rating of the file" in one[2]
 
 
 def test_a_written_model_file_loads_and_is_not_overwritten_unasked(tmp_path: Path) -> None:

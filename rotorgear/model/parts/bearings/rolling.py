@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from rotorgear.errors import Problem
-from rotorgear.forces.designations import SERIES, class_clearance, inner_geometry
+from rotorgear.forces.designations import SERIES, class_clearance, designated, inner_geometry, words_of
 from rotorgear.model.parts.bearings.geometry import UNIT, BearingGeometry, Judged
 from rotorgear.model.parts.fields import Angle, Force, NonNegativeLength, PositiveLength, PositiveRatio, Whole, refuse
 from rotorgear.model.parts.problems import told
@@ -36,8 +36,8 @@ class RollingElements(BearingGeometry):
     designation: str | None = Field(
         None,
         description="series and two digits of the bore, with or without a blank, then any suffix: '6206', 'NU 208', '7209 B' "
-        "(B 40, E 25, C 15 deg); fills what is not given of kind, elements, diameters, length and contact angle, estimated from "
-        "the outside where nothing is published",
+        "(B 40, A 30, AC, A5 or E 25, C 15 deg); fills what is not given of kind, elements, diameters, length and contact angle, "
+        "estimated from the outside where nothing is published",
     )
     kind: Literal["ball", "roller", "tapered", "four-point"] = Field(
         description="ball, cylindrical roller, tapered roller, or ball between two arcs (four-point)"
@@ -84,11 +84,22 @@ class RollingElements(BearingGeometry):
         """Fill what a designation tells, where it is not given."""
         if not isinstance(data, dict) or not isinstance(data.get("designation"), str):
             return data
-        known, _ = inner_geometry(data["designation"])
-        if not known:
-            raise refuse(f"a designation of the series {SERIES}; or leave it out and give kind, elements and diameters")
+        # What an unknown one lacks is not missing: the designation is wrong, which its own check says.
+        known = inner_geometry(data["designation"])[0] or inner_geometry("6206")[0]
         given = {key: value for key, value in data.items() if value is not None}
         return {**known, **given}
+
+    @field_validator("designation")
+    @classmethod
+    def _known(cls, value: str | None) -> str | None:
+        """Refuse what is not in the tables."""
+        if value is None or inner_geometry(value)[0]:
+            return value
+        found = designated(value)
+        why = f" (this is a {words_of(found.type)} bearing: give its stiffness)" if found else ""
+        raise refuse(
+            f"a designation of the series {SERIES}{why}; or leave it out and give kind, elements and diameters"
+        )
 
     @property
     def play(self) -> float | None:
@@ -97,14 +108,22 @@ class RollingElements(BearingGeometry):
 
     @property
     def estimate(self) -> tuple[str, str, str]:
-        """Where its elements follow from its boundary dimensions."""
+        """Where its elements or its contact angle follow from its designation."""
         known, published = inner_geometry(self.designation or "")
-        if not known or published:
+        said = designated(self.designation or "")
+        if said is None or not known:
             return "", "", ""
+        angle = ""
+        if math.isclose(abs(self.contact_angle), known.get("contact_angle", math.inf)):
+            angle = f"{math.degrees(self.contact_angle):.4g} deg ({said.reason})"
+        if published or self.element_diameter != known["element_diameter"]:
+            what, why = "contact angle by the designation", "give contact_angle where you know it"
+            return (what, why, f"{self.designation}: {angle}") if angle else ("", "", "")
+        inside = f"{self.elements} of {1e3 * self.element_diameter:.4g} mm on {1e3 * self.pitch_diameter:.4g} mm"
         return (
             "elements estimated, since no maker prints them: stiffness and loads are an order of size",
             "give elements and diameters where you know them",
-            f"{self.designation}: {self.elements} of {1e3 * self.element_diameter:.4g} mm on {1e3 * self.pitch_diameter:.4g} mm",
+            f"{self.designation}: {inside}{f', {angle}' if angle else ''}",
         )
 
     def law(self, ratio: float, sense: float, linear: Sequence[float]) -> ForceLaw:
@@ -160,15 +179,28 @@ class RollingElements(BearingGeometry):
         fitting = f"elements that fit on a circle of {millimetres(self.pitch_diameter)}"
         full = self.elements * self.element_diameter > math.pi * self.pitch_diameter
         rollers = self.kind in ("roller", "tapered")
-        known, _ = inner_geometry(self.designation or "")
+        known, published = inner_geometry(self.designation or "")
+        said = designated(self.designation or "")
         others = []
         for key, value in known.items():
             given = getattr(self, key)
             same = given == value or (isinstance(given, float) and math.isclose(given, value))
-            if key != "contact_angle" and not same:
+            # What is published stands against what is given; an estimate gives way.
+            if (key == "kind" or (published and key != "contact_angle")) and not same:
                 got = f"{given} beside designation = '{self.designation}'"
                 wanted = f"{value if key == 'kind' else f'{value:.6g}'} as {self.designation} has it, or no designation"
                 others.append((key, True, got, wanted))
+        if (
+            said
+            and not said.bore
+            < self.pitch_diameter - self.element_diameter
+            < self.pitch_diameter + self.element_diameter
+            < said.outer
+        ):
+            got = f"elements of {size} on {millimetres(self.pitch_diameter)} beside designation = '{self.designation}'"
+            others.append(
+                ("", True, got, f"between its bore {millimetres(said.bore)} and outside {millimetres(said.outer)}")
+            )
         angle = f"{math.degrees(self.contact_angle):.6g} deg"
         no_length = "a roller without length" if rollers else "a length of balls"
         reach = 2.0 * (self.inner_groove + self.outer_groove - 1.0) * self.element_diameter
