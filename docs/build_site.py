@@ -51,16 +51,18 @@ _BLOCK = re.compile(r"^\$\$(.+?)\$\$", re.MULTILINE | re.DOTALL)
 _INLINE = re.compile(r"(?<![\w$\\])\$(?![\s\d$(])([^$\n]+?)(?<!\s)\$(?![\w$])")
 _CODE = re.compile(r"^ *(`{3,}).*?^ *\1[^\n]*$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"\]\((?P<target>\.\./[^)#\s]+)(?P<anchor>#[^)\s]*)?\)")
+_FILE_BLOCK = re.compile(r"^( *)<!-- file: (\S+) -->\n( *`{3,}\w*)$", re.MULTILINE)
 _NOTEBOOK = re.compile(r"\]\(notebooks/(\w+)\.ipynb\)")
 
 
 def staged(text: str) -> str:
-    """A page as the site takes it: formulas as MathML, links to notebooks to their pages, links out of docs/ to copies."""
+    """A page as the site takes it: formulas as MathML, files with their names, links to pages of notebooks and to copies."""
 
     def outside(link: re.Match[str]) -> str:
         target = link["target"].removeprefix("../").rstrip("/")
         return f"]({target}{link['anchor'] or ''})" if target == _BESIDE else f"]({_copy(target)})"
 
+    text = _FILE_BLOCK.sub(r'\3 title="\2"', text)
     return _LINK.sub(outside, with_formulas(_NOTEBOOK.sub(r"](\1.md)", text)))
 
 

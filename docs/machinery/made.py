@@ -1,7 +1,7 @@
 """What pictures and long tables were made from, and whether that is what stands here now.
 
 A picture of docs/pictures/ is drawn by the command that docs/made.toml names, which also names the command of verdicts that are
-judged by hand. A table that takes long is a block marked `<!-- run long: python -m ... -->` or `<!-- made: python -m ... -->`.
+judged by hand. A table that takes long is a console block of `$ python -m ...` marked `<!-- run long -->` or `<!-- made -->`.
 Nobody repeats them at every commit, so docs/made.json keeps two words for each: the commit at which it was made, and a digest of
 what it shows:
 

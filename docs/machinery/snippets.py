@@ -5,13 +5,14 @@ A mark is an HTML comment on the line before a fenced block:
     <!-- run -->                  a `python` block is run; the python blocks of a page share their variables
                                   a `console` block is run: lines `$ command`, each followed by what it prints
     <!-- output -->               the block is what the python block before it prints
-    <!-- run: rotorgear ... -->   the block is what this command prints
-    <!-- run exit=2: ... -->      the same for a command that ends with this code; `<!-- run exit=2 -->` for `console`
-    <!-- run long: ... -->        a block of seconds to minutes on which no other depends: run with the long tests, and where its
-                                  page is brought up to date; also `<!-- run long -->`
-    <!-- made: python -m ... -->  the block is what this command once printed, and never run from here: it takes hours or other
-                                  programs, or prints times; `made.py` tells where it is older than its script
+    <!-- run exit=2 -->           a `console` block whose commands end with this code
+    <!-- run long -->             a block of seconds to minutes on which no other depends: run with the long tests, and where its
+                                  page is brought up to date
+    <!-- made -->                 a `console` block of one command that is never run from here: it takes hours or other programs,
+                                  or prints times; `made.py` tells where what it once printed is older than its script
     <!-- file: gearbox.toml -->   the block is written to this file
+
+A reader does not see the marks, so that a command stands in its block.
 
 The blocks of a page run in order, in one directory that starts with a copy of `models/`. Commands are `rotorgear` and
 `python`. How texts are compared stands in `comparison.py`.
@@ -41,6 +42,9 @@ _FENCE = re.compile(r"^( *)(`{3,}|~{3,})\s*([\w-]*)[^`]*$")
 _MARK = re.compile(r"^\s*<!--\s*(run|output|file|made)\b(\s+long)?(?:\s+exit=(\d+))?\s*(?::\s*(.*?))?\s*-->\s*$")
 
 
+_COMMAND = re.compile(r"^\$ (.*(?:\\\n.*)*)$", re.MULTILINE)
+
+
 class SnippetError(Exception):
     """A block can't be run, or didn't end as its mark says."""
 
@@ -49,7 +53,7 @@ class SnippetError(Exception):
 class Block:
     """A marked block: its page, the line of its fence (from 1), its language, its mark, and its text.
 
-    An output of a long block is long, as that is. Blocks that differ in nothing but their line are equal.
+    The argument is the file to write, or the command of a console block that has one. An output of a long block is long, as that is. Blocks that differ in nothing but their line are equal.
     """
 
     page: Path
@@ -105,8 +109,10 @@ def marked_blocks(page: Path) -> list[Block]:
             if mark:
                 text = "\n".join(line.removeprefix(fence[1]) for line in lines[k + 1 : end])
                 long = blocks[-1].long if mark[1] == "output" and blocks else bool(mark[2])
-                blocks.append(Block(page, k + 1, fence[3], mark[1], mark[4] or "", int(mark[3] or 0), long, text))
-                _check_mark(blocks)
+                commands = _COMMAND.findall(text) if fence[3] == "console" else []
+                argument = mark[4] or (commands[0] if len(commands) == 1 else "")
+                blocks.append(Block(page, k + 1, fence[3], mark[1], argument, int(mark[3] or 0), long, text))
+                _check_mark(blocks, mark[4] or "")
             k = end
         mark = None if fence else _MARK.match(lines[k])
         k += 1
@@ -122,17 +128,18 @@ def _end_of_block(lines: list[str], start: int, fence: str) -> int:
     return len(lines)
 
 
-def _check_mark(blocks: list[Block]) -> None:
+def _check_mark(blocks: list[Block], given: str) -> None:
     """Refuse a mark that would do nothing, or not what it seems to."""
     block = blocks[-1]
-    bare_run = block.verb == "run" and not block.argument
+    runs = block.verb in ("run", "made")
     wrong = {
-        "a bare run needs a python or console block": bare_run and block.language not in ("python", "console"),
-        "a console block needs lines that start with '$ '": bare_run
+        "a command stands in its console block, where a reader sees it: $ ...": runs and bool(given),
+        "run needs a python or console block": block.verb == "run" and block.language not in ("python", "console"),
+        "a console block needs lines that start with '$ '": runs
         and block.language == "console"
         and not block.text.startswith("$ "),
         "a file needs a name inside the directory": block.verb == "file" and not _is_inside(block.argument),
-        "made needs a command": block.verb == "made" and not block.argument,
+        "made needs a console block of one command": block.verb == "made" and not block.argument,
         "output takes no argument": block.verb == "output" and bool(block.argument),
         "long is for run only": block.long and block.verb in ("file", "made"),
         "exit= is for commands only": bool(block.exit_code) and (block.verb != "run" or block.language == "python"),
@@ -169,8 +176,6 @@ def run_page(page: Path, directory: Path, *, long: bool = True) -> Iterator[Outc
                 target.write_text(block.text + "\n", encoding="utf-8")
             elif block.verb == "output":
                 yield _outcome(block, block.text, printed)
-            elif block.argument:
-                yield _outcome(block, block.text, run_command(block, block.argument, directory))
             elif block.language == "console":
                 yield _console(block, directory)
             else:
@@ -188,7 +193,7 @@ def _outcome(block: Block, page: str, printed: str) -> Outcome:
 
 def _console(block: Block, directory: Path) -> Outcome:
     """Run the commands of a console block, each with the output below it."""
-    chunks = re.split(r"^\$ (.*)$", block.text, flags=re.MULTILINE)[1:]
+    chunks = _COMMAND.split(block.text)[1:]
     all_printed: list[str] = []
     new: list[str | None] = []
     for command, shown in zip(chunks[::2], chunks[1::2], strict=True):
@@ -208,7 +213,7 @@ def run_command(block: Block, command: str, directory: Path) -> str:
     Raises:
         SnippetError: it is none of rotorgear or python, takes too long, or ends with another code than its block says.
     """
-    words = shlex.split(command)
+    words = shlex.split(command.replace("\\\n", " "))
     programs = {
         "rotorgear": [sys.executable, "-m", "rotorgear"],
         "python": [sys.executable],

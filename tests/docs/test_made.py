@@ -47,7 +47,8 @@ def test_every_picture_has_a_command_and_every_command_its_pictures() -> None:
 
 
 def _table(page: str, command: str) -> list[str]:
-    return next(block.text for block in marked_blocks(DOCS / page) if block.argument == command).splitlines()
+    """The lines that a command prints on a page, below the command itself."""
+    return next(block.text for block in marked_blocks(DOCS / page) if block.argument == command).splitlines()[1:]
 
 
 @pytest.mark.parametrize("name", [QUICK_MODELS[TODAY % len(QUICK_MODELS)]])
@@ -77,7 +78,7 @@ def test_a_case_has_the_lines_that_the_page_on_validation_shows(name: str) -> No
 
 MODEL = 'title = "a"\n[bearings.left]\nstiffness = 1e8\nmesh = "box.msh"\n'
 MODULE = 'from tool.rules import LIMIT\n\nNAMES = ("one",)\nINPUTS = ("cases/*.csv",)\n'
-PAGE = "<!-- made: python -m tool.rows -->\n```text\n1\n```\n\n<!-- file: own.toml -->\n```toml\nteeth = 20\n```\n"
+PAGE = "<!-- made -->\n```console\n$ python -m tool.rows\n1\n```\n\n<!-- file: own.toml -->\n```toml\nteeth = 20\n```\n"
 
 
 @pytest.fixture
@@ -123,7 +124,7 @@ def clone(tmp_path: Path) -> Path:
         ("tool/rules.py", '"""Rules."""', '"""Other words."""\n# and a comment', []),
         ("cases/a.csv", "1", "2", ["page"]),
         ("docs/page.md", "teeth = 20", "teeth = 21", ["a.png"]),
-        ("docs/page.md", "```text\n1", "Other words.\n```text\n1", []),
+        ("docs/page.md", "<!-- made -->", "Other words.\n\n<!-- made -->", []),
         ("docs/made.toml", "static own.toml", "static own.toml --sensitivity", ["a.png"]),
         ("rotorgear/solve.py", "1", "2", []),
         ("rotorgear/plots/static.py", "BLUE", "BLUE as COLOUR", ["a.png"]),

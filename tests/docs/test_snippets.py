@@ -138,8 +138,9 @@ print(teeth)
    ...
    ```
 
-<!-- run: python -c "print(2.5, 'mm')" -->
-```text
+<!-- run -->
+```console
+$ python -c "print(2.5, 'mm')"
 2.5 mm
 ```
 
@@ -167,18 +168,18 @@ def page(tmp_path: Path) -> Path:
 def test_blocks_run_in_order_in_one_directory_with_shared_variables(page: Path, tmp_path: Path) -> None:
     outcomes = list(run_page(page, tmp_path / "run"))
     assert (tmp_path / "run" / "parts" / "one.txt").read_text(encoding="utf-8") == "teeth = 29\n"
-    assert [(outcome.block.line, outcome.agrees) for outcome in outcomes] == [(26, False), (32, True), (37, False)]
+    assert [(outcome.block.line, outcome.agrees) for outcome in outcomes] == [(26, False), (32, True), (38, False)]
     assert outcomes[0].printed == "4.1429\nand more"
 
 
 def test_long_blocks_and_their_outputs_are_left_to_the_long_tests(page: Path, tmp_path: Path) -> None:
     text = PAGE.replace("   <!-- run -->\n", "   <!-- run long -->\n").replace(
-        "<!-- run: python", "<!-- run long: python"
+        "<!-- run -->\n```console", "<!-- run long -->\n```console"
     )
     page.write_text(text, encoding="utf-8")
     assert [block.long for block in marked_blocks(page)] == [False, False, True, True, True, False]
-    assert [outcome.block.line for outcome in run_page(page, tmp_path / "quick", long=False)] == [37]
-    assert [outcome.block.line for outcome in run_page(page, tmp_path / "all")] == [26, 32, 37]
+    assert [outcome.block.line for outcome in run_page(page, tmp_path / "quick", long=False)] == [38]
+    assert [outcome.block.line for outcome in run_page(page, tmp_path / "all")] == [26, 32, 38]
 
 
 def test_an_update_changes_the_outputs_that_differ_and_nothing_else(page: Path, tmp_path: Path) -> None:
@@ -218,13 +219,14 @@ def test_a_page_whose_code_was_edited_while_it_ran_is_refused(tmp_path: Path) ->
 
 def test_blanks_at_the_ends_of_lines_go_and_what_was_made_elsewhere_stays(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
-    made = "<!-- made: python -m nowhere -->\n```text\n9   \n```\n"
-    page.write_text(f"{made}<!-- run: python -c \"print('a  b  ')\" -->\n```text\na b   \n```\n", encoding="utf-8")
+    made = "<!-- made -->\n```console\n$ python -m nowhere\n9   \n```\n"
+    command = "$ python -c \"print('a  b  ')\""
+    page.write_text(f"{made}<!-- run -->\n```console\n{command}\na b   \n```\n", encoding="utf-8")
     outcomes = list(run_page(page, tmp_path / "run"))
     assert [outcome.agrees for outcome in outcomes] == [False]
     assert rewritten(page, outcomes).splitlines() == [
         *made.splitlines(),
-        *page.read_text().splitlines()[4:6],
+        *page.read_text().splitlines()[5:8],
         "a b",
         "```",
     ]
@@ -240,10 +242,11 @@ def test_blanks_at_the_ends_of_lines_go_and_what_was_made_elsewhere_stays(tmp_pa
         ("<!-- output -->\n```text\n1\n```\n", "python block before"),
         ("<!-- file: ../away.toml -->\n```toml\n```\n", "inside the directory"),
         ("<!-- run exit=1 -->\n```python\n```\n", "commands only"),
-        ("<!-- made -->\n```text\n1\n```\n", "needs a command"),
+        ("<!-- made -->\n```text\n1\n```\n", "needs a console block of one command"),
+        ("<!-- run: rotorgear models -->\n```text\n```\n", "where a reader sees it"),
         ("<!-- file long: a.toml -->\n```toml\n```\n", "long is for run"),
-        ("<!-- run: rm -r . -->\n```text\n```\n", "rotorgear and python"),
-        ("<!-- run: python -c 'raise SystemExit(1)' -->\n```text\n```\n", "ended with code 1, expected 0"),
+        ("<!-- run -->\n```console\n$ rm -r .\n```\n", "rotorgear and python"),
+        ("<!-- run -->\n```console\n$ python -c 'raise SystemExit(1)'\n```\n", "ended with code 1, expected 0"),
         ("<!-- run -->\n```python\n1 / 0\n```\n", "ZeroDivisionError"),
     ],
 )
@@ -262,7 +265,7 @@ def test_update_rewrites_what_is_out_of_date_and_then_finds_nothing_more(
         "def pages():\n    return {'docs/list.md': '# List\\n\\n1.5 made in 3 s\\n'}\n", encoding="utf-8"
     )
     page = tmp_path / "page.md"
-    page.write_text('<!-- run: python -c "print(7)" -->\n```text\n6\n```\n', encoding="utf-8")
+    page.write_text('<!-- run -->\n```console\n$ python -c "print(7)"\n6\n```\n', encoding="utf-8")
     monkeypatch.setattr(update, "ROOT", tmp_path)
     monkeypatch.setattr(update, "generators", lambda: generators(tmp_path))
     monkeypatch.setattr(update, "pages", lambda: pages(tmp_path))
@@ -272,7 +275,7 @@ def test_update_rewrites_what_is_out_of_date_and_then_finds_nothing_more(
     assert not (tmp_path / "docs" / "list.md").exists()
     assert update.update(check=False, long=False) == (2, 0)
     assert (tmp_path / "docs" / "list.md").read_text(encoding="utf-8") == "# List\n\n1.5 made in 3 s\n"
-    assert page.read_text(encoding="utf-8").splitlines()[2] == "7"
+    assert page.read_text(encoding="utf-8").splitlines()[3] == "7"
 
     (tmp_path / "docs" / "list.md").write_text("# List\n\n1.5 made in 99 s\n", encoding="utf-8")
     assert update.update(check=True, long=False) == (0, 0)
@@ -283,6 +286,6 @@ def test_update_rewrites_what_is_out_of_date_and_then_finds_nothing_more(
     assert update.update(check=True, long=False) == (0, 0)
     assert update.update(check=True, long=True) == (1, 0)
 
-    page.write_text("<!-- run: gone -->\n```text\n6\n```\n", encoding="utf-8")
+    page.write_text("<!-- run -->\n```console\n$ gone\n6\n```\n", encoding="utf-8")
     assert update.update(check=True, long=False) == (0, 1)
     assert "can't run 'gone'" in capsys.readouterr().err

@@ -40,8 +40,8 @@ def of_the_docs() -> list[list[str]]:
     found = {}
     for page in sorted((ROOT / "docs").glob("*.md")):
         text = page.read_text(encoding="utf-8").replace("\\\n", " ")
-        for line in re.findall(r"<!-- run: rotorgear (.*?) -->|^\$ rotorgear (.*)$", text, re.MULTILINE):
-            words = shlex.split(line[0] or line[1], comments=True)
+        for line in re.findall(r"^\$ rotorgear (.*)$", text, re.MULTILINE):
+            words = shlex.split(line, comments=True)
             if any(word.startswith("models/") for word in words) and "--cluster" not in words:
                 found[tuple(words)] = words
     return list(found.values())
