@@ -32,7 +32,7 @@ class StateSpace(BetweenPlaces, kind="state_space"):
         "estimated error of the reduction", note=": twice the largest change of a response over its size", form=".0e"
     )
     error_estimate: float = of(
-        "estimated relative discretisation error", note=" of the frequencies; `null`: elements given", form=".0e"
+        "estimated error of the mesh", note=": the largest change of a response over its size", form=".0e"
     )
 
     @property
@@ -81,11 +81,10 @@ class StateSpace(BetweenPlaces, kind="state_space"):
                 f": {counted(self.kept_modes, 'modes')} and {counted(self.size - self.kept_modes, 'other shapes')} "
                 f"of {self.dofs} dofs"
             )
-            changed = error_words(self.reduction_error)
-            error = (
-                f"the reduction changes responses up to {self.fmax:.6g} Hz by {changed} of their largest (estimated)"
-            )
+            changed = f"the reduction changes responses up to {self.fmax:.6g} Hz by {error_words(self.reduction_error)}"
+            error = f"{changed}, the mesh by {error_words(self.error_estimate)} of their largest (estimated)"
         else:
             size += f", twice the {self.dofs} dofs: nothing is reduced"
-            error = f"for frequencies up to {self.fmax:.6g} Hz"
+            changed = f"the mesh changes responses up to {self.fmax:.6g} Hz"
+            error = f"{changed} by {error_words(self.error_estimate)} of their largest (estimated)"
         yield from (f"{size}; {self.cost}", error, *self.remarks())

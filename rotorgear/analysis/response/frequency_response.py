@@ -103,15 +103,7 @@ def frf(
         solved = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress)
         receptance, bubble_change, residual, rounding = solved
         progress(0.96, "error estimate")
-        estimate = 0.0
-        if any(system.nodes.elements.values()):
-            # A finer mesh is looked at where a response has its highest peak, and at the peaks of what the elements lack: a
-            # higher mode may have the larger error where the response itself is low.
-            highest = highest_peaks(np.abs(receptance).reshape(len(hz), -1), 1)
-            at = np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))
-            finer = system.with_plan(all_finer(system))
-            there = _solved(finer, turns, hz[at], (inputs, outputs), (limit, zeta), silent)[0]
-            estimate = relative_change(there, receptance[at], np.abs(receptance).max(axis=0))
+        estimate = receptance_error(system, turns, hz, receptance, bubble_change, (inputs, outputs), (limit, zeta))
         if rounding > _ROUNDING:
             estimate = max(estimate, rounding)
         if accuracy is None or estimate <= accuracy:
@@ -212,6 +204,29 @@ def _solved(
             largest = np.maximum(largest, np.abs(np.sum(f * q, axis=0)))
     rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
     return np.array(rows), np.array(changes), worst, rounding
+
+
+def receptance_error(
+    system: System,
+    speed: float,
+    hz: np.ndarray,
+    receptance: np.ndarray,
+    bubble_change: np.ndarray,
+    places: tuple[Sequence[str], Sequence[str]],
+    damping: tuple[float, float],
+) -> float:
+    """Change of receptances (f, o, i) at rising frequencies (f,) in Hz by a finer mesh, over the largest of each response.
+
+    The finer mesh is looked at where a response has its highest peak, and at the peaks of `bubble_change` (f, i), what the
+    elements lack: a higher mode may have the larger error where the response itself is low. `damping`: a frequency and a ratio,
+    as in `_solved`.
+    """
+    if not any(system.nodes.elements.values()):
+        return 0.0
+    highest = highest_peaks(np.abs(receptance).reshape(len(hz), -1), 1)
+    at = np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))
+    there = _solved(system.with_plan(all_finer(system)), speed, hz[at], places, damping, silent)[0]
+    return relative_change(there, receptance[at], np.abs(receptance).max(axis=0))
 
 
 def relative_change(exact: np.ndarray, receptance: np.ndarray, largest: np.ndarray | None = None) -> float:

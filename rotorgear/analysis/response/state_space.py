@@ -21,9 +21,8 @@ from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.points import moving_rows
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, missed, speed_in_si
-from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
-from rotorgear.analysis.response.frequency_response import checked_places
-from rotorgear.analysis.response.mesh import damped_modes, damped_plant, meshed
+from rotorgear.analysis.response.frequency_response import checked_places, receptance_error
+from rotorgear.analysis.response.mesh import aims, damped_modes, damped_plant, meshed
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
@@ -33,6 +32,7 @@ from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general, single_thread
+from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.system import System
@@ -86,7 +86,7 @@ def state_space(
         modal_damping: as in `frf`.
         elements: number of basic elements in each shaft segment (default: refined for modes up to the highest frequency).
         accuracy: reduce no further than to this share of the largest size of each response (default: 1e-4), and refine the mesh
-            until frequencies are within it (default: 1e-3).
+            until each response is estimated to be within it (default: modes up to the highest frequency are refined to 1e-3).
         full: all degrees of freedom in place of modes and static shapes.
         progress: callable that is told fraction and step.
 
@@ -102,45 +102,61 @@ def state_space(
     zeta = modal_damping + model.damping.modal_ratio
     progress(0.02, "discretisation")
     about = about_mean(model, [turns or None], turns)
-    system = meshed(model, about, turns, fmax, elements, accuracy)
-    if full and system.n > _LARGEST:
-        raise AnalysisError(
-            f"a full state space of {system.n} degrees of freedom is dense in {2 * system.n} states; leave 'full' out for a "
-            "reduced one, or write sparse matrices"
-        )
     limit = 2.0 * np.pi * fmax
-    B = moving_rows(system, inputs).T
-    C = moving_rows(system, outputs)
-    groups = _groups(system, turns)
+    for aim in aims(accuracy):
+        progress(0.05, "discretisation")
+        system = meshed(model, about, turns, fmax, elements, aim)
+        if full and system.n > _LARGEST:
+            raise AnalysisError(
+                f"a full state space of {system.n} degrees of freedom is dense in {2 * system.n} states; leave 'full' out for a "
+                "reduced one, or write sparse matrices"
+            )
+        B = moving_rows(system, inputs).T
+        C = moving_rows(system, outputs)
+        groups = _groups(system, turns)
+        ends = np.hstack([B, C.T])
+        reached = np.arange(system.n) if full else _reached(system, groups, ends)
+        damping = damped_up_to(system, limit), zeta
+        dynamics = damped_plant(system, turns, *damping, reached).dynamics(turns).cut(reached)
+        damped = bool(zeta) or bool(system.damping(turns).nnz)
+        progress(0.4, "matrices")
+        with single_thread(system.n):
+            kept_modes, kept = damped_modes(system, _KEPT * limit, turns, reached)
+            # Static shapes under forces at inputs and outputs, beside the modes.
+            symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
+            factor = factor_general(sp.csc_array(symmetric + (_SHIFT * limit) ** 2 * dynamics.M, dtype=complex))
+            shapes = np.real(factor.solve(ends[reached].astype(complex)))
+            basis = _joined(kept_modes[reached], shapes, dynamics.M)
+            progress(0.6, "error of the reduction")
+            cut = B[reached], C[:, reached]
+            made = _Matrices.of(dynamics, *cut, basis)
+            learnt, held_out = (_Seen.at(dynamics, B[reached], w) for w in _judging(made, limit, damped))
+            if full:
+                made, error = _Matrices.of(dynamics, *cut), 0.0
+            else:
+                made, error = _reduced(dynamics, *cut, basis, (learnt, held_out), accuracy or ACCURACY)
+            progress(0.9, "error of the mesh")
+            seen, first = np.unique([*learnt.w, *held_out.w], return_index=True)
+            q = np.zeros((len(seen), system.n, len(inputs)), dtype=complex)
+            q[:, reached] = np.concatenate([learnt.q, held_out.q])[first]
+            bubbles = ForcedChanges.of(system)
+            at = zip(np.repeat(seen[:, None], len(inputs), axis=1), q, strict=True)
+            lacking = np.array([bubbles.change(turns, w, q_w, turning=False) for w, q_w in at])
+        hz = seen / (2.0 * np.pi)
+        estimate = receptance_error(system, turns, hz, C @ q, lacking, (inputs, outputs), damping)
+        if accuracy is None or elements is not None or estimate <= accuracy:
+            break
+    progress(1.0, "done")
     unmoved = tuple(
         Note("", f"no input moves {text}", "its responses are 0")
         for text, row in zip(outputs, C, strict=True)
         if not np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size
     )
-    reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, C.T]))
-    plant = damped_plant(system, turns, damped_up_to(system, limit), zeta, reached)
-    dynamics = plant.dynamics(turns).cut(reached)
-    B = B[reached]
-    C = C[:, reached]
-    progress(0.4, "matrices")
-    damped = bool(zeta) or bool(system.damping(turns).nnz)
-    if full:
-        made = _Matrices.of(dynamics, B, C)
-        error = 0.0
-        kept = 0
-    else:
-        with single_thread(system.n):
-            kept_modes, w = damped_modes(system, _KEPT * limit, turns, reached)
-            kept = len(w)
-            # Static shapes under forces at inputs and outputs, beside the modes.
-            symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
-            factor = factor_general(sp.csc_array(symmetric + (_SHIFT * limit) ** 2 * dynamics.M, dtype=complex))
-            shapes = np.real(factor.solve(np.hstack([B, C.T]).astype(complex)))
-            basis = _joined(kept_modes[reached], shapes, dynamics.M)
-            progress(0.6, "error of the reduction")
-            made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy or ACCURACY)
-    progress(1.0, "done")
-    short = missed(accuracy or ACCURACY, error, "write the full system, or ask for less")
+    missing = (
+        missed(accuracy or ACCURACY, error, "write the full system, or ask for less"),
+        missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range"),
+    )
+    short = next(filter(None, missing), None)
     return StateSpace(
         model=model,
         speed=turns,
@@ -152,16 +168,16 @@ def state_space(
         input_matrix=made.B,
         output_matrix=made.C,
         reduced=not full,
-        kept_modes=kept,
+        kept_modes=0 if full else len(kept),
         reduction_error=error,
-        error_estimate=float("nan") if elements is not None else accuracy or DEFAULT_ACCURACY,
+        error_estimate=estimate,
         dofs=system.n,
         discretisation=pieces(system),
         laws=law_rows(system.state.operating),
         left_out=(
             *about[1].notes,
             *left_out(system, "frf", turns, modal_damping=modal_damping),
-            *undamped_above(damped_up_to(system, limit), zeta),
+            *undamped_above(*damping),
             *_apart(system, reached),
         ),
         warnings=(*(() if damped else (_UNDAMPED,)), *unmoved, *((short,) if short else ())),
@@ -270,8 +286,32 @@ def _differences(made: _Matrices, C: np.ndarray, w: np.ndarray, q: np.ndarray) -
     return np.asarray(relative.reshape(len(w), -1).max(axis=1))
 
 
+@dataclass(frozen=True)
+class _Seen:
+    """Displacements q (f, n, i) of the whole system at frequencies w (f,) in rad/s."""
+
+    w: np.ndarray
+    q: np.ndarray
+
+    @classmethod
+    def at(cls, dynamics: Dynamics, B: np.ndarray, w: np.ndarray) -> _Seen:
+        """Those under forces B (n, i)."""
+        return cls(w, np.array([dynamics.solve(float(value), B) for value in w]))
+
+
+def _judging(made: _Matrices, limit: float, damped: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies in rad/s that a basis may learn from, and those where it is judged: between them, and about each peak."""
+    even = limit * np.arange(1, _BETWEEN + 1) / _BETWEEN
+    # Golden parts of the steps: no even grid, and half-way between the others.
+    judged = limit * (np.arange(_BETWEEN) + 0.381966) / _BETWEEN
+    peaks = _peaks(made, limit) if damped else np.zeros((0, 2))
+    flanks = np.array([w + k * half for w, half in peaks for k in (-1.5, -0.7, 0.3, 0.7, 1.5)])
+    flanks = flanks[(flanks > _LOWEST * limit) & (flanks <= limit)]
+    return np.unique([*even, *peaks[:, 0]]), np.unique([*judged, *flanks])
+
+
 def _reduced(
-    dynamics: Dynamics, B: np.ndarray, C: np.ndarray, basis: np.ndarray, limit: float, damped: bool, accuracy: float
+    dynamics: Dynamics, B: np.ndarray, C: np.ndarray, basis: np.ndarray, seen: tuple[_Seen, _Seen], accuracy: float
 ) -> tuple[_Matrices, float]:
     """The reduced matrices, and twice the largest difference that was found where the basis was not made.
 
@@ -280,21 +320,13 @@ def _reduced(
     frequencies, and on the tops and flanks of the peaks of the reduced system.
     """
     made = _Matrices.of(dynamics, B, C, basis)
-    even = limit * np.arange(1, _BETWEEN + 1) / _BETWEEN
-    # Golden parts of the steps: no even grid, and half-way between the others.
-    judged = limit * (np.arange(_BETWEEN) + 0.381966) / _BETWEEN
-    peaks = _peaks(made, limit) if damped else np.zeros((0, 2))
-    learnt = np.unique([*even, *peaks[:, 0]])
-    flanks = np.array([w + k * half for w, half in peaks for k in (-1.5, -0.7, 0.3, 0.7, 1.5)])
-    flanks = flanks[(flanks > _LOWEST * limit) & (flanks <= limit)]
-    held_out = np.unique([*judged, *flanks])
-    q_learnt, q_held_out = (np.array([dynamics.solve(float(w), B) for w in at]) for at in (learnt, held_out))
+    learnt, held_out = seen
     while True:
-        error = 2.0 * float(_differences(made, C, held_out, q_held_out).max())
-        worst = _differences(made, C, learnt, q_learnt)
+        error = 2.0 * float(_differences(made, C, held_out.w, held_out.q).max())
+        worst = _differences(made, C, learnt.w, learnt.q)
         if error <= accuracy or not worst.max() > 0.1 * accuracy:
             return made, error
-        shapes = q_learnt[int(np.argmax(worst))]
+        shapes = learnt.q[int(np.argmax(worst))]
         larger = _joined(basis, np.hstack([shapes.real, shapes.imag]), dynamics.M)
         if larger.shape[1] == basis.shape[1]:
             return made, error
@@ -310,5 +342,5 @@ def _peaks(made: _Matrices, limit: float) -> np.ndarray:
     n = made.M.shape[0]
     state = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(made.M, made.K), -la.solve(made.M, made.D)]])
     poles = la.eigvals(state)
-    near = poles[(poles.imag > _LOWEST * limit) & (poles.imag <= limit) & (-poles.real > _NO_WIDTH * poles.imag)]
+    near = poles[(poles.imag > _LOWEST * limit) & (poles.imag <= limit) & (np.abs(poles.real) > _NO_WIDTH * poles.imag)]
     return np.stack([near.imag, np.abs(near.real)], axis=1)
