@@ -14,7 +14,7 @@ shafts.r = { sections = [
     { length = "180 mm", outer_diameter = "30 mm" }, { length = "320 mm", outer_diameter = "48 mm" },
     { length = "150 mm", outer_diameter = "26 mm" } ] }
 disks.d = { shaft = "r", at = "300 mm", mass = "6 kg", polar_inertia = "0.04 kg m^2", diametral_inertia = "0.022 kg m^2" }
-bearings.a = { shaft = "r", at = "start", stiffness = { radial = "3e7 N/m", axial = "1e7 N/m" }, damping = { radial = "700 N s/m" } }
+bearings.a = { shaft = "r", at = "start", stiffness = { radial = "3e7 N/m", axial = "1e7 N/m" }, damping = { radial = 700.0 } }
 supports.a = { shaft = "r", at = "start", stiffness = { torsion = "1e3 N m/rad" } }
 bearings.b = { shaft = "r", at = "600 mm", stiffness = { radial = "5e7 N/m" }, damping = { radial = "400 N s/m" } }
 """
@@ -31,7 +31,7 @@ OVERHUNG = """
 operation = { input_shaft = "r", speed = "9000 rpm" }
 shafts.r = { internal_damping = "4e-6 s", sections = [ { length = "520 mm", outer_diameter = "40 mm", bore = "12 mm" } ] }
 disks.d = { shaft = "r", at = "end", mass = "4 kg", polar_inertia = "0.03 kg m^2", diametral_inertia = "0.016 kg m^2" }
-bearings.a = { shaft = "r", at = "start", stiffness = { x = "4e7 N/m", y = "6e7 N/m", xy = "2e6 N/m", yx = "-2e6 N/m", axial = "1e7 N/m" } }
+bearings.a = { shaft = "r", at = "start", stiffness = { x = 4e7, y = 6e7, xy = 2e6, yx = -2e6, axial = 1e7 } }
 supports.a = { shaft = "r", at = "start", stiffness = { torsion = "1e3 N m/rad" } }
 bearings.b = { shaft = "r", at = "300 mm", stiffness = { radial = "8e7 N/m" }, damping = { radial = "600 N s/m" } }
 """
