@@ -13,6 +13,11 @@ from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Line, Table, grid
 
+# A mode within the margin forbids it from this share of the least participation on, so that just below the least is no way out.
+COUNTS_FROM = 0.7
+# Modes within the margin are named where their participation is this near to the least one.
+_NEAR_LEAST = (0.5, 1.3)
+
 
 class LayoutNumber(Record):
     """A number of the model that was free."""
@@ -90,8 +95,25 @@ class OptimiseResult(ModelResult, kind="optimise"):
 
     @derived("whether every excitation keeps the margin")
     def reached(self) -> bool:
-        """On the mesh of the table, which is refined for the model before and for that after."""
-        return all(not abs(row.after_margin) < self.least_margin for row in self.lines)
+        """On the mesh of the table, which is refined for the model before and for that after.
+
+        No mode within the margin takes part by 0.7 of the least participation and more.
+        """
+        return not any(map(self._missed, self.lines))
+
+    def _missed(self, row: LayoutMargin) -> bool:
+        return abs(row.after_margin) < self.least_margin or row.after_inside >= COUNTS_FROM * self.participation
+
+    @derived("modes within the margin whose participation is near the least one", "", "sentence")
+    def nearly_counting(self) -> tuple[str, ...]:
+        """Modes after, with 0.5 to 1.3 times the least participation."""
+        low, high = (share * self.participation for share in _NEAR_LEAST)
+        return tuple(
+            f"{row.frequency_hz:.1f} Hz ({100.0 * row.margin:+.1f} % from {row.line}, "
+            f"participation {100.0 * row.participation:.2g} %)"
+            for row in self.modes_after
+            if abs(row.margin) < self.least_margin and low <= row.participation < high
+        )
 
     @derived("which bounds forbid the margin", "", "sentence", note="; empty where it is reached")
     def forbidden_by(self) -> tuple[str, ...]:
@@ -137,17 +159,20 @@ class OptimiseResult(ModelResult, kind="optimise"):
         asked = f"{100 * self.least_margin:.3g} %"
         least = f"{100 * self.participation:.3g} %"
         yield f"share: participation of the mode; others: the largest within the margin of a mode that has less than {least}"
+        from_here = f"participation of {100 * COUNTS_FROM * self.participation:.3g} % and more"
         if self.reached:
-            yield f"Every excitation keeps {asked} from the modes that it excites (participation of {least} and more)."
+            yield f"Every excitation keeps {asked} from the modes that it excites ({from_here})."
         else:
-            short = dict.fromkeys(row.line for row in self.lines if abs(row.after_margin) < self.least_margin)
-            yield f"A margin of {asked} was NOT reached by {', '.join(short)} (modes with a participation of {least} and more)."
+            short = dict.fromkeys(row.line for row in self.lines if self._missed(row))
+            yield f"A margin of {asked} was NOT reached by {', '.join(short)} (modes with a {from_here})."
             if self.forbidden_by:
                 yield f"Bounds that forbid it: {'; '.join(self.forbidden_by)}."
             elif any(row.pull for row in self.numbers):
                 yield "No bound forbids it: the search ended in a local minimum; free more numbers, or ask for more searches."
             else:
                 yield "None of the free numbers moves the modes that count: free others."
+        if self.nearly_counting:
+            yield f"Modes within the margin that take part by nearly {least}: {'; '.join(self.nearly_counting)}."
         if self.deviations_before is not None and self.deviations_after is not None:
             yield (
                 f"With [scatter], the margin is kept by {_deviations(self.deviations_before)} before, "

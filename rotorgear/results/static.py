@@ -44,6 +44,7 @@ class LoopAssembly(Record):
     gear: str = of("gear", note=' that closes it by its place on the shaft; `""` where all clockings are given')
     clocking_deg: float = of("angle of that gear's tooth from the shaft's mark", "deg")
     rest_pitches: float = of("what is missing where the gear stands at angle 0, or as the file says, in pitches")
+    gap_m: float = of("gap along the flank normal that is taken for it", "m", note=", as an index error of the mesh")
 
 
 class MeshFace(Record):
@@ -241,6 +242,8 @@ class StaticResult(AboutEquilibrium, kind="static"):
                 yield f"Loop: {loop.mesh} closes a loop: {closes}"
             else:
                 missing = f"{loop.rest_pitches:+.4f} pitches missing"
+                if loop.gap_m:
+                    missing += f", taken as an index error of {1e6 * loop.gap_m:+.1f} um"
                 yield f"Loop: {loop.mesh} closes a loop with the clockings given: {missing}"
         if self.bearing_force or self.support_force:
             yield from ("", self._on_shafts())

@@ -75,7 +75,7 @@ def contact_lines(system: System) -> ContactLines:
         numbers[:, k] = (
             m.modulus[0, 0, 0],
             0.0 if m.viscosity is None else m.viscosity[0, 0, 0],
-            state.gap(system.layout.mesh(state.contact.mesh).part),
+            state.gap(system.layout),
             state.face.tilt_stiffness if state.face else 0.0,
             state.start or 0.0,
             state.face.couple if state.face else 0.0,

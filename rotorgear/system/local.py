@@ -174,7 +174,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart
         blows = []
         if teeth is not None:
             # A map begins where its flanks touch, a spring about a mean state does not.
-            gap = (replace(force, face=None) if along else force).gap(system.layout.mesh(contact.mesh).part)
+            gap = (replace(force, face=None) if along else force).gap(system.layout)
             touching = replace(spring, error_mean=gap)
             working = _loaded_teeth(touching, teeth, force, state.path_phase(contact) or 0.0)
             if spring.impact:
@@ -230,7 +230,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     usual = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
-    error = force.gap(mesh)
+    error = force.gap(system.layout)
     if force.start is not None:  # a tangent about a mean state carries nothing elsewhere than the contact does
         error -= force.start / contact.stiffness
     impact = mesh.corner_impact

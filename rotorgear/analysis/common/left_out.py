@@ -296,6 +296,8 @@ def _operating_point(system: System, analysis: Analysis, speed: float | None) ->
             for key in ("index_error", "helix_index_error"):
                 if value := given_value(mesh, key):
                     yield Note(f"meshes.{name}.{key}", "", why, value)
+        for name, gap in system.layout.clocking_gaps.items():
+            yield Note(f"meshes.{name}", "gap that the clockings leave", why, f"{1e6 * abs(gap):.3g} um")
         for load in system.layout.external_loads if analysis == "response" else ():
             if load.constant_on_structure.any():
                 yield Note(load.address, "", why, _size(load))

@@ -30,6 +30,7 @@ from rotorgear.analysis.sensitivity.forms import (
 from rotorgear.model.model import Model
 from rotorgear.model.spreads import spreads_of
 from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.optimise import COUNTS_FROM
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.system import System
 
@@ -44,7 +45,7 @@ CLOSE = 2e-3
 _STEP = 1e-3
 # Scatter is found of modes within this many margins of a line, and with this share of the least participation.
 MARGINS = 3.0
-_PERHAPS = 0.7
+_PERHAPS = 0.5
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,14 @@ class ModesAtSpeed:
     def hz(self) -> Floats:
         """Natural frequencies in Hz (m,)."""
         return np.asarray(self.modes.omega / (2.0 * np.pi))
+
+    @property
+    def common(self) -> Floats:
+        """Participation of each line in the space of each mode (l, m): the sum over modes closer than 0.2 %."""
+        shares = self.taken.copy()
+        for space in map(list, spaces_of(self.hz)):
+            shares[:, space] = self.taken[:, space].sum(axis=1, keepdims=True)
+        return shares
 
 
 def state_of(
@@ -157,7 +166,7 @@ def with_deviations(state: ModesAtSpeed, model: Model, margin: float, least: flo
         AnalysisError: a number whose scatter moves a place past another one.
     """
     near = np.abs(state.hz[None, :] / state.line_hz[:, None] - 1.0) < MARGINS * margin
-    chosen = np.flatnonzero(np.any(near & (state.taken >= _PERHAPS * least), axis=0))
+    chosen = np.flatnonzero(np.any(near & (state.common >= _PERHAPS * least), axis=0))
     # A space is looked at as a whole.
     own = [space for space in spaces_of(state.hz) if set(space) & set(chosen.tolist())]
     modes = [k for space in own for k in space]
@@ -183,11 +192,14 @@ def with_deviations(state: ModesAtSpeed, model: Model, margin: float, least: flo
 
 
 def kept_deviations(states: list[ModesAtSpeed], margin: float, least: float) -> float:
-    """By how many standard deviations the modes that count keep a margin, the least of all; infinite where none is near."""
+    """By how many standard deviations modes keep a margin, the least of all; infinite where none is near.
+
+    As for the margin itself, modes count from a share of the least participation on.
+    """
     found = [np.inf]
     for state in states:
         assert state.sigma is not None
-        for F, taken in zip(state.line_hz, state.taken, strict=True):
-            counts = (taken >= least) & (state.sigma > 0.0)
+        for F, taken in zip(state.line_hz, state.common, strict=True):
+            counts = (taken >= COUNTS_FROM * least) & (state.sigma > 0.0)
             found += list((np.abs(state.hz / F - 1.0)[counts] - margin) / (state.sigma * state.hz / F)[counts])
     return float(min(found))

@@ -1,10 +1,13 @@
 """The verb behind `rotorgear optimise`: numbers of a model, within bounds, that keep excitations away from the modes they excite.
 
 Which modes count is decided by participation: the share of an exciting mesh in the strain energy of a mode, or of the forward
-whirl of a shaft in its kinetic energy. Modes that nobody excites may lie where they like. Sequential quadratic programming (Kraft
-1988, A software package for sequential quadratic programming, DFVLR-FB 88-28) with exact gradients goes down the penalty of
-`penalty.py` from the file and from points strewn over the bounds; of the layouts that keep the margin the one with the least
-change or the least mass is taken, or the one that keeps it by the most standard deviations of what scatters.
+whirl of a shaft in its kinetic energy. Modes that nobody excites may lie where they like; those that take part by a little less
+than the least count as well, with a weight that falls smoothly, so that no search ends just below it.
+
+Sequential quadratic programming (Kraft 1988, A software package for sequential quadratic programming, DFVLR-FB 88-28) with
+exact gradients goes down the penalty of `penalty.py` from the file and from points strewn over the bounds; of the layouts that
+keep the margin the one with the least change or the least mass is taken, or the one that keeps it by the most standard
+deviations of what scatters.
 """
 
 from __future__ import annotations
@@ -323,7 +326,7 @@ def _nearest(state: ModesAtSpeed, line: int, problem: Problem) -> tuple[float, f
     """Frequency, margin and participation of the mode nearest to a line among those that count, NaN without one; and the largest
     participation within the margin of those that don't."""
     margins = state.hz / state.line_hz[line] - 1.0
-    taken = state.taken[line]
+    taken = state.common[line]
     counts = taken >= problem.least
     inside = float(taken[~counts & (np.abs(margins) < problem.asked)].max(initial=0.0))
     if not counts.any():

@@ -4,7 +4,8 @@ With e = f / F - 1 of a mode beside a line F and the margin m,
 
     J = sum over lines and modes of w(s) h(e / m),    h(u) = (1 - u^2)^2 inside |u| < 1, else 0,
 
-w rises from 0 to 1 as the participation s comes to the least one that counts. Modes closer than 0.2 % are taken together: w of
+w rises from 0 to 1 as the participation s goes from 0.6 of the least one that counts to that one, so that a mode just below it
+is no way out of a margin. Modes closer than 0.2 % are taken together: w of
 their common participation times the mean of h, a trace over their space, which does not care how they turn into each other.
 
 Derivatives are exact (`sensitivity/derivatives.py`), with all modes taken together in the border of Nelson's system. Matrices are
@@ -25,7 +26,7 @@ from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.system.system import System
 
 # Participation begins to count at this share of the least one, so that the function has a slope there.
-_RAMP = 0.7
+_RAMP = 0.6
 
 
 # A line by number, the modes of one space near it, w, dw/ds, the mean of h, and dJ/df of each mode at fixed participation.

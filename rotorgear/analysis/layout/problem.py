@@ -23,6 +23,7 @@ from rotorgear.model.numbers import Numbers
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.optimise import COUNTS_FROM
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 
@@ -149,8 +150,10 @@ def _taken(numbers: Numbers, j: int, bound: float) -> float:
 _STEP = 1e-5
 # A place that coincides with another one is differentiated a hair beside it, where the shaft is cut alike on both sides.
 _HAIR = 2e-3
-# The search asks for a hair more than the margin: its mesh and the finer one that judges it differ by less.
+# The search asks for a hair more than the margin, and for participations a little below those that count: its mesh and the finer
+# one that judges it differ by less.
 _EDGE = 1.001
+_BELOW = 0.9
 
 
 @dataclass
@@ -250,10 +253,13 @@ class Problem:
         return at(t), np.array([(at(t + step) - at(t - step)) / 2e-3 for step in steps])
 
     def margins_kept(self, states: list[ModesAtSpeed]) -> bool:
-        """Whether no mode that counts is within the margin that was asked for, deviations included."""
+        """Whether the penalty has no mode left within the margin that was asked for, deviations included.
+
+        Both its edges are approached but not met: a hair inside them is enough.
+        """
         for state in states:
             near = np.abs(state.hz / state.line_hz[:, None] - 1.0) < _EDGE * self._wide(state, self.asked)
-            if np.any(near & (state.taken >= self.least)):
+            if np.any(near & (state.common >= _BELOW * COUNTS_FROM * self.least)):
                 return False
         return True
 

@@ -25,14 +25,16 @@ def sensitivities(
     resists = np.where(equilibrium.closed, lines.tilt_stiffness, 0.0)
     # Name, unit, df - dK q, and the part of dF that does not go through dq.
     terms: list[tuple[str, str, np.ndarray, np.ndarray]] = []
+    # Behind the flank that they are told of, index errors close what they open before it.
+    opens = np.array([-1.0 if state.behind else 1.0 for state in lines.states])
     masks = {mesh: np.array([name == mesh for name in lines.names], float) for mesh in lines.names}
     for mesh, own in masks.items():
-        mine = own * active
+        mine = own * active * opens
         terms.append((f"meshes.{mesh}.index_error", "N/m", lines.vectors @ mine, -mine))
     for mesh in masks:
         second = [s.contact.mesh == mesh and s.contact.helix == 1 for s in lines.states]
         if any(second):
-            mine = np.array(second) * active
+            mine = np.array(second) * active * opens
             terms.append((f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine))
     for mesh, own in masks.items():
         mine = own * equilibrium.force

@@ -81,6 +81,11 @@ class Equilibrated:
     faces: tuple[FaceLoad | None, ...] = ()
     passes: int = 0
 
+    @property
+    def presses(self) -> np.ndarray:
+        """(c,) whether a contact carries a force: flanks that only touch do not."""
+        return np.asarray(self.closed & (self.force > _PULLS * np.max(self.force, initial=0.0)))
+
 
 def equilibrate(
     system: System, speed: float, closed: np.ndarray | None = None, near: Sequence[LawState] = ()
@@ -123,8 +128,28 @@ def equilibrate(
             except _PushedMotionError:
                 closed[worst] = True
                 system = system.with_state(system.state.on_other_flank(system.state.forces[worst].contact.mesh))
+        elif (turned := _met_behind(equilibrium, size)) is not None:
+            system, closed = turned
         else:
             return equilibrium
+
+
+def _met_behind(equilibrium: Equilibrated, size: float) -> tuple[System, np.ndarray] | None:
+    """The system with a mesh on its other flanks where all its contacts stand open by more than the backlash.
+
+    With it (c,) the contacts that carry then; None where no open mesh meets the flank behind. Forces below `size` (N) are none.
+    """
+    system = equilibrium.system
+    names = equilibrium.lines.names
+    for name in dict.fromkeys(names):
+        own = np.array([other == name for other in names])
+        if system.layout.mesh(name).part.backlash is None or equilibrium.closed[own].any():
+            continue
+        turned = system.with_state(system.state.on_other_flank(name))
+        pressed = own & (contact_lines(turned).force(equilibrium.q) > size)
+        if pressed.any():
+            return turned, equilibrium.closed | pressed
+    return None
 
 
 class _PushedMotionError(AnalysisError):
@@ -257,9 +282,10 @@ def _laws_at_rest(
 
 
 def is_loaded(system: System) -> bool:
-    """Whether anything loads the model in statics: torques, forces from outside, weight or index errors."""
+    """Whether anything loads the model in statics: torques, forces from outside, weight, index errors or clockings."""
     gravity = system.model.operation.gravity if system.model.operation else None
     index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
+    index = index or bool(system.layout.clocking_gaps)
     return bool(system.state.applied or index or (gravity and any(gravity)) or system.layout.loaded_from_outside)
 
 

@@ -29,6 +29,7 @@ from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.stiffness.face_load import uniform_line
+from rotorgear.model.layout.layout import MOST_MISSED
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -140,6 +141,7 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
     shares, share_change = share_rows(equilibrium, parameters, derivatives)
     approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
     together = system.layout.assembly
+    clocking_gap = {state.contact.mesh: state.clocking_gap(system.layout) for state in states}
     # A free motion is no mistake in statics: where the loads do not push it, forces are the same whatever its size.
     count = equilibrium.motions.shape[1]
     free = f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
@@ -156,7 +158,7 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
         contact_mesh=equilibrium.lines.names,
         contact_helix=np.array([state.contact.helix for state in states], dtype=int),
         driver=tuple(state.contact.pinion if state.pinion_drives else state.contact.gear for state in states),
-        carries=equilibrium.closed,
+        carries=equilibrium.presses,
         mesh_force=equilibrium.force,
         mesh_force_on_gear=forces_on_gears(equilibrium),
         mesh_stiffness=equilibrium.lines.stiffness,
@@ -174,7 +176,9 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
         share_derivative=share_change,
         mesh_phase=phases_in_pitches(system.state),
         assembly=tuple(
-            LoopAssembly(mesh, closing, math.degrees(together.clocking.get(closing, 0.0)), rest)
+            LoopAssembly(
+                mesh, closing, math.degrees(together.clocking.get(closing, 0.0)), rest, clocking_gap.get(mesh) or 0.0
+            )
             for mesh, closing, rest in together.loops
         ),
         torque={item.name: item.torque for item in system.state.applied},
@@ -235,12 +239,14 @@ def _warnings(equilibrium: Equilibrated, faces: tuple[MeshFace, ...]) -> list[No
         (force.contact.mesh, force.contact.helix): force.torque_sense
         for force in equilibrium.system.model.torque_flow(equilibrium.system.direction).forces
     }
-    for state, closed in zip(lines.states, equilibrium.closed, strict=True):
+    for state, closed, presses in zip(lines.states, equilibrium.closed, equilibrium.presses, strict=True):
         contact = state.contact
         two = lines.names.count(contact.mesh) == 2
         which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if two else "")
         if not closed:
             notes.append(Note(which, "carries nothing", "its flanks stand apart under these loads and index errors"))
+        elif not presses:
+            notes.append(Note(which, "carries nothing", "its flanks touch, but no load reaches them"))
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
             notes.append(Note(which, "carries on the other flank than the torque flow in torsion says"))
     what = "closes a loop that can't be put together with the clockings given"
@@ -248,7 +254,7 @@ def _warnings(equilibrium: Equilibrated, faces: tuple[MeshFace, ...]) -> list[No
     notes += [
         Note(f"meshes.{mesh}", what, why, f"{rest:+.4f} pitches are missing")
         for mesh, closing, rest in layout.assembly.loops
-        if not closing and abs(rest) > 1e-6
+        if not closing and abs(rest) > MOST_MISSED
     ]
     for name, face in zip(lines.names, equilibrium.faces, strict=True):
         notes += [Note(f"meshes.{name}", note) for note in face.warnings] if face is not None else []

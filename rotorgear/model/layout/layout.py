@@ -23,6 +23,9 @@ from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
 
+# Pitches by which a loop may miss: beyond, the tips of teeth meet tips.
+MOST_MISSED = 0.25
+
 if TYPE_CHECKING:
     from rotorgear.casings.reduced_body import ReducedBody
     from rotorgear.casings.wheel import ReducedWheel
@@ -130,6 +133,18 @@ class Layout:
         rigid = [(c.from_shaft, c.to_shaft) for c in self.model.couplings.values() if c.turns_both]
         clocking = {name: gear.clocking for name, gear in self.model.gears.items() if gear.clocking is not None}
         return put_together(self.train, self.meshes, rigid, clocking)
+
+    @cached_property
+    def clocking_gaps(self) -> dict[str, float]:
+        """Mesh that closes a loop which the clockings of the file miss -> by how far its pinion's teeth stand behind, about +z.
+
+        In m along the flank normal. A loop that misses by more than a quarter of a pitch can't be put together, and is not here.
+        """
+        return {
+            name: rest * self.mesh(name).base_pitch
+            for name, closing, rest in self.assembly.loops
+            if not closing and rest and abs(rest) <= MOST_MISSED
+        }
 
     def mesh_frequency(self, mesh: str, speed: float) -> float | None:
         """Mesh frequency in Hz at a speed of the reference shaft in rad/s; None where no teeth are given."""

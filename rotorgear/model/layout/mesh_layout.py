@@ -214,6 +214,12 @@ class MeshLayout:
         )
 
     @property
+    def base_pitch(self) -> float:
+        """Distance of the flanks of two teeth along the flank normal, p_bn in m."""
+        pinion = self.pinion
+        return 2.0 * math.pi * pinion.base_radius * math.cos(pinion.base_helix_angle) / (pinion.part.teeth or 1)
+
+    @property
     def half_tooth(self) -> float:
         """Half the angle of the pinion's tooth at the working circle in rad: a quarter of the pitch, and the profile shift."""
         geometry = self.pinion.geometry

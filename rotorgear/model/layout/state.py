@@ -25,7 +25,6 @@ from rotorgear.model.layout.assembly import tooth_numbers
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
 from rotorgear.model.layout.spring import Spring, given_spring
-from rotorgear.model.parts.mesh import Mesh
 from rotorgear.note import Note
 
 if TYPE_CHECKING:
@@ -76,6 +75,7 @@ class MeshForce:
         face: how the contact resists a tilt along its face; None for one that does not.
         start: N, of a contact that is linear about its mean state over the mesh cycle or along its face, where the flanks have
             not approached: F = start + k (v . q - gap); None of one whose force is proportional to its deflection.
+        behind: whether the flank works that stands behind the one of the torque flow, which index errors are told of.
     """
 
     contact: Contact
@@ -85,15 +85,29 @@ class MeshForce:
     assumed: bool
     face: FaceState | None = None
     start: float | None = None
+    behind: bool = False
 
     @property
     def on_other_flank(self) -> MeshForce:
         """The same contact where the flanks on the other side of the teeth work."""
-        return replace(self, torque_sense=-self.torque_sense, pinion_drives=not self.pinion_drives, start=None)
+        turned = replace(self, torque_sense=-self.torque_sense, pinion_drives=not self.pinion_drives, start=None)
+        return replace(turned, behind=not self.behind)
 
-    def gap(self, mesh: Mesh) -> float:
-        """What must close before the contact carries (m): index errors, and what the tilt of its state adds at its place."""
-        own = mesh.index_error + (mesh.helix_index_error if self.contact.helix else 0.0)
+    def clocking_gap(self, layout: Layout) -> float:
+        """What the clockings of the file leave open (m) on the flank that errors of the mesh are told of."""
+        sense = -self.torque_sense if self.behind else self.torque_sense
+        return sense * layout.clocking_gaps.get(self.contact.mesh, 0.0)
+
+    def gap(self, layout: Layout) -> float:
+        """What must close before the contact carries (m).
+
+        Index errors, what clockings leave open, and what the tilt of its state adds at its place. Behind the flank that these are
+        told of, the backlash is what that one leaves.
+        """
+        mesh = layout.mesh(self.contact.mesh).part
+        own = mesh.index_error + (mesh.helix_index_error if self.contact.helix else 0.0) + self.clocking_gap(layout)
+        if self.behind:
+            own = (mesh.backlash or 0.0) - own
         return own if self.face is None else own + self.face.shift
 
     def about_face(self, face: FaceLoad, given: float, kind: Kind) -> MeshForce:
@@ -294,7 +308,12 @@ class State:
     @cached_property
     def about_nominal_flanks(self) -> State:
         """The same state told from the flanks that the file calls the driving ones, which may not be those that carry."""
-        return self._with(force if self.is_nominal(force) else force.on_other_flank for force in self.forces)
+        turned = (force if self.is_nominal(force) else force.on_other_flank for force in self.forces)
+        # Where the file names them, errors of the mesh are told of these flanks.
+        return self._with(
+            replace(force, behind=False) if self.layout.mesh(force.contact.mesh).part.nominal_driver else force
+            for force in turned
+        )
 
     @cached_property
     def phases(self) -> dict[str, float | None]:

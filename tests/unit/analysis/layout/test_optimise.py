@@ -184,6 +184,38 @@ def test_a_margin_out_of_reach_names_the_bounds_that_forbid_it():
     assert result.penalty_after < result.penalty_before
 
 
+# A backward mode of ROTOR, 10.4 % above the unbalance, takes part by this much: the only mode within 15 %.
+TAKES_PART = 1.2400e-4
+
+
+def inside_of(least: float, bounds: dict[str, str]) -> tuple[rg.OptimiseResult, list[float], list[float]]:
+    """A layout that keeps 15 %, and the participations within them before and after, over the least one that counts."""
+    given = {"margin": "15 %", "shaft_orders": [1], "searches": 1}
+    result = rg.optimise(rg.loads(ROTOR), "bearings.*.stiffness", **given, participation=least, bounds=bounds)
+    before, after = (
+        [row.participation / least for row in rows if abs(row.margin) < 0.15]
+        for rows in (result.modes_before, result.modes_after)
+    )
+    return result, before, after
+
+
+def test_no_search_ends_just_below_the_participation_that_counts():
+    result, [before], after = inside_of(TAKES_PART / 1.02, {})
+    assert before > 1.0
+    assert result.reached
+    assert max(after, default=0.0) < 0.7
+    assert len(result.nearly_counting) == len([share for share in after if share >= 0.5])
+
+
+def test_a_mode_just_below_the_least_participation_is_no_margin_and_is_named():
+    result, [before], [after] = inside_of(TAKES_PART / 0.9, {"bearings.*": "-0.1 %:0.1 %"})
+    assert 0.7 < after <= before < 1.0
+    assert not result.reached
+    [named] = result.nearly_counting
+    assert "Hz (+10.4 % from shaft rotor 1x, participation 0.012 %)" in named
+    assert named in " ".join(result.text().split())
+
+
 def test_the_least_mass_is_lighter_than_the_least_change_and_keeps_the_margin():
     free = "shafts.*.sections.*.outer_diameter, bearings.left.at"
     change = rg.optimise(rg.loads(ROTOR), free, margin="30 %", searches=1)

@@ -242,7 +242,8 @@ def test_the_sensitivity_to_a_centre_line_is_that_of_a_model_given_by_angles() -
 
 
 def test_a_branch_whose_index_error_is_too_large_carries_nothing_and_the_other_all() -> None:
-    data = changed(data_of("split_torque"), "meshes.stage_2a.index_error", "900 um")
+    # It opens at some 430 um; where its flanks stand farther apart than both backlashes of the branch, it jams on the other side.
+    data = changed(data_of("split_torque"), "meshes.stage_2a.index_error", "600 um")
     result = rg.static(rg.Model(**data))
     share = {row.mesh: row.share for row in result.shares}
     force = {mesh: result.mesh_force[result.contacts_of(mesh)].sum() for mesh in result.model.meshes}
