@@ -53,13 +53,19 @@ _RESOLVED = 2.0
 class Bubbles:
     """Bubble modes of e elements of one order: w^2 (e, b), and what they take from an element's dofs, (e, b, d).
 
-    `lumping` is what consistent mass adds to a lumped one, (e, 12, 12).
+    `circulatory` is that of the rotating material at unit spin and damping. A turn couples each mode of bending with the same
+    mode in the other plane, its `partner` (e, b), and no other one as much: `spun` and `swept` (e, b) are the gyroscopic and the
+    circulatory entries between the two. `lumping` is what consistent mass adds to a lumped one, (e, 12, 12).
     """
 
     squared: np.ndarray
     mass: np.ndarray
     stiffness: np.ndarray
     gyroscopic: np.ndarray
+    circulatory: np.ndarray
+    partner: np.ndarray
+    spun: np.ndarray
+    swept: np.ndarray
     lumping: np.ndarray | None
 
 
@@ -124,15 +130,17 @@ def _moved(
     r = squared * (bubbles.mass @ x) + elastic * (bubbles.stiffness @ x)
     t = squared * (bubbles.mass @ y) + elastic * (bubbles.stiffness @ y)
     if spin:
-        r = r + s * spin * (bubbles.gyroscopic @ x)
-        t = t - s * spin * (bubbles.gyroscopic @ y)
+        # Both are skew, so that the left residual has them with the other sign.
+        r = r + spin * (s * (bubbles.gyroscopic @ x) + internal * (bubbles.circulatory @ x))
+        t = t - spin * (s * (bubbles.gyroscopic @ y) + internal * (bubbles.circulatory @ y))
     w2 = bubbles.squared[:, :, None]
     coarse = np.any(w2 < _RESOLVED * np.abs(s) ** 2, axis=1)
-    # Rotating damping couples the planes of a bubble: seen in the sense of each whirl, the stiffness is w^2 (1 -+ i eta W).
+    # A bubble of bending and its partner in the other plane: [held, turned; -turned, held]; others answer alone.
     held = squared + elastic * w2
-    gaps = np.array([held + turn * 1j * internal * spin * w2 for turn in (1.0, -1.0)])
-    gap = gaps[0] if not internal * spin else np.where(np.abs(gaps[0]) < np.abs(gaps[1]), *gaps)
-    moved = np.sum(t * r / np.where(gap != 0.0, gap, np.inf), axis=1)
+    turned = spin * (s * bubbles.spun[:, :, None] + internal * bubbles.swept[:, :, None])
+    gap = held**2 + turned**2
+    answer = held * r - turned * np.take_along_axis(r, bubbles.partner[:, :, None], axis=1)
+    moved = np.sum(t * answer / np.where(gap != 0.0, gap, np.inf), axis=1)
     if bubbles.lumping is not None:
         moved = moved - squared * np.einsum("edm,edf,efm->em", y, bubbles.lumping, x)
     # Where nothing moves, a coarse element does no harm.
@@ -142,8 +150,10 @@ def _moved(
 @kept_by_content(rows=32, results=128)
 def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> Bubbles:
     """Modes of the bubbles of an element that is two orders richer, between fixed nodes, for each different element."""
-    rich = distinct_elements(kinds, order=order + _RICHER)
+    rich = distinct_elements(kinds, order=order + _RICHER, internal_damping=1.0)
     K = rich.stiffness
+    swept = rich.circulatory_per_speed
+    assert swept is not None
     assert K is not None
     assert rich.mass is not None
     assert rich.gyroscopic is not None
@@ -151,20 +161,26 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
     present = np.concatenate([np.arange(12), 12 + bubble_places(order, order + _RICHER, shear)])
     new = ~np.isin(used, present)
     squared = []
-    taken: list[list[np.ndarray]] = [[], [], []]
+    taken: list[list[np.ndarray]] = [[], [], [], []]
+    turning: list[list[np.ndarray]] = [[], [], []]
     for k in range(len(kinds.length)):
         values, modes = symmetric_pair(K[k][np.ix_(used, used)], rich.mass[k][np.ix_(used, used)])
         squared.append(values)
         # The residual against bubbles that are there already is zero.
-        for A, rows in zip((rich.mass, K, rich.gyroscopic), taken, strict=True):
+        for A, rows in zip((rich.mass, K, rich.gyroscopic, swept), taken, strict=True):
             rows.append(modes[new].T @ A[k][np.ix_(used[new], present)])
+        between = [modes.T @ A[k][np.ix_(used, used)] @ modes for A in (swept, rich.gyroscopic)]
+        partner = np.argmax(np.abs(between[0]), axis=1)
+        at = np.arange(len(partner)), partner
+        for one, into in zip((partner, between[1][at], between[0][at]), turning, strict=True):
+            into.append(one)
     lumping = None
     if lumped:
         plain = distinct_elements(kinds, lumped=True).mass
         assert plain is not None
         lumping = rich.mass[:, :12, :12] - plain
-    mass, stiffness, gyroscopic = (np.array(rows) for rows in taken)
-    return Bubbles(np.array(squared), mass, stiffness, gyroscopic, lumping)
+    mass, stiffness, gyroscopic, circulatory, partner, spun, swept_by = (np.array(rows) for rows in (*taken, *turning))
+    return Bubbles(np.array(squared), mass, stiffness, gyroscopic, circulatory, partner, spun, swept_by, lumping)
 
 
 _LIGHT = 0.03  # damping ratio up to which x does for an estimate

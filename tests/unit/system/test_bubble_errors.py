@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.modal.refine import errors_of, total_error
+from rotorgear.analysis.modal.solve import Wanted, solve
 from rotorgear.system.bubble_errors import bubble_errors
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
@@ -40,3 +42,41 @@ def test_the_estimate_is_the_error_while_a_thick_shaft_turns(
     x = np.linalg.lstsq(coarse.dofs.transform.toarray(), shapes, rcond=None)[0]
     (estimate,) = bubble_errors(coarse, speed, found.eigenvalues, x).values()
     assert estimate == pytest.approx(error, rel=0.05)
+
+
+@pytest.mark.parametrize("turned", [0.1, 0.3, 0.6, 1.3, 2.0])
+@pytest.mark.parametrize("speed", [5000.0, -8000.0, 20000.0])
+def test_the_estimate_is_the_error_of_shafts_whose_material_damps_strongly(speed: float, turned: float) -> None:
+    model = rg.Model(
+        motions=["bending", "axial", "torsion"],
+        materials=STEEL,
+        shafts={
+            "rotor": {
+                "sections": [{"length": 0.5, "outer_diameter": 0.3}, {"length": 0.3, "outer_diameter": 0.2}],
+                "internal_damping": turned / abs(speed),
+            }
+        },
+        bearings={
+            "start": {"shaft": "rotor", "at": "start", "stiffness": {"radial": 1e9, "axial": 1e9}},
+            "end": {"shaft": "rotor", "at": "end", "stiffness": {"radial": 2e9}},
+        },
+        supports={"held": {"shaft": "rotor", "at": "start", "stiffness": {"torsion": 1e8}}},
+        operation={"input_shaft": "rotor"},
+    )
+
+    def solved(order: int) -> tuple[np.ndarray, np.ndarray]:
+        system = System(model, plan=Plan(2, order))
+        found = solve(system, Wanted(speed, 5, None, model.motions))
+        parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid)
+        return found.eigenvalues, total_error(parts, 5)
+
+    exact, _ = solved(7)
+    s, estimate = solved(2)
+    # Motions that the material damps this much have no stiffness of their own, and no estimate (docs/theory_structure.md).
+    light = np.abs(s.real) < 0.5 * np.abs(s)
+    assert np.count_nonzero(light) >= 2
+    nearest = exact[np.argmin(np.abs(s[:, None] - exact), axis=1)]
+    error = np.abs(s - nearest) / np.abs(nearest)
+    light &= error > 1e-8
+    ratio = estimate[light] / error[light]
+    assert ratio == pytest.approx(1.0, rel=0.05)
