@@ -44,6 +44,11 @@ class Report:
     missing: dict[str, str]
     numbers: dict[str, Any]
 
+    def __repr__(self) -> str:
+        """Where the page is, and the names of what stands on it."""
+        lacks = f", missing: {', '.join(self.missing)}" if self.missing else ""
+        return f"Report('{self.path}': {', '.join(self.results)}{lacks})"
+
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON: results by name under `results`, each with its keys of docs/commands.md."""
         return self.numbers

@@ -102,7 +102,8 @@ def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np
         name = result.declarations[field].label + whose
         lower.plot(over, values(result, field, "%")[:, 0, contact], ".-", color=colour, label=name, **look)
     name_axes(lower, parameter_name(result.address[0], result.unit[0]), "share of\ntime, %")
-    lower.legend(fontsize=7)
+    # Shares lie at 0 or 100 % nearly everywhere, so that no corner of the panel is free.
+    lower.figure.legend(*lower.get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
     for one in axes:
         one.grid(alpha=0.25)
     return np.asarray(axes)

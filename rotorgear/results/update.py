@@ -46,7 +46,7 @@ class UpdatedLine(Record):
     campaign: str = of(
         "name of the campaign that measured it", note="; empty where there is one only", column="campaign"
     )
-    mode_number: int = of("number of the mode", note=", from 1, elastic modes counted", column="mode")
+    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted", column="mode")
     before_hz: float = of("frequency of the model before the update", "Hz", column="before")
     after_hz: float = of("frequency after the update", "Hz", column="after")
     held_out_hz: float = of("frequency predicted from the other lines alone", "Hz", column="held out")

@@ -66,6 +66,11 @@ class CampaignModes:
         """Number of the campaign that each mode belongs to, (m,)."""
         return np.repeat(np.arange(len(self.parts)), [len(part.eigenvalues) for part in self.parts])
 
+    @cached_property
+    def numbers(self) -> NDArray[np.intp]:
+        """Number of each mode in its campaign, as `modal` counts (m,)."""
+        return np.concatenate([part.numbers for part in self.parts])
+
     def overlap(self, other: CampaignModes) -> NDArray[np.float64]:
         """How far each mode here is one there (m, m'); nothing between campaigns."""
         found = np.zeros((len(self.campaign), len(other.campaign)))

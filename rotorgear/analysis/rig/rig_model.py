@@ -36,6 +36,7 @@ class RigModes:
         vectors: shapes X (n, m), X^H (K + w^2 M) X = 2 w^2: modal mass 1 at standstill, where they are real.
         at_points: their values at s points (m, s).
         carriers: rigid and elastic shapes, of any size (n, m').
+        numbers: their numbers among all modes, rigid-body motions counted, from 1 (m,): those of `modal`.
     """
 
     system: System
@@ -44,6 +45,7 @@ class RigModes:
     vectors: Shapes
     at_points: Shapes
     carriers: Shapes
+    numbers: NDArray[np.intp]
 
     @property
     def frequency_hz(self) -> NDArray[np.float64]:
@@ -95,7 +97,8 @@ class RigModel:
             doubled += np.real(np.sum(X.conj() * (system.mass @ X), axis=0))
             X = X * np.sqrt(2.0 / doubled)
         rows = point_rows(system, self.points)
-        return RigModes(system, self.speed, squares, X, np.asarray(rows @ X).T, found.vectors)
+        numbers = np.flatnonzero(elastic) + 1
+        return RigModes(system, self.speed, squares, X, np.asarray(rows @ X).T, found.vectors, numbers)
 
     def derivatives(
         self, x: NDArray[np.float64], modes: RigModes, chosen: NDArray[np.intp], *, shapes: bool

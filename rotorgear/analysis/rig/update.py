@@ -173,8 +173,7 @@ def _result(
             UpdatedLine(
                 rig=problem.given.lines[line],
                 campaign=campaigns[campaign],
-                # Modes count from 1 in each campaign.
-                mode_number=int(mode - np.searchsorted(state.modes.campaign, campaign)) + 1,
+                mode_number=int(state.modes.numbers[mode]),
                 before_hz=float(before_hz[min(old, len(before_hz) - 1)]),
                 after_hz=float(after_hz[mode]),
                 held_out_hz=float(after_hz[mode] * np.exp(slope @ (x - state.x))),

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.errors import MissingExtraError
+from rotorgear.page.report import Report
 from tests.paths import ROOT
 
 STAGE = ROOT / "models" / "helical_pair.toml"
@@ -39,6 +40,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert done.stdout.startswith("wrote ")
     assert ", after " not in done.stdout
     return place
+
+
+def test_a_report_shows_as_one_line() -> None:
+    found = rg.static(rg.load(STAGE))
+    shown = repr(Report(Path("a.html"), {"static": found}, {"rig": "no lines given"}, {}))
+    assert shown == "Report('a.html': static, missing: rig)"
 
 
 @pytest.fixture(scope="module")
