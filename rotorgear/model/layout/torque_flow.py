@@ -173,6 +173,10 @@ def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
     return ({} if problems else loads), problems
 
 
+# Torques whose powers differ by no more than this share of the largest balance: their digits are rounded.
+_ROUNDED = 1e-6
+
+
 def _balanced(
     train: Train, found: list[AppliedTorque], open_ends: list[tuple[str, Load, Place]]
 ) -> tuple[list[AppliedTorque], list[Problem]]:
@@ -197,10 +201,16 @@ def _balanced(
                 other = "output" if load.kind == "input" else "input"
                 problems.append(Problem(name, "", text, f"change the other torques, or make it an {other}"))
             found.append(AppliedTorque(name, *place, torque))
-        elif abs(excess) > 1e-6 * scale:
+        elif abs(excess) > _ROUNDED * scale:
             text = f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'"
             hint = "leave the torque of one output out and it takes the rest"
             problems.append(Problem("loads", text, "torques that balance", hint))
+        elif excess:
+            # What the digits leave is taken by the largest: a train that turns freely has no equilibrium otherwise.
+            power = [abs(item.torque * train.ratio(item.shaft)) if item in given else -1.0 for item in found]
+            largest = power.index(max(power))
+            item = found[largest]
+            found[largest] = replace(item, torque=item.torque - excess / train.ratio(item.shaft))
     return found, problems
 
 
