@@ -53,11 +53,12 @@ def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
     for axis in (inside, beside):
         axis.set_xlabel("angle from +x, deg")
     rpm = [row.speed * RPM_PER_RAD_S for row in result.over_speed]
-    pairs = ((2, 2),) if result.along_shaft else ((0, 0), (0, 1), (1, 0), (1, 1))
+    own = (2,) if result.along_shaft else range(min(2, len(result.components)))
+    pairs = [(i, j) for i in own for j in own]
     for axis, key, factor, unit in ((stiffness, "stiffness", 1e-6, "N/um"), (damping, "damping", 1e-3, "kN s/m")):
         for (i, j), colour in zip(pairs, COLOURS, strict=False):
             entries = [factor * float(getattr(row, key)[i, j]) for row in result.over_speed]
-            axis.plot(rpm, entries, "o-", ms=3, lw=1.4, color=colour, label=f"{'xyz'[i]}{'xyz'[j]}")
+            axis.plot(rpm, entries, "o-", ms=3, lw=1.4, color=colour, label=result.components[i] + result.components[j])
         name_axes(axis, label(BearingSpeed, "speed"), label(BearingSpeed, key, unit), legend=2)
         if result.threshold_speed is not None:
             axis.axvline(result.threshold_speed * RPM_PER_RAD_S, color="#999999", lw=0.8, ls=":")

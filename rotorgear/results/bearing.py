@@ -197,6 +197,13 @@ class BearingSheet(ModelResult, kind="bearing"):
         """Whether it carries along its shaft, and nothing across."""
         return self.oil is not None and self.oil.along_shaft
 
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of its displacements, in their order; a nonlinear element says its own."""
+        kind, _, name = self.bearing.partition(".")
+        given = getattr(getattr(self.model, kind)[name], "directions", _COMPONENTS)
+        return tuple(given)[: len(self.bearing_load)]
+
     @derived("largest load of a rolling element", "N")
     def largest_element_load(self) -> float | None:
         """Of all of them, with the cage at angle 0; None for a film."""
@@ -235,7 +242,7 @@ class BearingSheet(ModelResult, kind="bearing"):
         """
         shown = list(range(2 if self.along_shaft else 0, len(self.bearing_load)))
         damps = bool(np.any(self.bearing_damping))
-        names = [_COMPONENTS[i] for i in shown]
+        names = [self.components[i] for i in shown]
         parts: list[tuple[list[str], np.ndarray]] = [
             (["load"], self.bearing_load[shown, None]),
             (["moves"], 1e6 * self.bearing_displacement[shown, None]),
@@ -247,7 +254,10 @@ class BearingSheet(ModelResult, kind="bearing"):
         tables = {"State": parts, "Damping": damping} if len(names) > 2 else {"State": parts + damping}
         for caption, columns in tables.items():
             rows = [
-                (f"{name}, {'N' if shown[k] < 3 else 'N m'}", *(cell for _, A in columns for cell in _cells(A[k], A)))
+                (
+                    f"{name}, {'N' if name in _COMPONENTS[:3] else 'N m'}",
+                    *(cell for _, A in columns for cell in _cells(A[k], A)),
+                )
                 for k, name in enumerate(names)
             ]
             if columns:
@@ -281,8 +291,8 @@ class BearingSheet(ModelResult, kind="bearing"):
     def _speeds(self) -> Table:
         """Across the shaft, or along it; all components are in the JSON output."""
         damps = any(np.any(row.damping) for row in self.over_speed)
-        names = ("zz",) if self.along_shaft else ("xx", "xy", "yx", "yy")
         own = slice(2, 3) if self.along_shaft else slice(0, 2)
+        names = [one + other for one in self.components[own] for other in self.components[own]]
         told = any(row.log_decrement is not None for row in self.over_speed)
         rows = []
         for row in self.over_speed:

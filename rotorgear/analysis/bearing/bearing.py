@@ -99,7 +99,9 @@ def bearing(
     address = address_of(model, name)
     given = speed_or_operating(speed, model) or 0.0
     own = by_its_law(model, address)
-    ratio = float(model.layout.train.ratio(getattr(model, address.partition(".")[0])[address.partition(".")[2]].shaft))
+    part = getattr(model, address.partition(".")[0])[address.partition(".")[2]]
+    ratio = float(model.layout.train.ratio(part.shaft))
+    across = tuple(getattr(part, "directions", ("x", "y")))[:2] == ("x", "y")
     films = [f"bearings.{one}" for one, bearing in own.bearings.items() if bearing.has_film]
     if not given and address in films:
         raise AnalysisError(f"{address}: a film carries where its journal turns; give a speed")
@@ -132,7 +134,9 @@ def bearing(
             notes.append(Note("", f"{rpm} is left out", str(missing)))
             continue
         there = law_at(near, address)
-        mass, whirl = rigid_threshold(there.stiffness[:2, :2], there.damping[:2, :2], ratio * at)
+        mass, whirl = None, None
+        if across:
+            mass, whirl = rigid_threshold(there.stiffness[:2, :2], there.damping[:2, :2], ratio * at)
         rows.append(
             BearingSpeed(
                 speed=at,

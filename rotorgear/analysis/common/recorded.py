@@ -4,6 +4,7 @@ values of the model that make no sense."""
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import wraps
@@ -25,6 +26,7 @@ P = ParamSpec("P")
 R = TypeVar("R", bound=Result)
 # They say how the work is done or watched, and change no number.
 _NOT_SETTINGS = ("progress", "stream", "executor", "critical_speeds")
+_LISTS = ("Sequence", "Iterable", "Collection", "list", "tuple")
 # Arguments that are speeds of the input shaft; a transient's may be pairs of time and speed.
 _SPEEDS = ("speed", "speed_to", "start", "stop", "speeds")
 
@@ -49,6 +51,8 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         (_, subject), *given = bound.arguments.items()
         if "Model" in analysed and not any(kind.__name__ in analysed for kind in type(subject).__mro__):
             raise AnalysisError(f"{analysis.__name__}: {_no_model(subject)}")
+        for name, value in given:
+            _check_list(name, value, str(signature.parameters[name].annotation))
         result = analysis(*args, **kwargs)
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         clock.lap("analysis")
@@ -58,6 +62,17 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 
     return run
+
+
+def _check_list(name: str, value: Any, annotation: str) -> None:
+    """Refuse a text or a number where a list of such is meant: a text would be read letter by letter."""
+    if isinstance(value, bool) or not isinstance(value, str | Real):
+        return
+    alone = [kind.strip() for kind in re.sub(r"\[[^\[\]]*\]", "[]", re.sub(r"\[[^\[\]]*\]", "", annotation)).split("|")]
+    listed = any(kind.partition("[")[0] in _LISTS for kind in alone)
+    taken = ("str", "Path", "Any") if isinstance(value, str) else ("float", "int", "np.ndarray", "Any")
+    if listed and not any(kind in taken for kind in alone):
+        raise AnalysisError(f"{name}: got {value!r}, expected a list, such as [{value!r}]")
 
 
 def _doubts(model: Model, given: Mapping[str, Any]) -> Iterator[str]:
