@@ -111,11 +111,23 @@ def left_out(
     undamped = undamped or speed is None
     kinds = {analysis, "undamped"} if undamped and analysis == "modes" else {analysis}
     absent = list(_without_motion(system))
+    # Statics crosses the backlash where the flanks behind carry.
+    crossed = {
+        f"meshes.{force.contact.mesh}.backlash"
+        for force in system.state.forces
+        if force.behind and analysis == "static"
+    }
     notes = (
         *_dofs(system),
         *_matrices(system, analysis, speed, undamped=undamped, modal_damping=modal_damping),
         *absent,
-        *(note for row in _NOT_TAKEN if kinds & set(row[2].split()) for note in _given(model, row)),
+        *(
+            note
+            for row in _NOT_TAKEN
+            if kinds & set(row[2].split())
+            for note in _given(model, row)
+            if note.part not in crossed
+        ),
         *_flanks(model, analysis),
         *_beside_laws(model, analysis),
         *_operating_point(system, analysis, speed),

@@ -67,6 +67,29 @@ def rotor(**changes: Any) -> rg.Model:
     )
 
 
+def train(**mesh: Any) -> rg.Model:
+    """Three gears in a row, in torsion only."""
+
+    def gear(teeth: int, shaft: str) -> dict[str, Any]:
+        sizes = {"teeth": teeth, "base_radius": 1e-3 * teeth, "mass": 1.0}
+        inertias = {"polar_inertia": 1e-6 * teeth**2, "diametral_inertia": 5e-7 * teeth**2}
+        return {"shaft": shaft, "at": "start", "kind": "spur", **sizes, **inertias}
+
+    shared = {"centre_line_angle": 0.3, "pressure_angle": 0.349, "phase": 0.4, "damping_ratio": 0.05, "backlash": 1e-4}
+    shared |= {"transmission_error": [{"harmonic": 1, "amplitude": 1e-6}]}
+    return rg.Model(
+        schema_version=1,
+        motions=["torsion"],
+        operation={"input_shaft": "a", "output_shaft": "c", "speed": 120.0, "power": 5e3},
+        shafts={name: {} for name in "abc"},
+        gears={"pinion": gear(23, "a"), "idler": gear(31, "b"), "wheel": gear(57, "c")},
+        meshes={
+            "one": {"pinion": "pinion", "gear": "idler", "stiffness": 3e8, **shared, **mesh},
+            "two": {"pinion": "idler", "gear": "wheel", "stiffness": 4e8, **shared, **mesh},
+        },
+    )
+
+
 FILM = {"radius": "20 mm", "length": "20 mm", "clearance": "90 um", "viscosity": "0.01 Pa s"}
 ELEMENT = {"law": "journal_bearing", "shaft": "two", "at": "end", "parameters": FILM}
 
@@ -95,6 +118,10 @@ MODELS: dict[str, Callable[[], rg.Model]] = {
     "square law": lambda: torques(speed_power=2.0),
     "rotor": rotor,
     "journal": lambda: disk_in_bearing(JOURNAL, '["0 N", "-500 N", "0 N"]', speed="1500 rpm"),
+    "idler": train,
+    "idler with ripple": lambda: train(
+        stiffness_variation=[{"harmonic": 1, "amplitude": 0.15}], application_factor=1.1
+    ),
     "split torque": lambda: rg.load(SHIPPED / "split_torque.toml"),
     "backlash pair": lambda: rg.load(SHIPPED / "backlash_pair.toml"),
 }
