@@ -53,7 +53,8 @@ class SnippetError(Exception):
 class Block:
     """A marked block: its page, the line of its fence (from 1), its language, its mark, and its text.
 
-    The argument is the file to write, or the command of a console block that has one. An output of a long block is long, as that is. Blocks that differ in nothing but their line are equal.
+    The argument is the file to write, or the command of a console block that has one. An output of a long block is long, as
+    that is. Blocks that differ in nothing but their line are equal.
     """
 
     page: Path
