@@ -222,6 +222,12 @@ def inner_geometry(designation: str) -> tuple[dict[str, Any], str]:
     return keys, source
 
 
+def bore_of(designation: str | None) -> float | None:
+    """Bore in m that a designation says; None of none, or of one that is not in the tables."""
+    found = designated(designation) if designation else None
+    return found.bore if found else None
+
+
 CLASSES = ("C2", "CN", "C3", "C4", "C5")
 # Bore up to and including, mm; least and largest clearance of each class, um. The first row begins above 10 mm.
 _FROM = 10.0

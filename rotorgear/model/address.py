@@ -12,6 +12,7 @@ from copy import deepcopy
 from typing import Any
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.forces.designations import bore_of, inner_geometry
 from rotorgear.model.parts.fields import Part
 from rotorgear.model.parts.old_names import current_address
 from rotorgear.model.parts.tables import Tables
@@ -73,6 +74,11 @@ def _put(data: dict[str, Any], places: Iterable[Place], value: Any) -> None:
             # One number for the stiffness or damping of a bearing is the radial one, as on a drawing; the others stay.
             old["radial"] = value
             continue
+        if key == "designation" and isinstance(value, str):
+            # What the former designation filled is no word of the file: the new one fills it again.
+            for filled, known in {**inner_geometry(str(old))[0], "bore": bore_of(str(old))}.items():
+                if owner.get(filled) == known:
+                    del owner[filled]
         # Where a whole number stands, a whole float is one too: numbers of teeth and harmonics are swept in floats.
         whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
         owner[key] = int(value) if whole else value

@@ -203,8 +203,10 @@ def _crossings(axis: Any, result: CampbellResult) -> None:
         place = _free_place(rings[k], rings, taken) if len(taken) < _MOST_LABELS else None
         if place is not None:
             taken = np.vstack([taken, place])
-            look = {"transform": axis.transAxes, "fontsize": 7, "va": "center", "ha": "center", "bbox": box}
-            axis.text(*place, f"{points[k][0]:.0f}", zorder=6, **look)
+            # A thin line from a label to its ring: another branch may lie beside it.
+            thread = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 0.0, "shrinkB": 0.5 * float(np.sqrt(size[k]))}
+            look = {"fontsize": 7, "va": "center", "ha": "center", "bbox": box, "arrowprops": thread}
+            axis.annotate(f"{points[k][0]:.0f}", points[k], place, textcoords="axes fraction", zorder=6, **look)
 
 
 # Size of a short label, and distances at which it is tried, as shares of the axes.

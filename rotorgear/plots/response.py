@@ -23,8 +23,8 @@ _HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
     """Draw amplitudes over speed: mesh forces, transmission errors, bearing forces and accelerations.
 
-    Left: each mesh, bearing or point with all its orders together (root of the sum of squares); right: the strongest of them
-    by order. The eight strongest lines are drawn. The dashed line is the operating speed.
+    Left: each mesh, bearing or point with all its orders together (root of the sum of squares, of bearings over x, y and z,
+    too); right: the strongest of them by order. The eight strongest lines are drawn. The dashed line is the operating speed.
 
     Args:
         result: a run-up.
@@ -42,7 +42,8 @@ def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
     axes = np.atleast_2d(figure.subplots(max(len(rows), 1), 2, sharex=True))
     for (left, right), (quantity, names, size) in zip(axes, rows, strict=False):
         total = np.sqrt((size**2).sum(axis=0))  # (s, lines)
-        _lines(left, result, names, total.T, quantity)
+        quantity, _, squares = quantity.partition("; ")
+        _lines(left, result, names, total.T, f"{quantity}: root of the sum of squares of {squares}all orders")
         strongest = int(np.argmax(total.max(axis=0)))
         unit = quantity.rpartition(", ")[2]
         _lines(right, result, list(result.orders), size[:, :, strongest], f"{names[strongest]} by order, {unit}")
@@ -58,7 +59,8 @@ def _quantities(result: ResponseResult) -> Iterator[tuple[str, list[str], np.nda
         sizes = np.abs(values(result, field, unit))
         of_meshes = [sizes[:, :, result.contacts_of(mesh)].max(axis=2) for mesh in meshes]
         yield label(result, field, unit), meshes, np.stack(of_meshes, axis=2)
-    yield label(result, "bearing_force"), list(result.bearings), np.linalg.norm(np.abs(result.bearing_force), axis=3)
+    force = f"{label(result, 'bearing_force')}; x, y, z and "
+    yield force, list(result.bearings), np.linalg.norm(np.abs(result.bearing_force), axis=3)
     turns = np.array([result.model.points[name].direction in _TURNING for name in result.points], bool)
     for chosen, unit in ((~turns, "m/s$^2$"), (turns, "rad/s$^2$")):
         names = [name for name, drawn in zip(result.points, chosen, strict=True) if drawn]
@@ -121,15 +123,19 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
     if len(result.speeds) < 2:
         raise AnalysisError("a waterfall needs more than one speed")
     title, unit, size = waterfall_of(result, at)
-    chosen = np.arange(len(result.speeds) - 1, -1, -(len(result.speeds) // _SPECTRA + 1))[::-1]
     rpm = np.abs(result.speed_rpm)
-    top = float(size[:, chosen].max()) or 1.0
+    # The highest peak of all speeds is drawn, wherever it lies between the spectra.
+    highest = int(np.argmax(size.max(axis=0)))
+    evenly = np.arange(len(result.speeds) - 1, -1, -(len(result.speeds) // _SPECTRA + 1))
+    chosen = np.union1d(evenly, [highest])
+    top = float(size.max()) or 1.0
     step = float(rpm[chosen[-1]] - rpm[chosen[0]]) / len(chosen)
     shown = [o for o in range(len(result.orders)) if size[o].max() >= _SHOWN * top]
     widest = 1.03 * float(result.frequency_hz[shown].max())
     weak = len(result.orders) - len(shown)
     left_out = f", {weak} weaker order{'s'[: weak != 1]} left out" if weak else ""
-    peak = f"{title}: highest peak {top:.4g} {unit}, logarithmic over {_DECADES:g} decades{left_out}"
+    at_rpm = f"at {rpm[highest]:.0f} rpm"
+    peak = f"{title}: highest peak {top:.4g} {unit} {at_rpm}, logarithmic over {_DECADES:g} decades{left_out}"
     axis = axes_for(ax, (10.0, 7.0), f"{result.model.title}\n{peak}")
     labelled = -widest
     for order in shown:  # the way of each order, lowest first
@@ -169,7 +175,11 @@ def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.n
         return f"dynamic force of mesh {name}", "N", force.max(axis=2)
     if name in result.bearings:
         force = result.bearing_force[:, :, result.bearings.index(name)]
-        return f"force of bearing {name}", "N", np.linalg.norm(np.abs(force), axis=2)
+        return (
+            f"force of bearing {name} (root of the sum of squares of x, y, z)",
+            "N",
+            np.linalg.norm(np.abs(force), axis=2),
+        )
     if name in result.points:
         turns = result.model.points[name].direction in _TURNING
         size = np.abs(result.acceleration[:, :, result.points.index(name)])

@@ -139,7 +139,9 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "share of a motion in the strain energy", "", "MOTION", "speed", "branch"
     )
     mesh_strain: dict[str, np.ndarray] = of("share of each mesh in the strain energy", "", "MESH", "speed", "branch")
-    description: tuple[str, ...] = of("what moves", "", "branch", note=", at the first speed")
+    description: tuple[str, ...] = of(
+        "what moves", "", "branch", note=", at the last speed at which the branch oscillates"
+    )
     error_estimate: np.ndarray = of(
         "estimated relative discretisation error", "", "branch", note=", the larger of both ends", form=".0e"
     )
@@ -179,7 +181,8 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
             Column("log dec.", "log_decrement", small, entry=(end,)),
             Column("whirl", lambda b: self.whirl_word(-1, b)),
         )
-        yield table_over(self, "branch", *columns, "description", caption="Branches")
+        caption = f"Branches; log dec., whirl and what moves at {last:.6g} rpm"
+        yield table_over(self, "branch", *columns, "description", caption=caption, titled=True)
         if self.operating_speed is not None and self.margins:
             at = f"Margins at {self.operating_speed * RPM_PER_RAD_S:.6g} rpm"
             hits = Column("", "branch", where=lambda one: one.branch > 0)

@@ -37,6 +37,7 @@ class Peak(Record):
         note=" of this quantity at this order and speed; `null` where no loaded teeth shake, or where they part",
     )
     teeth_part: bool = of("whether the linear solution would part loaded teeth there")
+    axis: str = of("axis of the amplitude", note=' of a force or displacement, "x", "y" or "z"; else `""`', default="")
 
 
 # rho c of air at 20 degrees and 1 atm, in kg/(m^2 s).
@@ -215,6 +216,8 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         if self.contact_mesh:
             yield TRANSMISSION_WORDS
         yield "amplitudes are half of peak to peak, each order by itself; forces without their mean"
+        if any(peak.axis for peak in self.largest):
+            yield "x, y or z: the axis of this amplitude; a picture shows the root of the sum of squares of all three"
         yield f"{counted(len(self.speeds), 'speeds')}, {self.dofs} dofs, {self.cost}; {self.method}"
         yield (
             f"solver error {error_words(self.solver_error)} at {self.checked} points checked; "
@@ -240,7 +243,7 @@ class ResponseResult(AboutEquilibrium, kind="response"):
 
         columns: list[Column | str] = [
             Column("", "quantity", lambda quantity: "transm. error" if quantity == "transmission error" else quantity),
-            Column(" ", "part"),
+            Column(" ", lambda peak: f"{peak.part} {peak.axis}".rstrip()),
             Column("order no", lambda peak: peak.order + 1),
             "speed_rpm",
             "frequency_hz",

@@ -345,7 +345,7 @@ class StaticResult(AboutEquilibrium, kind="static"):
             )
             rows.append((Cell(place.partition(".")[2].replace(" left", " L").replace(" right", " R")), *cells))
         heads = ("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
-        return Table(tuple(map(Column, heads)), rows, "Displacements")
+        return Table(tuple(map(Column, heads)), rows, "Displacements: tilts and twist in urad")
 
 
 def _triple(values: np.ndarray) -> str:

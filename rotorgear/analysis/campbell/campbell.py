@@ -289,9 +289,9 @@ class _Diagram:
             at = np.hstack([shapes.coordinates(chain.group, chain.q[place][:, None]) for chain in known])
             margin = margins(lines, met, operating, s[place], shapes.portraits(at, np.full(len(known), operating)))
         strain = {name: v for name, v in seen.energies.strain.items() if name.startswith("meshes.")}
-        # A branch is described by its mode at the first speed where it oscillates: all of them exist there, but not everywhere.
-        first = [int(np.argmax(np.isfinite(chain.s))) for chain in chains]
-        columns = [shapes.coordinates(chain.group, chain.q[n][:, None]) for chain, n in zip(chains, first, strict=True)]
+        # A branch is described by its mode at the last speed asked for at which it oscillates: its whirl is that there, too.
+        told = [int(kept[np.flatnonzero(np.isfinite(chain.s[kept]))[-1]]) for chain in chains]
+        columns = [shapes.coordinates(chain.group, chain.q[n][:, None]) for chain, n in zip(chains, told, strict=True)]
         bound = 10.0 ** np.ceil(np.log10(max(found.error, 1e-10)))  # what is below is rounding
         return CampbellResult(
             model=system.model,
@@ -302,7 +302,7 @@ class _Diagram:
             kinetic_by_motion=every(seen.energies.kinetic_by_motion),
             strain_by_motion=every(seen.energies.strain_by_motion),
             mesh_strain={name.removeprefix("meshes."): v for name, v in every(strain).items()},
-            description=shapes.descriptions(np.hstack(columns), grid[first]),
+            description=shapes.descriptions(np.hstack(columns), grid[told]),
             error_estimate=estimate,
             basis_error=found.error,
             basis=shapes.stations,

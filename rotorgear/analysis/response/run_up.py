@@ -41,7 +41,7 @@ def choose_method(asked: str, speeds: int, orders: int, n: int) -> tuple[str, st
     size = f"{points} solutions of {n} dofs"
     if points * n <= _DIRECT_UP_TO:
         return "direct", f"only {size}"
-    return "modal", f"{size}, more than direct solutions are worth"
+    return "modal", f"by modes, since {size} one by one would take longer"
 
 
 def direct_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, progress: Progress) -> Sweep:

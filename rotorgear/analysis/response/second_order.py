@@ -31,6 +31,8 @@ _SAME_FREQUENCY = 1e-9
 _STRONG = 12
 _WEAK = 0.02
 _MOTIONS_THAT_TURN = ("tilt_x", "tilt_y", "torsion")
+# Quantities with an amplitude along each axis.
+_ALONG_AXES = ("bearing force", "seat force", "ground force", "displacement")
 
 
 def peaks_of(
@@ -61,6 +63,7 @@ def peaks_of(
             Peak(
                 quantity=quantity,
                 part=part,
+                axis="xyz"[rest[0]] if quantity in _ALONG_AXES else "",
                 unit=unit,
                 order=o,
                 speed_rpm=float(abs(speeds[s]) * RPM_PER_RAD_S * np.sign(speeds[s])),

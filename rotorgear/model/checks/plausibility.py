@@ -23,13 +23,15 @@ from rotorgear.model.parts.gear import DEPTHS
 from rotorgear.model.parts.load import LoadHistory
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
-from rotorgear.quantity import GRAVITY, RPM_PER_RAD_S
+from rotorgear.quantity import GRAVITY, RPM_PER_RAD_S, millimetres
 
 # Densities of solids in kg/m^3, and the units that slip.
 _SOLID = (1.4e3, 2.3e4)
 _DENSITIES = {"g/cm^3": 1e3, "kg/mm^3": 1e9, "t/mm^3": 1e12}
 # Usual stiffness of a bearing.
 _SPRING = "1e6 to 1e10 N/m"
+# A bore and the shaft in it are one diameter but for this share.
+_SEAT = 0.02
 # A file with this many spacings or more is sampled; one wider than this many of the usual ones means that rows are missing.
 _MANY = 20
 _GAP = 10.0
@@ -197,6 +199,15 @@ def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]
             got = f"{size:.4g} m on a shaft of {min(diameters):.4g} to {max(diameters):.4g} m"
             slips = (UNIT, "mm meant?")
             yield f"{address}.{kind}.{geometry.ring}", size, fits, got, "{:.2g} to {:.2g} m", slips
+    rolling = bearing.rolling
+    bore = rolling.seat if rolling is not None else None
+    if rolling is not None and bore is not None and diameters:
+        shaft = layout.model.shafts[bearing.shaft]
+        seat = min(shaft.diameters_at(shaft.station(bearing.at)), key=lambda d: abs(d - bore), default=bore)
+        key = "bore" if rolling.designation is None else "designation"
+        got = f"a bore of {millimetres(bore)} on a shaft of {millimetres(seat)} there"
+        slip = "is it the bearing of this place?"
+        yield f"{address}.rolling.{key}", seat / bore, (1.0 - _SEAT, 1.0 + _SEAT), got, "within 2 % of it", slip
     if bearing.stiffness is not None and bearing.damping is not None:
         # Damping across the shaft against that which is critical with its stiffness and the mass of the rotor.
         stiffness = max(bearing.stiffness.as_rows()[i][i] for i in range(2))

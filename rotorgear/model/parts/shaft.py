@@ -126,14 +126,18 @@ class Shaft(Part):
 
     def diameter_at(self, z: float) -> float:
         """Largest outer diameter in m of the sections that touch `z`; 0 for a shaft without sections."""
+        return max(self.diameters_at(z), default=0.0)
+
+    def diameters_at(self, z: float) -> list[float]:
+        """Outer diameters in m of the sections that touch `z`: two at a step."""
         left = self.start
-        found = 0.0
+        found = []
         tolerance = 1e-9 * max(self.length, abs(z))
         for section in self.sections:
             right = left + section.length
             if left - tolerance <= z <= right + tolerance:
                 outer, _ = section.diameters_at(min(max((z - left) / section.length, 0.0), 1.0))
-                found = max(found, outer)
+                found.append(outer)
             left = right
         return found
 

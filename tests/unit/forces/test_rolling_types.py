@@ -276,3 +276,37 @@ def test_given_elements_take_the_place_of_estimated_ones_and_a_published_angle_i
 def test_what_does_not_go_together_is_refused(keys, said):
     with pytest.raises(rg.RotorgearError, match=said):
         rg.loads(TEXT % keys)
+
+
+def test_another_designation_fills_again_what_the_former_one_filled():
+    model = rg.loads(TEXT % 'designation = "6209", clearance_class = "C3"')
+    ball = model.with_("bearings.front.rolling.designation", "6211").bearings["front"].rolling
+    assert ball == rg.loads(TEXT % 'designation = "6211", clearance_class = "C3"').bearings["front"].rolling
+    assert (model.bearings["front"].rolling.bore, ball.bore) == (0.045, 0.055)
+    # What the file says stays.
+    given = rg.loads(TEXT % 'designation = "6210", elements = 11').with_("bearings.front.rolling.designation", "6212")
+    assert given == rg.loads(TEXT % 'designation = "6212", elements = 11')
+
+
+@pytest.mark.parametrize(
+    ("designation", "diameters", "warned"),
+    [
+        ("6209", (45, 45), False),
+        ("6209", (45, 50), False),
+        ("6209", (50, 45), False),
+        ("6209", (44.5, 44.5), False),
+        ("6210", (45, 45), True),
+        ("6210", (45, 55), True),
+    ],
+)
+def test_a_bore_that_does_not_fit_its_seat_is_warned_of(designation, diameters, warned):
+    left, right = (f'{{ length = "100 mm", outer_diameter = "{d} mm" }}' for d in diameters)
+    text = TEXT.replace('{ length = "200 mm", outer_diameter = "45 mm" }', f"{left}, {right}")
+    text = text.replace('at = "start"', 'at = "100 mm"') % f'designation = "{designation}"'
+    said = [str(note) for note in rg.check(rg.loads(text)).warnings]
+    assert any("front.rolling.designation: a bore of 50 mm on a shaft of" in note for note in said) == warned
+
+
+def test_a_bore_beside_another_designation_is_refused():
+    with pytest.raises(rg.ModelError, match="bore: got 40 mm beside designation = '6209', expected 45 mm"):
+        rg.loads(TEXT % 'designation = "6209", clearance_class = "C3", bore = "40 mm"')

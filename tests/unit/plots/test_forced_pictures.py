@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -48,13 +49,31 @@ def test_a_rotor_without_meshes_bearings_and_points_is_drawn_by_its_displacement
 
 def test_a_waterfall_names_its_quantity(run_up: rg.ResponseResult) -> None:
     title, unit, size = waterfall_of(run_up, "bearings.output_left")
-    assert (title, unit) == ("force of bearing output_left", "N")
+    assert (title, unit) == ("force of bearing output_left (root of the sum of squares of x, y, z)", "N")
     own = run_up.bearing_force[:, :, run_up.bearings.index("output_left")]
     assert size == pytest.approx(np.sqrt((np.abs(own) ** 2).sum(axis=2)))
     assert waterfall_of(run_up, "output_bearing_y")[1] == "m/s$^2$"
     assert waterfall_of(run_up, None)[0] == f"dynamic force of mesh {max(run_up.peaks(), key=lambda row: row[4])[0]}"
     with pytest.raises(rg.AnalysisError, match="stage_1a"):
         waterfall_of(run_up, "nowhere")
+
+
+def test_a_waterfall_draws_the_highest_peak_of_all_speeds(run_up: rg.ResponseResult) -> None:
+    # A peak at one of a hundred speeds, of which every third is drawn.
+    force = np.repeat(run_up.mesh_force[:, :1], 100, axis=1)
+    force[:, 51] *= 9.0
+    wide = replace(run_up, speeds=np.linspace(900.0, 1712.0, 100), mesh_force=force)
+    title = rg.plot.waterfall(wide).get_title() or rg.plot.waterfall(wide).figure.get_suptitle()
+    assert f"highest peak {np.abs(force).max():.4g} N at {wide.speed_rpm[51]:.0f} rpm" in title
+
+
+def test_the_table_of_a_run_up_names_the_axis_of_a_bearing_force(run_up: rg.ResponseResult) -> None:
+    for peak in run_up.largest:
+        if peak.quantity == "bearing force":
+            own = np.abs(run_up.bearing_force[:, :, run_up.bearings.index(peak.part)])
+            assert own[..., "xyz".index(peak.axis)].max() == pytest.approx(own.max()) == pytest.approx(peak.amplitude)
+            assert f"{peak.part} {peak.axis} " in str(run_up)
+    assert {peak.axis for peak in run_up.largest if peak.quantity == "mesh force"} == {""}
 
 
 def test_a_wrong_ending_is_refused_and_leaves_nothing(run_up: rg.ResponseResult, tmp_path: Path) -> None:

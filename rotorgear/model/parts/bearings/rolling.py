@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from rotorgear.errors import Problem
-from rotorgear.forces.designations import SERIES, class_clearance, designated, inner_geometry, words_of
+from rotorgear.forces.designations import SERIES, bore_of, class_clearance, designated, inner_geometry, words_of
 from rotorgear.model.parts.bearings.geometry import UNIT, BearingGeometry, Judged
 from rotorgear.model.parts.fields import Angle, Force, NonNegativeLength, PositiveLength, PositiveRatio, Whole, refuse
 from rotorgear.model.parts.problems import told
@@ -52,7 +52,10 @@ class RollingElements(BearingGeometry):
         description="class of ISO 5753-1 of a deep groove ball bearing, in place of the clearance: the middle of its range "
         "before fits and warmth",
     )
-    bore: PositiveLength | None = Field(None, description="bore of the inner ring, above 10 to 120 mm, for the class")
+    bore: PositiveLength | None = Field(
+        None,
+        description="bore of the inner ring, above 10 to 120 mm, for the class; default: that of the designation",
+    )
     preload_displacement: NonNegativeLength = Field(
         0.0,
         description="how far an angular contact bearing is pressed together along its contact angle at assembly",
@@ -87,7 +90,14 @@ class RollingElements(BearingGeometry):
         # What an unknown one lacks is not missing: the designation is wrong, which its own check says.
         known = inner_geometry(data["designation"])[0] or inner_geometry("6206")[0]
         given = {key: value for key, value in data.items() if value is not None}
+        if "clearance_class" in given:
+            known["bore"] = bore_of(data["designation"])
         return {**known, **given}
+
+    @property
+    def seat(self) -> float | None:
+        """Bore of the inner ring in m, as given or by its designation; None where neither is."""
+        return self.bore or bore_of(self.designation)
 
     @field_validator("designation")
     @classmethod
@@ -250,8 +260,13 @@ class RollingElements(BearingGeometry):
             unknown = self.bore is None or class_clearance(self.bore, self.clearance_class) is None
             yield "bore", unknown, bore, "a bore above 10 to 120 mm, which the table of classes has"
         else:
-            yield "bore", self.bore is not None, bore, "a clearance_class beside it, which it is for"
+            lone = self.bore is not None and self.designation is None
+            yield "bore", lone, bore, "a clearance_class beside it, which it is for"
         pressed = (self.preload_displacement or self.preload_force) and not self.contact_angle
+        printed = bore_of(self.designation)
+        differs = None not in (self.bore, printed) and not math.isclose(self.bore or 0.0, printed or 0.0)
+        as_printed = f"{millimetres(printed or 0.0)} as {self.designation} has it, or no designation"
+        yield "bore", differs, f"{bore} beside designation = '{self.designation}'", as_printed
         yield "", pressed, "a preload without a contact angle", "a contact_angle, along which it presses"
         both = self.preload_displacement and self.preload_force
         yield "", both, "preload_displacement and preload_force", "one of the two"

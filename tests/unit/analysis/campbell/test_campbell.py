@@ -48,6 +48,17 @@ def test_whirl_of_a_tilting_disk_splits_as_its_gyroscopic_moment_says() -> None:
     assert {"forward", "backward"} <= words
 
 
+def test_what_moves_is_that_of_the_speed_of_the_whirl() -> None:
+    """The description of each branch is that of the modes at the last speed, as its whirl is; at standstill others stand."""
+    model = rg.load(MODELS / "split_torque.toml")
+    result = rg.campbell(model, speeds=["0 rpm", "20000 rpm"], modes=6, mesh_orders=(), error_estimate=False)
+    at_last = rg.modal(model, speed="20000 rpm", modes=14)
+    told = dict(zip(np.round(at_last.frequency_hz, 3), at_last.description, strict=True))
+    assert [told[hz] for hz in np.round(result.frequency_hz[-1], 3)] == list(result.description)
+    still = set(rg.modal(model, speed="0 rpm", modes=14).description)
+    assert not set(result.description) <= still
+
+
 def test_critical_speeds_of_a_tilting_disk_are_those_of_the_closed_form() -> None:
     """w = W: W^2 (I_d -+ I_p) = 2 k l^2 has a backward root only, since I_p > I_d; translation has sqrt(2 k / m) twice."""
     result = rg.critical(rigid_rotor(), stop=2000.0, damped=False)
