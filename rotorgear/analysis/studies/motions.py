@@ -15,6 +15,7 @@ from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, outputs_of, range_of
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of
 from rotorgear.analysis.orbits.verify import run_periods
+from rotorgear.analysis.sweep.classify import period_in
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.cpu import cpu_seconds
@@ -138,6 +139,8 @@ _FINER_STEPS = 4
 _SPEED_SHARES = (1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.3, 0.6, 0.5)
 _TRIED = 30
 _ALIKE = 1e-3
+# Share by which steps change the size of a motion that repeats, at most; another one is another motion.
+_SAME = 0.1
 
 
 @recorded
@@ -152,8 +155,8 @@ def sweep_convergence_study(
 ) -> SweepConvergenceStudy:
     """Run one point with several steps and lengths, each from many states near the static one, side by side.
 
-    The scatter between the runs from different states is a check of the standard error that a single run states: where one motion
-    attracts them all, both agree.
+    Only states that end on the same motion are compared, with one another and with the reference: that of most states there.
+    Their scatter is a check of the standard error that a single run states.
 
     Args:
         model: a small model.
@@ -186,24 +189,32 @@ def sweep_convergence_study(
 
     plans = [(n, max(counts)) for n in steps] + [(max(steps) // 2, count) for count in counts[:-1]]
     progress(0.1, "reference")
-    truth = sizes(run(_FINER_STEPS * max(steps), max(counts))).mean(axis=1)
+    finest = run(_FINER_STEPS * max(steps), max(counts))
+    kept = on_same_motion(finest.motion, sizes(finest)[0])
+    kind = finest.motion[int(np.argmax(kept))]
+    truth = sizes(finest)[:, kept].mean(axis=1)
+    if not kept.all():
+        why = f"{kept.sum()} of {starts} states end on the one that is compared, {kind}"
+        notes = [*notes, Note("", "several motions coexist at this point", why)]
     rungs = []
     for number, (n, count) in enumerate(plans):
         progress(0.2 + 0.8 * number / len(plans), f"{n} steps, {count} periods")
         begun = cpu_seconds()
         runs = run(n, count)
         seconds = cpu_seconds() - begun
-        exponents = runs.lyapunov[0, :, 0]
-        mean = sizes(runs).mean(axis=1)
-        scatter = sizes(runs).std(axis=1, ddof=1)
+        kept = on_same_motion(runs.motion, sizes(runs)[0], (kind, float(truth[0])))
+        many = int(kept.sum())
+        exponents = runs.lyapunov[0, kept, 0]
+        mean = sizes(runs)[:, kept].mean(axis=1) if many else np.full(2, np.nan)
+        scatter = sizes(runs)[:, kept].std(axis=1, ddof=1) if many > 1 else np.full(2, np.nan)
         rungs.append(
             SweepRung(
                 n,
                 count,
                 seconds / starts,
-                float(exponents.mean()),
-                float(exponents.std(ddof=1) if np.ptp(exponents) else 0.0),
-                float(np.median(runs.lyapunov_error[0, :, 0])),
+                float(exponents.mean()) if many else float("nan"),
+                float(exponents.std(ddof=1)) if many > 1 else float("nan"),
+                float(np.median(runs.lyapunov_error[0, kept, 0])) if many else float("nan"),
                 float(mean[0]),
                 float(scatter[0]),
                 float(mean[1]),
@@ -218,9 +229,24 @@ def sweep_convergence_study(
         starts,
         tuple(rungs),
         speed=given,
-        reference=f"{_FINER_STEPS * max(steps)} steps and {max(counts)} periods, the mean over the states",
+        reference=f"{_FINER_STEPS * max(steps)} steps and {max(counts)} periods, the mean over the states on that motion",
         warnings=tuple(notes),
     )
+
+
+def on_same_motion(kinds: Sequence[str], sizes: np.ndarray, like: tuple[str, float] | None = None) -> np.ndarray:
+    """Which states (s,) end on one motion: that which most of them do, or one that is known.
+
+    Args:
+        kinds: response types (s,). sizes: peak to peak (s,), by which motions that repeat are told apart.
+        like: response type and size of the known motion.
+    """
+    if like is None:
+        which = [(kind, float(size)) for kind, size in zip(kinds, sizes, strict=True)]
+        return max((on_same_motion(kinds, sizes, one) for one in which), key=np.count_nonzero)
+    kind, size = like
+    near = np.abs(sizes - size) <= _SAME * size if period_in(kind) else np.ones(len(sizes), dtype=bool)
+    return np.asarray((np.array(kinds) == kind) & near)
 
 
 def _one_motion(model: Model, operating: float, starts: int) -> tuple[float, list[Note]]:
