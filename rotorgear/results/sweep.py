@@ -220,7 +220,7 @@ class SweepResult(ModelResult, kind="sweep"):
             yield f"... {counted(len(runs) - _MOST, 'more lines')}: see --json, --save and --plot"
         if self.portraits is not None:
             yield from self._strongest_lines(self.portraits)
-        columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: of the worst contact"
+        columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: each the largest of all contacts"
         if self.lyapunov.shape[2]:
             columns = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {columns}"
         steps = self.steps[self.steps > 0]  # a point that failed has none

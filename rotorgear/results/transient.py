@@ -217,6 +217,10 @@ class TransientResult(ModelResult, kind="transient"):
     )
     energy: EnergyLedger = of("energies", record=EnergyLedger)
     reason: str = of("why the method was chosen")
+    start: str = of(
+        "where the run began",
+        note=': `"equilibrium"` under the forces of t = 0, under their `"mean"`, or undeformed, at `"rest"`',
+    )
     nodes: NodeTable = of("nodes", record=NodeTable, json=None)
     motion_time: np.ndarray = of("time of the frames", "s", "frame", json=None)
     motion: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "frame", json=None)

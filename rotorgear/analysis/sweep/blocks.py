@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool, in_order
-from rotorgear.analysis.sweep.certify import bounded, judged, motion_statistics, sizes_of, to_certify
+from rotorgear.analysis.sweep.certify import bounded, judged, left_of, motion_statistics, sizes_of, to_certify, to_go_on
+from rotorgear.analysis.sweep.classify import period_in
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.analysis.sweep.request import Request
@@ -22,7 +23,21 @@ from rotorgear.solvers.time.statistics import compared, gain
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
 # What a stream keeps of an orbit beside its end.
-_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier", "repeats", "error")
+_OF_ORBIT = (
+    "section",
+    "growth",
+    "sums",
+    "extremes",
+    "finite",
+    "doubt",
+    "settled",
+    "multiplier",
+    "repeats",
+    "away",
+    "jumped",
+    "before",
+    "error",
+)
 # Rounds of settling that a run gets at most.
 _ROUNDS = 4
 # Least steps of the run that tells the error of exponents by half as many.
@@ -88,27 +103,33 @@ def run_jobs(
 ) -> list[Orbit]:
     """Run the jobs of one block; those whose response type is not settled run on, in rounds of twice the length each.
 
-    One that leaves all bounds on that way stays what it was after the periods that were asked for.
+    A run that is on its way to an orbit that Newton's method knows goes on from that orbit. One that leaves all bounds stays what
+    it was after the periods that were asked for.
     """
     orbits = _run(points, starts, plan, go_on)
-    if plan.tangents:
-        chosen = list(range(len(orbits)))
-        onward = _certify(points, orbits, chosen, plan, request, go_on)
-        asked = tuple(orbits)
-        settled = plan.settle
-        for number in range(_ROUNDS):
-            chosen = [
-                i for i in chosen if bounded(orbits[i], points[i]) and not judged(orbits[i], points[i], request)[1]
-            ]
-            if not chosen:
-                break
-            longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
-            settled += longer.settle + plan.count
-            again = _run([points[i] for i in chosen], [onward[i] for i in chosen], longer, go_on)
-            for i, orbit in zip(chosen, again, strict=True):
-                orbits[i] = replace(orbit, settled=settled) if bounded(orbit, points[i]) else asked[i]
-            chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
-            onward = _certify(points, orbits, chosen, plan, request, go_on)
+    chosen = list(range(len(orbits)))
+    onward, jumped = _certify(points, orbits, starts, chosen, plan, request, go_on)
+    asked = tuple(orbits)
+    for number in range(_ROUNDS):
+        chosen = [i for i in chosen if to_go_on(orbits[i], points[i], request)]
+        if not chosen:
+            break
+        there = [i for i in chosen if i in jumped]
+        underway = [i for i in chosen if i not in jumped]
+        chosen = []
+        for group, settle in ((there, plan.warm), (underway, max(plan.settle, plan.count) * 2**number)):
+            longer = replace(plan, settle=settle)
+            again = _run([points[i] for i in group], [onward[i] for i in group], longer, go_on) if group else []
+            for i, orbit in zip(group, again, strict=True):
+                settled = orbits[i].settled + plan.count + settle
+                moved = orbits[i].jumped or i in jumped
+                before = np.ptp(orbits[i].section[:, points[i].system.columns.counted, 0], axis=0)
+                if bounded(orbit, points[i]):
+                    chosen.append(i)
+                    orbits[i] = replace(orbit, settled=settled, jumped=moved, before=before)
+                else:
+                    orbits[i] = asked[i]
+        onward, jumped = _certify(points, orbits, starts, chosen, plan, request, go_on)
     # Errors of statistics by the same periods in other steps. Runge and Kutta's fourth order is not that of statistics: impacts
     # begin between steps, and extremes are those of steps. One step more: of steps at the same instants, extremes are often the
     # same.
@@ -120,7 +141,9 @@ def run_jobs(
         counted = points[i].system.columns.counted
         own, changed = (motion_statistics(one, counted) for one in (orbits[i], orbit))
         error = compared(own.values, changed.values, own.scales, factor, _LUCK)
-        orbits[i] = replace(orbits[i], error=np.hypot(error, own.counted))
+        kind, stands = judged(orbits[i], points[i], request)
+        left = np.nan_to_num(orbits[i].away) if stands and period_in(kind) else 0.0
+        orbits[i] = replace(orbits[i], error=np.sqrt(error**2 + own.counted**2 + (left * own.scales) ** 2))
     return orbits
 
 
@@ -146,12 +169,15 @@ def _in_other_steps(
 def _certify(
     points: Sequence[Point],
     orbits: list[Orbit],
+    starts: Sequence[Start],
     chosen: Sequence[int],
     plan: BatchPlan,
     request: Request,
     go_on: Callable[[], bool] | None,
-) -> dict[int, Start]:
-    """Give the chosen orbits their step errors and multipliers; return the state from which each runs on.
+) -> tuple[dict[int, Start], set[int]]:
+    """Give the chosen orbits their step errors, multipliers and what is left of their starts.
+
+    Return the state from which each runs on, and which of them go on from their orbits.
 
     Where sides part, tangents see the instant of that to a step only: exponents have an error of the step there. Multipliers
     certify an orbit where exponents do not.
@@ -165,8 +191,12 @@ def _certify(
         change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
         orbits[i] = replace(orbits[i], doubt=change)
     onward = {i: orbits[i].end for i in chosen}
+    jumped: set[int] = set()
     for i in chosen:
-        periods = to_certify(orbits[i], points[i], request)
+        if not orbits[i].finite:
+            continue
+        orbits[i] = replace(orbits[i], away=left_of(orbits[i], starts[i], points[i]))
+        periods, near = to_certify(orbits[i], points[i], request)
         if not periods:
             continue
 
@@ -177,11 +207,15 @@ def _certify(
 
         system = points[i].system
         sizes = sizes_of(orbits[i], system.columns.counted)
-        found = certificate(system, orbits[i].end, sizes, periods, advance, request.tolerance)
-        if found is not None:
-            growth, repeats, onward[i] = found
-            orbits[i] = replace(orbits[i], multiplier=growth, repeats=repeats)
-    return onward
+        seen = orbits[i].section[:, system.columns.counted].transpose(0, 2, 1) / np.array([[1.0], [system.w]])
+        found = certificate(system, orbits[i].end, sizes, periods, advance, request.tolerance, seen, near)
+        if found is None:
+            continue
+        orbits[i] = replace(orbits[i], multiplier=found.growth, repeats=found.repeats, away=found.away)
+        onward[i] = found.onward
+        if found.jumped:
+            jumped.add(i)
+    return onward, jumped
 
 
 def _run(

@@ -4,11 +4,15 @@
                     not above zero, by more than its error where the step can't hide its sign; for k > 1 the range of the section
                     stays what it is from its first half to its second, so that it is no shorter period to which a spiral still
                     comes down
-    quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
+    quasi-periodic  the largest exponent is zero within its error, one standard error away from chaos, and the range of the
+                    section stays what it was a round before: where flanks part, exponents are too rough to see a slow decay
     chaotic         it is above that bound by a standard error
 
-A kT whose orbit Newton's method finds is judged by the multipliers of that orbit instead, and by its period
-(multipliers.py); one that is unstable is run on from a small deviation in the direction that grows most.
+A kT whose orbit Newton's method finds is judged by the multipliers of that orbit instead, by its period, and by how far the run
+is from it (multipliers.py); one that is unstable is run on from a small deviation in the direction that grows most, and one that
+is still on its way to a stable orbit from that orbit. Where no orbit is found, exp(L N) after N periods, times the distance of
+the start, is what is left of that: a kT is settled once it is less than 2.5e-3 of the motion, and it is a part of the errors.
+Where the map is linear the orbit is known from anywhere, whatever the section looks like: a slow decay is no second frequency.
 
 A run that is not settled runs on from its end, in rounds of twice the length each. One that is not after the last round either
 is "not settled".
@@ -20,11 +24,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, classify, exponents, period_in, period_of
-from rotorgear.analysis.sweep.multipliers import SURE
+from rotorgear.analysis.sweep.classify import (
+    CHAOTIC,
+    LEAST_MOTION,
+    QUASI_PERIODIC,
+    SAME_RANGE,
+    classify,
+    exponents,
+    period_in,
+    period_of,
+)
+from rotorgear.analysis.sweep.multipliers import ARRIVED, SURE
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
-from rotorgear.solvers.batch.run_block import Orbit
+from rotorgear.solvers.batch.run_block import Orbit, Start
 from rotorgear.solvers.time.statistics import MotionStatistics, Statistics
 
 # Exponents per period of the fastest mesh that count as zero whatever their error.
@@ -34,7 +47,9 @@ _CHANGE = 0.02
 _REPEATS = 5e-3
 # Longest periods whose multipliers are asked for, and most degrees of freedom: their cost grows with both.
 _LONGEST = 4
-_MOST = 40
+_MOST = 80
+# Share of the motion that may be left of a start.
+DECAYED = 2.5e-3
 # A motion beyond this many times the static deflection, the backlash or the smallest displacement that counts has no bounds.
 _FAR = 1e4
 _SMALLEST = 1e-6  # m
@@ -46,7 +61,8 @@ def judged(orbit: Orbit, point: Point, request: Request) -> tuple[str, bool]:
     x = orbit.section[:, counted, 0]
     extent = sizes_of(orbit, counted)
     if not orbit.growth.shape[1]:
-        return classify(x, extent, None, 0.0, request.tolerance, request.chaos), True
+        kind = classify(x, extent, None, 0.0, request.tolerance, request.chaos)
+        return kind, not np.isfinite(orbit.multiplier) or _certified(orbit, period_in(kind))
     means, errors = exponents(orbit.growth, float(point.system.turns))
     largest = float(means[0])
     # The statistical error vanishes on a periodic orbit; that of the steps does not.
@@ -55,40 +71,87 @@ def judged(orbit: Orbit, point: Point, request: Request) -> tuple[str, bool]:
     period = period_in(kind)
     bound = max(2.0 * error, _ZERO)
     if period and np.isfinite(orbit.multiplier):
-        return kind, orbit.multiplier < SURE and orbit.repeats == period and (period == 1 or _stays(x))
+        return kind, _certified(orbit, period) and (period == 1 or _stays(x))
     if period:
         # On an orbit that repeats, growth differs between batches only because tangents turn: that says little on its mean. What
         # repeats need not prove its sign then. But where flanks part, an unstable orbit may repeat for thousands of periods, and
         # the step hides the sign: an exponent above zero proves nothing there.
         exact = period_of(x, extent, _REPEATS * request.tolerance) == period
         most = bound if orbit.doubt[0] <= _ZERO else 0.0
-        stable = largest < -bound or (exact and largest <= most)
+        decayed = largest < -bound and not orbit.away > DECAYED
+        stable = decayed or (exact and largest <= most)
         return kind, stable and (period == 1 or _stays(x))
     if kind == QUASI_PERIODIC:
-        return kind, abs(largest) <= bound and abs(largest) + error <= request.chaos
+        decays = orbit.multiplier < SURE or not (
+            np.any(np.isnan(orbit.before)) or _same(orbit.before, np.ptp(x, axis=0), SAME_RANGE)
+        )
+        return kind, not decays and abs(largest) <= bound and abs(largest) + error <= request.chaos
     return kind, kind == CHAOTIC and largest - error > request.chaos
 
 
-def to_certify(orbit: Orbit, point: Point, request: Request) -> int:
-    """Common periods after which a run repeats, where multipliers are to tell whether it is stable, else 0.
+def _certified(orbit: Orbit, period: int) -> bool:
+    """Whether a run is on a stable orbit of that period."""
+    return orbit.multiplier < SURE and orbit.repeats == period and not orbit.away > ARRIVED
 
-    What comes back fast needs none: growth that an exponent does not see in that many periods is slower than the bound of chaos.
+
+def to_certify(orbit: Orbit, point: Point, request: Request) -> tuple[int, bool]:
+    """Common periods of the map whose orbit is to tell about a run, 0 for none; whether one near by is that of the run.
+
+    What comes back fast needs none: growth that an exponent does not see in that many periods is slower than the bound of chaos,
+    and nothing is left of the start. What does not repeat may be on its way to an orbit of one period.
     Cages do not repeat with the common period, and so a system with rolling elements has no such map.
     """
     system = point.system
-    if not orbit.growth.shape[1] or system.n > _MOST or point.rolling:
-        return 0
+    if system.n > _MOST or point.rolling:
+        return 0, False
     period = period_in(judged(orbit, point, request)[0])
-    means, _ = exponents(orbit.growth, float(system.turns))
-    return period if period <= _LONGEST and -request.chaos < means[0] <= request.chaos else 0
+    if orbit.growth.shape[1]:
+        means, _ = exponents(orbit.growth, float(system.turns))
+        if means[0] > request.chaos or (means[0] <= -request.chaos and not orbit.away > ARRIVED):
+            return 0, False
+    return (period, True) if 0 < period <= _LONGEST else (1, False)
+
+
+def left_of(orbit: Orbit, start: Start, point: Point) -> float:
+    """What is left of a start as counting begins, over the size of the motion, by the largest exponent; nan without one."""
+    if not orbit.growth.shape[1]:
+        return float("nan")
+    system = point.system
+    z = start.z - orbit.end.z
+    dz = start.dz - orbit.end.dz
+    off = [u - system.rigid.T @ (system.rigid @ u) for u in (z, dz)]
+    size = sizes_of(orbit, system.columns.counted).max() / np.linalg.norm(system.B, axis=0).max()
+    decay = float(orbit.growth[:, 0].mean()) * orbit.settled
+    return float(np.linalg.norm(off) / size * np.exp(min(decay, 1.0)))
+
+
+def needed(orbit: Orbit) -> float:
+    """Common periods after which nothing is left of a start that decays; nan where it does not, or where that is not known."""
+    rate = orbit.multiplier
+    if not np.isfinite(rate) and orbit.growth.shape[1]:
+        rate = float(orbit.growth[:, 0].mean())
+    return (
+        orbit.settled + float(np.log(orbit.away / DECAYED)) / -rate
+        if rate < 0.0 and orbit.away > DECAYED
+        else float("nan")
+    )
 
 
 def _stays(x: np.ndarray) -> bool:
     """Whether a section (p, c) covers the same range in its second half as in its first."""
     half = len(x) // 2
-    first = np.ptp(x[:half], axis=0)
-    second = np.ptp(x[half:], axis=0)
-    return bool(np.all(np.abs(first - second) <= _CHANGE * np.maximum(first, second)))
+    return _same(np.ptp(x[:half], axis=0), np.ptp(x[half:], axis=0), _CHANGE)
+
+
+def _same(first: np.ndarray, second: np.ndarray, share: float) -> bool:
+    """Whether ranges differ by at most a share of the larger one."""
+    return bool(np.all(np.abs(first - second) <= share * np.maximum(first, second)))
+
+
+def to_go_on(orbit: Orbit, point: Point, request: Request) -> bool:
+    """Whether a run goes on for another round: one that is not settled, and one with two frequencies for a second look."""
+    kind, stands = judged(orbit, point, request)
+    return bounded(orbit, point) and not (stands and (kind != QUASI_PERIODIC or not np.any(np.isnan(orbit.before))))
 
 
 def bounded(orbit: Orbit, point: Point) -> bool:
@@ -103,11 +166,13 @@ def bounded(orbit: Orbit, point: Point) -> bool:
 
 
 def sizes_of(orbit: Orbit, counted: np.ndarray) -> np.ndarray:
-    """Peak to peak in m of the displacements `counted` (m,), with or without transmission error, whichever is larger, (c,)."""
+    """Peak to peak in m of the displacements `counted` (m,), with or without transmission error, whichever is larger, (c,).
+
+    No smaller than the least that counts."""
     from rotorgear.solvers.batch import kernel_parts as k
 
     sums = orbit.sums[counted].T
-    return np.maximum(sums[k.D_MAX] - sums[k.D_MIN], sums[k.X_MAX] - sums[k.X_MIN])
+    return np.maximum(np.maximum(sums[k.D_MAX] - sums[k.D_MIN], sums[k.X_MAX] - sums[k.X_MIN]), LEAST_MOTION)
 
 
 def indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.ndarray]:

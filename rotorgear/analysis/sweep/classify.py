@@ -19,8 +19,8 @@ import numpy as np
 LONGEST = 32
 TOLERANCE = 0.02
 CHAOS = 0.02
-_SMALLEST = 0.05e-6  # m, peak to peak
-_SAME_RANGE = 0.1
+LEAST_MOTION = 0.05e-6  # m, peak to peak
+SAME_RANGE = 0.1
 # Largest range of x that are k periods apart, relative to the range of all x. For a period-k response that ratio is small. For
 # scattered x, picking every k-th of a few samples hardly narrows the range, so a scattered response is not taken for periodic.
 _APART = 0.5
@@ -73,14 +73,14 @@ def classify(
         # Both halves of the section cover the same range.
         half = len(x) // 2
         first, second, whole = (np.array([part.min(axis=0), part.max(axis=0)]) for part in (x[:half], x[half:], x))
-        if np.all(np.abs(first - second) <= _SAME_RANGE * np.maximum(whole[1] - whole[0], 1e-300)):
+        if np.all(np.abs(first - second) <= SAME_RANGE * np.maximum(whole[1] - whole[0], 1e-300)):
             return QUASI_PERIODIC
     return NOT_SETTLED
 
 
 def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -> int:
     """Least number k of least common periods after which x (p, c) repeats; 0 where it does not."""
-    allowed = tolerance * np.maximum(extent, _SMALLEST)
+    allowed = tolerance * np.maximum(extent, LEAST_MOTION)
     spread = np.ptp(x, axis=0)
     allowed = np.where(spread > allowed, np.minimum(allowed, _APART * spread), allowed)
     for k in range(1, min(LONGEST, len(x) // 3) + 1):

@@ -11,7 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.sweep.axes import Axis, points_of
-from rotorgear.analysis.sweep.certify import bounded, indicators, judged
+from rotorgear.analysis.sweep.certify import bounded, indicators, judged, needed
 from rotorgear.analysis.sweep.classify import CHAOTIC, FAILED, NOT_SETTLED, exponents, period_in
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
@@ -150,6 +150,7 @@ def notes(
     orbits: dict[tuple[int, int], Orbit],
 ) -> Iterator[Note]:
     """Yield the warnings."""
+    runs = len(motion) // max(1, len(points))
     sound = [q for q in points if q is not None]
     if count := sum(map(bool, failed)):
         yield Note("", f"{count} of {len(points)} points failed; the first", next(filter(None, failed)))
@@ -173,12 +174,17 @@ def notes(
         yield Note("", what, "a response that rolling elements drive shows as quasi-periodic")
     if unsettled := sum(kind == NOT_SETTLED for kind in motion):
         why = "ask for more periods (--discard, --sample)"
+        waits = [needed(orbit) for (i, run), orbit in orbits.items() if motion[i * runs + run] == NOT_SETTLED]
+        if np.any(np.isfinite(waits)):
+            why = f"by their exponents their starts decay in up to {np.nanmax(waits):.2g} periods (--discard)"
         yield Note("", f"{unsettled} of {len(motion)} runs had not settled", why)
-    if longer := [orbit.settled for orbit in orbits.values() if orbit.settled > settle]:
+    if solved := sum(orbit.jumped for orbit in orbits.values()):
+        why = "their starts decay too slowly; Newton's method found where they end"
+        yield Note("", f"{solved} of {len(motion)} runs went on from their periodic motion", why)
+    if longer := [orbit.settled for orbit in orbits.values() if orbit.settled > settle and not orbit.jumped]:
         what = f"{len(longer)} of {len(motion)} runs settled for up to {max(longer)} periods"
         yield Note("", f"{what}, until their response type and their exponents agreed")
     # Runs of one point that end in different responses.
-    runs = len(motion) // max(1, len(points))
     kinds = [set(motion[i * runs : (i + 1) * runs]) - {NOT_SETTLED, FAILED} for i in range(len(points))]
     several = [found for found in kinds if len(found) > 1]
     if several:

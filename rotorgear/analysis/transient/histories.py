@@ -161,7 +161,7 @@ def run_task(
     h = grid.spacing / grid.every
     steps = grid.records * grid.every
     boundary = grid.settled * grid.every
-    state = state_at_rest(local, h, task.rest.q)
+    state = state_at_rest(local, h, task.begin)
     found = Histories(state, h)
     book = LedgerBook(local, h, state.copy(), integrator.damping_rows(local, float(local.rotation.speeds[0])))
     if stream is not None:

@@ -10,7 +10,7 @@ from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
-from rotorgear.analysis.transient.request import Grid, Task, history_bytes
+from rotorgear.analysis.transient.request import STARTS, Grid, Task, history_bytes
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import in_words
@@ -115,7 +115,11 @@ def transient_warnings(result: TransientResult, task: Task, *, estimated: bool, 
         if result.time[-1] <= result.settle:
             what = f"it ended before the {result.settle:.6g} s that are discarded"
             yield Note("", what, "there are no statistics, only histories")
-    if not task.rest.converged:
+    outer = ~np.any(local.local.forces.reference_stiffness, axis=1)
+    if task.start == STARTS[0] and np.any(task.rest.force[outer] != task.rest_force[outer]):
+        what = "the run starts from the deflection under the unbalances and harmonic forces of t = 0"
+        yield Note("", what, "--start mean begins with that under the mean forces, and these set in at once")
+    if not task.rest.converged and task.start != STARTS[-1]:
         why = "the run starts from that with linear contacts and has to settle"
         yield Note("", f"no static equilibrium was found; {why}")
     drift = list(adrift(task))

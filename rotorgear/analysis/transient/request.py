@@ -19,13 +19,15 @@ from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.memory import free_memory
 from rotorgear.model.model import Model
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, forces_at_rest
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System, flow_system
 
+# What the forces that hold a model where a run starts are: those at t = 0, their means, none.
+STARTS = ("equilibrium", "mean", "rest")
 METHODS = ("auto", "newmark", "hht", "generalised-alpha", "exponential", "explicit")
 # Periods of the slowest mesh that settle, and as many that count.
 PERIODS = 30
@@ -239,7 +241,10 @@ def _chosen(local: LocalSystem, steps: int, modal_ratio: float, modes: int | Non
 
 @dataclass(frozen=True)
 class Task:
-    """A model made ready: local forces, channels, static state and forces, mesh frequencies in Hz, largest speed in rad/s."""
+    """A model made ready: local forces, channels, static state and forces, mesh frequencies in Hz, largest speed in rad/s.
+
+    `start` is one of `STARTS`, and `begin` the displacements (n,) there.
+    """
 
     local: LocalModel
     channels: Channels
@@ -247,16 +252,23 @@ class Task:
     rest_force: np.ndarray
     frequencies: dict[str, float]
     largest: float
+    start: str
+    begin: np.ndarray
 
 
 def prepare(
-    model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None
+    model: Model | System,
+    speed: float | str | Sequence[tuple[float, float | str]] | None,
+    elements: int | None,
+    start: str = STARTS[0],
 ) -> Task:
     """Make a model ready.
 
     Raises:
-        AnalysisError: nothing is free to move, or the speed makes no sense.
+        AnalysisError: nothing is free to move, the speed makes no sense, or no such start.
     """
+    if start not in STARTS:
+        raise AnalysisError(f"start: got '{start}', expected one of {', '.join(STARTS)}")
     given = model if isinstance(model, System) else flow_system(model, plan_in_time(elements))
     rotation = rotation_of(given, speed)
     largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
@@ -271,12 +283,14 @@ def prepare(
     given.require_freedom()
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
     rest = equilibrium(local.local)
-    force = forces_at_rest(local.local, tuple(part.law.mean() for part in local.parts))
+    mean = equilibrium(replace(local.local, forces=local.local.forces.mean), rest.free)
+    force = mean.force if mean.converged else np.full(local.local.m, np.nan)
+    begin = {"equilibrium": rest.q, "mean": mean.q, "rest": np.zeros(local.local.n)}[start]
     seen = channels(local)
     observed = seen.observed(local.local.n, local.local.m)
     local = replace(local, local=replace(local.local, observed=observed))
     meshes = {name: given.layout.mesh_frequency(name, largest) for name in given.model.meshes}
-    return Task(local, seen, rest, force, {name: f for name, f in meshes.items() if f}, largest)
+    return Task(local, seen, rest, force, {name: f for name, f in meshes.items() if f}, largest, start, begin)
 
 
 def damped(model: Model | System, modal_damping: float | None) -> Model | System:

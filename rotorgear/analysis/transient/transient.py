@@ -25,7 +25,17 @@ from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.transient.histories import Histories, Stream, run_task
 from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, thinned, transient_warnings
-from rotorgear.analysis.transient.request import Grid, Task, coarser, damped, grid_of, integrator_of, prepare, run_up
+from rotorgear.analysis.transient.request import (
+    STARTS,
+    Grid,
+    Task,
+    coarser,
+    damped,
+    grid_of,
+    integrator_of,
+    prepare,
+    run_up,
+)
 from rotorgear.analysis.transient.statistics import Quantities, of_channels, of_meshes, quantities_of
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
@@ -63,12 +73,13 @@ def transient(
     beta: float | None = None,
     gamma: float | None = None,
     elements: int | None = None,
+    start: str = STARTS[0],
     error_estimate: bool = True,
     frames: int = 0,
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> TransientResult:
-    """Return the time response of a model from its static equilibrium.
+    """Return the time response of a model from a static state.
 
     Args:
         model: a model, or its assembled system.
@@ -89,6 +100,9 @@ def transient(
         beta: of newmark (default: 1/4).
         gamma: of newmark (default: 1/2).
         elements: number of basic elements in each shaft segment (default: one of second order).
+        start: equilibrium (under all forces of t = 0, unbalances and harmonic forces among them), mean (equilibrium under the
+            mean forces) or rest (nothing deformed, the working flanks just touch where no error parts them). In all of them the
+            shafts turn at the prescribed speed, and nothing moves beside it.
         error_estimate: compare with a run of twice the step; False leaves it out.
         frames: number of records at the end that keep the motion of all nodes, for an animation.
         stream: keeps chunks while the run goes on (`rotorgear.stream`), and starts an interrupted run again.
@@ -109,7 +123,7 @@ def transient(
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (discard, "discard"))]
     if speed_to is not None:
         speed = run_up(model, speed, speed_to, *duration)
-    task = prepare(damped(model, modal_damping), speed, elements)
+    task = prepare(damped(model, modal_damping), speed, elements, start)
     grid, fastest = grid_of(task, duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(task, grid, method, modes, rho_inf, beta, gamma)
     clock.lap("model")
@@ -122,7 +136,7 @@ def transient(
     clock.lap("choice of step")
     others = _comparisons(task, integrator, grid, progress) if error_estimate else []
     clock.lap("error estimate")
-    key = f"{method} {modes} {rho_inf} {beta} {gamma}"
+    key = f"{method} {modes} {rho_inf} {beta} {gamma}" + f" {start}" * (start != STARTS[0])
     found = run_task(task, integrator, grid, progress, stream=stream, frames=frames, key=key)
     clock.lap("integration")
     progress(1.0, "done")
@@ -205,6 +219,7 @@ def _result(
         quantity_error=errors,
         quantity_scale=of_run.scale,
         energy=found.ledger,
+        start=task.start,
         step=grid.spacing / grid.every,
         steps=found.state.step,
         every=grid.every * grid.kept,

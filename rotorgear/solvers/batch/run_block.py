@@ -71,6 +71,9 @@ class Orbit:
         settled: common periods before those that count.
         multiplier: ln|mu| in a common period of the orbit that it is on; nan where that is not asked for or not found.
         repeats: common periods after which that orbit repeats; 0 where it is not known.
+        away: what is left of the start over the periods that count, over the size of the motion; nan where it is not known.
+        before: range of the section of each counted displacement (c,) in the round before; nan in the first.
+        jumped: whether the run was set on the orbit that it goes to.
         error: (c, s) errors of the statistics of each contact, by a run with other steps; nan where that was not done.
         end: state at the end. finite: whether everything stayed finite.
     """
@@ -85,6 +88,9 @@ class Orbit:
     settled: int
     multiplier: float = np.nan
     repeats: int = 0
+    away: float = np.nan
+    jumped: bool = False
+    before: np.ndarray = field(default_factory=lambda: np.zeros(0))
     error: np.ndarray = field(default_factory=lambda: np.zeros((0, len(STATISTICS))))
 
 
@@ -188,7 +194,9 @@ def _orbit(system: SmallSystem, number: int, motion: BatchMotion, plan: BatchPla
     extremes = motion.extremes[:, :, number].T.copy()
     # Two displacements are watched of each contact.
     unknown = np.full((len(extremes) // 2, len(STATISTICS)), np.nan)
-    return Orbit(moved, growth, sums, extremes, end, finite, np.zeros(growth.shape[1]), plan.settle, error=unknown)
+    doubt = np.zeros(growth.shape[1])
+    before = np.full(len(unknown), np.nan)
+    return Orbit(moved, growth, sums, extremes, end, finite, doubt, plan.settle, before=before, error=unknown)
 
 
 def trajectory(

@@ -72,7 +72,7 @@ def test_runs_that_still_remember_their_start_settle_longer() -> None:
 
 def test_runs_whose_transient_outlasts_the_settling_are_warned_about() -> None:
     def orbit(exponent: float, settled: int) -> Any:
-        return SimpleNamespace(growth=np.full((40, 1), exponent), settled=settled)
+        return SimpleNamespace(growth=np.full((40, 1), exponent), settled=settled, jumped=False)
 
     def warned(kind: str, exponent: float, settled: int) -> bool:
         sentences = notes([], [None], [""], [kind], 300, {(0, 0): orbit(exponent, settled)})
