@@ -184,6 +184,7 @@ _GROUPS = {
             "Motion over time from the static state: backlash, spectra",
             shows=("json", "plot", "vtk"),
             options={
+                "start": Option(flags=("--start",)),
                 "frames": Option("Instants that --vtk writes.", "int", 120, least=2),
                 "spectrum": _SPECTRUM,
                 "rig": Option("Put the lines of this rig (CSV) beside those of --spectrum.", "path"),

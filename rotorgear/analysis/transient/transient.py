@@ -73,7 +73,7 @@ def transient(
     beta: float | None = None,
     gamma: float | None = None,
     elements: int | None = None,
-    start: str = STARTS[0],
+    start: str = "equilibrium",
     error_estimate: bool = True,
     frames: int = 0,
     stream: Stream | None = None,
