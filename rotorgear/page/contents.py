@@ -13,8 +13,10 @@ from rotorgear.analysis.campbell.critical import critical
 from rotorgear.analysis.campbell.critical_map import critical_map
 from rotorgear.analysis.casing.casing import casing
 from rotorgear.analysis.common.describe_model import check
+from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.response.response import HIGHEST as TOP
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.rig.compare import compare
 from rotorgear.analysis.standards.standards import HIGHEST, judged
@@ -33,6 +35,7 @@ MODES = 24
 CAMPBELL_SPEEDS = 31
 RUN_UP_SPEEDS = 33
 MAP_STIFFNESSES = 9
+MESH_ORDERS_OF_RUN_UP = 3
 _ABOVE_RIG = 1.15
 _LOADED = "tooth_fe"
 _NO_SPEED = "the model has no operating speed"
@@ -62,12 +65,13 @@ class Contents:
         return self.results[name]
 
 
-def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Contents:
+def computed(model: Model, rig: Any, grade: float, run_up: dict[str, Any], progress: Progress) -> Contents:
     """Run all analyses of a report.
 
     Args:
         model: a checked model. rig: measured lines, or none.
         grade: balance quality grade in mm/s.
+        run_up: modal_damping and fmax of `response`; without fmax orders go up to those of `_highest_order`.
         progress: callable that is told fraction and step.
     """
     found = Contents(model, progress)
@@ -94,7 +98,8 @@ def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Conten
             found.run("standards", 0.55, lambda: _standards(model, critical_speeds=speeds, grade=grade))
         else:
             found.missing["standards"] = found.missing["critical"]
-        found.run("response", 0.65, lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
+        asked = run_up if run_up["fmax"] is not None else {**run_up, "fmax": _highest_order(model)}
+        found.run("response", 0.65, lambda: response(model, points=RUN_UP_SPEEDS, method="direct", **asked))
     else:
         for name in ("campbell", "critical", "critical_map", "standards"):
             found.missing[name] = _NO_SPEED
@@ -108,6 +113,13 @@ def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Conten
 @recorded
 def _standards(model: Model, *, critical_speeds: CriticalResult, grade: float) -> StandardsResult:
     return judged(critical_speeds, model, grade)
+
+
+def _highest_order(model: Model) -> float | None:
+    """Frequency in Hz of the last order of the fastest mesh in a run-up, at its highest speed; None without a mesh."""
+    lines = excitation_orders(model, (), (MESH_ORDERS_OF_RUN_UP,))
+    highest = max((line.frequency_hz(TOP * (model.operating_speed or 0.0)) for line in lines), default=0.0)
+    return (1.0 + 1e-9) * highest or None
 
 
 def _stiffnesses(model: Model) -> list[float]:

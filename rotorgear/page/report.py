@@ -61,6 +61,8 @@ def report(
     rig: str | Path | Sequence[Any] = (),
     study: Sequence[str | Path] = (),
     grade: float = 2.5,
+    modal_damping: float = 0.0,
+    fmax: float | None = None,
     turntable: bool = False,
     progress: Progress = silent,
 ) -> Report:
@@ -72,6 +74,9 @@ def report(
         rig: measured frequencies (CSV); in Python also lines.
         study: stored convergence studies (`rotorgear accuracy --save`), whose curves are shown; none is run for a page.
         grade: balance quality grade G of ISO 21940-11 in mm/s.
+        modal_damping: of the run-up, as in `response`.
+        fmax: leave out orders of the run-up above this many Hz at its highest speed (default: above the third order of the
+            fastest mesh).
         turntable: also put the modes into the page as solids that turn and move where a browser runs its script.
         progress: callable that is told fraction and step.
 
@@ -100,7 +105,7 @@ def report(
             raise AnalysisError(f"{path}: {expected}, this is a {stored.kind} result")
         studies.append(stored)
     start = cpu_seconds()
-    found = computed(built, lines, grade, progress)
+    found = computed(built, lines, grade, {"modal_damping": modal_damping, "fmax": fmax}, progress)
     found.seconds_of_all = cpu_seconds() - start
     numbers = {
         "analysis": "report",
@@ -110,6 +115,8 @@ def report(
         "model_hash": model_hash(built),
         "settings": {
             "grade": grade,
+            "modal_damping": modal_damping,
+            "fmax": fmax,
             "rig": setting(rig if isinstance(rig, str | Path) else [str(line) for line in lines]),
         },
         "cpu_seconds": dict(found.seconds),

@@ -63,7 +63,7 @@ def sections(found: Contents, studies: list[Any]) -> Iterator[Section]:
     if "check" in made:
         section = Section("model", "The gearbox").show(made["check"].tables(), RESULTS, "check")
         if painter is not None:
-            seen = "The model, seen from an end; a casing is drawn transparent."
+            seen = "The model, seen obliquely" + ("; casings are transparent." if found.model.casings else ".")
             section.figures.append({"caption": seen, "markup": painter.image("The gearbox"), "small": False})
         yield section
     if "static" in made:
@@ -164,11 +164,25 @@ def _response(made: dict[str, Any]) -> Section:
     section.words.append(
         "Linear response to the unbalances, transmission errors and stiffness variation that the model has."
     )
-    if not result.damping_ratio and not np.any(result.model.damping.model_dump(exclude_defaults=True)):
-        section.words.append(
-            "No damping is given to the model as a whole: heights near resonances are those of the nearest speed."
-        )
+    ratio = f"a damping ratio of {result.damping_ratio:g} of every elastic mode" if result.damping_ratio else ""
+    tables = ("bearings", "meshes", "couplings", "supports", "casings")
+    damped = [name for name in tables if _has_damping(getattr(result.model, name))]
+    damped += ["whole"] if np.any(list(result.model.damping.model_dump(exclude_defaults=True).values())) else []
+    parts = f"the damping that the model gives to its {' and '.join(damped)}" if damped else ""
+    given = " and ".join(filter(None, [ratio, parts]))
+    section.words.append(
+        f"Damping: {given}."
+        if given
+        else "No damping is given: heights near resonances are those of the nearest speed."
+    )
+    if not result.damping_ratio:
+        section.words.append("No modal damping was added: peaks may be far too high. --modal-damping 0.02 adds 2 %.")
     return section.draw("Amplitudes over speed.", result.plot(), "Run-up")
+
+
+def _has_damping(parts: dict[str, Any]) -> bool:
+    """Whether any of some bearings, meshes or couplings has damping of its own in the file."""
+    return any(getattr(part, "damping", None) or getattr(part, "damping_ratio", None) for part in parts.values())
 
 
 def _teeth(made: dict[str, Any], names: list[str]) -> Section:
