@@ -25,6 +25,8 @@ THRUST = {
     "model/parts/supports.py",
     "results/bearing.py",
 }
+# Rolling bearings that take thrust by their designation, of the model file and of REXS: another kind, with the same word.
+ROLLING = {"forces/designations.py", "rexs/bearings.py"}
 WORD = re.compile(r"(?<![A-Za-z])(thrust|Thrust)(?![a-z])")
 PULL = "[300.0, 400.0, 0.0]"
 
@@ -42,7 +44,7 @@ def code_of(file: Path) -> Iterator[str]:
 def test_a_thrust_bearing_stands_in_five_files() -> None:
     package = ROOT / "rotorgear"
     found = {str(file.relative_to(package)) for file in package.rglob("*.py") if any(map(WORD.search, code_of(file)))}
-    assert found == THRUST
+    assert found - ROLLING == THRUST
 
 
 def test_the_walk_sees_names_and_texts_and_no_prose(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from rotorgear.model.parts.supports import Bearing, Coupling, NonlinearElement, 
 class Tables(Part):
     """All parts of a model by name. Whether they fit each other is checked by `Model`."""
 
-    schema_version: Literal[1] = Field(1, description="version of this file format")
+    schema_version: Literal[1] = Field(1, description="version of this file format; this rotorgear reads 1")
     title: str = Field("", description="what the model is, in a line")
     motions: tuple[Literal["bending", "axial", "torsion"], ...] = Field(
         ("bending", "axial", "torsion"), description="motions the model has; the others are held fixed in every node"
