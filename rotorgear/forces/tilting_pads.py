@@ -11,21 +11,41 @@ exp(i w t) of a pad without inertia keep F_t = 0, so with Z = K + i w C in xi, e
     Z_red = Z_rr - Z_rt Z_tr / Z_tt,   K = sum Re Z_red e_r e_r^T,   C = sum Im Z_red / w e_r e_r^T
 
 at w = `whirl_ratio` times the speed of the journal; 1: synchronous. The film of a pad is that of journal_pressure.py.
+
+Where the journal has moved away from a pad, a = -(xi + m c_p)/c_p > 0, the gap is widest at the pivot. A pad whose pivot lies
+behind its middle then has two stable tilts up to a fold a_f, one with a film that is whole and one without a film; behind the
+fold the second alone. Which of them a pad takes below a_f depends on what went before. Here it is the loaded one, but over the
+last part of the way to the fold its film counts with a weight that falls from 1 to 0, so that the force is a continuous function
+of the journal's place between those of both tilts. Pressures over mu omega (R/c_p)^2 depend on xi/c_p + m and eta/c_p alone, so
+that a_f is one number for all pads, clearances, preloads, speeds and oils. With other pivots a_f = 0. Pads without a film may
+flutter (Adams and Payandeh, J. Lubr. Tech. 105 (1983) 377).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_pressure import ALONG, AROUND, FIRST, PADS, PRELOAD, pad_film
+from rotorgear.forces.journal_pressure import ALONG, AROUND, CUT, FIRST, PADS, PRELOAD, pad_film
 from rotorgear.forces.law import Linearised, parameter, refuse
 from rotorgear.forces.oil_film import TURN, JournalOil
-from rotorgear.forces.shell import CLEARANCE, SPEED, WALL, add_wall, place_in_shell, schedule
+from rotorgear.forces.shell import (
+    CLEARANCE,
+    LENGTH,
+    RADIUS,
+    SPEED,
+    VISCOSITY,
+    WALL,
+    add_wall,
+    place_in_shell,
+    schedule,
+)
 from rotorgear.solvers.time.compiled import compiled, force_function
 
 _ITERATIONS = 60
@@ -33,17 +53,40 @@ _ITERATIONS = 60
 _EDGE = 0.02
 # Of the pad's force: a moment about the pivot over R that is none.
 _LEVEL = 1e-12
+# The film of a pad gives way over the last part of the distance to the fold, and over no less than this change of a, if a_f is
+# that large: the shape of a pad is not known any better.
+_GIVES_WAY = 0.2
+_SHAPE = 0.005
+_NEVER = 1e3
+# Behind the pads in the parameters: a_f, the loaded tilt there and at a = 0, over the one that closes the trailing edge, and the
+# range of a below a_f over which the film gives way.
+_FOLD, _TILT_THERE, _TILT_AT_0, _RANGE = range(4)
 
 
 @compiled
 def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope):  # type: ignore[no-untyped-def]
     """Tilt a pad until F_t = 0; fill its force and tangents in (e_r, e_t) and its pressure, and return eta.
 
-    F (2,), K and C (4,), slope (2,): change of eta with xi and its velocity. A pad whose edge comes down to the least gap before
-    F_t = 0 lies on that edge; one that nothing presses has no force.
+    F (2,), K and C (4,); slope (3,): change of eta with xi and its velocity, and of the force along e_r with the weight of the
+    film as xi changes. A pad whose edge comes down to the least gap before F_t = 0 lies on that edge; one that nothing presses
+    has no force.
     """
     around = int(p[AROUND])
     c_pad = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    away = -(xi + p[PRELOAD] * c_pad) / c_pad
+    sense = 1.0 if omega >= 0.0 else -1.0
+    of_pads = FIRST + 3 * int(p[PADS])
+    # From the pivot to the trailing edge.
+    behind = extent - (pivot - start) if sense > 0.0 else pivot - start
+    fold = p[of_pads + _FOLD] if behind < 0.5 * extent else 0.0
+    slope[:] = 0.0
+    if away >= fold:
+        F[:] = 0.0
+        K[:] = 0.0
+        C[:] = 0.0
+        pressure[:] = 0.0
+        # The gap opens from the leading edge to the trailing one.
+        return -sense * max(away, 0.0) * c_pad * np.tan(behind)
     low = -1e3 * c_pad
     high = 1e3 * c_pad
     low_slope = 0.0
@@ -59,14 +102,24 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
             low_slope = -np.cos(t) / np.sin(t)
     most = high
     least = low
-    eta = 0.0 if low < 0.0 < high else 0.5 * (low + high)
-    sense = 1.0 if omega >= 0.0 else -1.0
+    eta = 0.0
+    if away >= 0.0:
+        # The loaded tilt is more than that at the fold, and changes with the root of the distance to it.
+        there = p[of_pads + _TILT_THERE]
+        shut = sense * c_pad * (1.0 + away * np.cos(behind)) / np.sin(behind)
+        if sense > 0.0:
+            low = there * shut
+        else:
+            high = there * shut
+        eta = shut * (there + (p[of_pads + _TILT_AT_0] - there) * np.sqrt(1.0 - away / fold))
+    if not low < eta < high:
+        eta = 0.5 * (low + high)
     for _ in range(_ITERATIONS):
         F[:] = 0.0
         K[:] = 0.0
         C[:] = 0.0
         pad_film(p, omega, xi, eta, v_xi, 0.0, start - pivot, extent, 0.0, F, K, C, pressure)
-        if abs(F[1]) <= _LEVEL * abs(F[0]) or high - low < 1e-14 * c_pad:
+        if (F[0] > 0.0 and abs(F[1]) <= _LEVEL * F[0]) or high - low < 1e-14 * c_pad:
             break
         # More tilt presses the trailing edge, which lies at larger angles where the journal turns about +z.
         if F[1] > 0.0:
@@ -77,7 +130,6 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
             high = eta
         step = eta - F[1] / K[3] if K[3] != 0.0 else low
         eta = step if low < step < high else 0.5 * (low + high)
-    slope[1] = 0.0
     if most - eta < 1e-9 * c_pad:
         slope[0] = high_slope
     elif eta - least < 1e-9 * c_pad:
@@ -85,7 +137,71 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
     else:
         slope[0] = -K[2] / K[3] if K[3] != 0.0 else 0.0
         slope[1] = -C[2] / K[3] if K[3] != 0.0 else 0.0
+    left = (fold - away) / p[of_pads + _RANGE] if away > 0.0 else 1.0
+    if left < 1.0:
+        weight = left * left * (3.0 - 2.0 * left)
+        slope[2] = F[0] * 6.0 * left * (1.0 - left) / (p[of_pads + _RANGE] * c_pad)
+        F *= weight
+        K *= weight
+        C *= weight
+        pressure *= weight
     return eta
+
+
+@lru_cache(maxsize=64)
+def _fold(
+    pivot: float, arc: float, slenderness: float, around: int, along: int, cut: float
+) -> tuple[float, float, float]:
+    """a_f of a pad, `_NEVER` where no journal can be so far away, and its loaded tilt there and at a = 0.
+
+    Tilts are shares of that which closes the trailing edge.
+
+    Args:
+        pivot: from the leading edge, as a share of the arc. slenderness: L/R. around, along: cells. cut: of the parameters.
+    """
+    if pivot <= 0.5:
+        return 0.0, 0.0, 0.0
+    p = np.zeros(FIRST)
+    p[[VISCOSITY, RADIUS, LENGTH, CLEARANCE, AROUND, ALONG, CUT]] = 1.0, 1.0, slenderness, 1.0, around, along, cut
+    behind = (1.0 - pivot) * arc
+    pressure = np.zeros((around - 1, along))
+
+    def moment(away: float, tilt: float) -> tuple[float, float, float]:
+        """F_t and its changes with a, at this share, and with eta/c_p."""
+        F = np.zeros(2)
+        K = np.zeros(4)
+        eta = tilt * (1.0 + away * np.cos(behind)) / np.sin(behind)
+        pad_film(p, 1.0, -away, eta, 0.0, 0.0, -pivot * arc, arc, 0.0, F, K, np.zeros(4), pressure)
+        return F[1], -K[2] + K[3] * tilt / np.tan(behind), K[3]
+
+    def least_at(away: float, low: float, high: float) -> float:
+        return float(brentq(lambda tilt: moment(away, tilt)[2], low, high, xtol=1e-12))
+
+    most = 1.0 - _EDGE
+    if moment(0.0, most)[0] <= 0.0:
+        return _NEVER, 0.5 * most, most  # on its trailing edge
+    high = most
+    while moment(0.0, low := 0.8 * high)[2] > 0.0:
+        high = low
+    away = 0.0
+    tilt = least_at(away, low, high)
+    at_0 = float(brentq(lambda tilt: moment(0.0, tilt)[0], tilt, most, xtol=1e-6))
+    # The least moment rises with a, the less the farther, so that Newton's steps stay below the fold.
+    for _ in range(_ITERATIONS):
+        least, rises, _ = moment(away, tilt)
+        step = min(-least / rises, 1.0 - away)
+        if step < 1e-12:
+            break
+        away += step
+        low = high = tilt
+        if moment(away, tilt)[2] <= 0.0:
+            while moment(away, high := 1.1 * high)[2] <= 0.0:
+                low = high
+        else:
+            while moment(away, low := 0.9 * low)[2] > 0.0:
+                high = low
+        tilt = least_at(away, low, high)
+    return away if away < 1.0 else _NEVER, tilt, at_0
 
 
 @force_function
@@ -99,7 +215,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     pad_F = np.zeros(2)
     pad_K = np.zeros(4)
     pad_C = np.zeros(4)
-    slope = np.zeros(2)
+    slope = np.zeros(3)
     pressure = np.zeros((int(p[AROUND]) - 1, int(p[ALONG])))
     for pad in range(int(p[PADS])):
         at = FIRST + 3 * pad
@@ -110,7 +226,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         tilted(p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], pad_F, pad_K, pad_C, pressure, slope)
         if pad_F[0] <= 0.0:
             continue
-        stiff = pad_K[0] + pad_K[1] * slope[0]
+        stiff = pad_K[0] + pad_K[1] * slope[0] + slope[2]
         damp = pad_C[0] + pad_K[1] * slope[1]
         film[0] += pad_F[0] * c
         film[1] += pad_F[0] * n
@@ -154,7 +270,12 @@ class TiltingPads(JournalOil):
         place = self.pivot if self.order >= 0.0 else 1.0 - self.pivot
         pivots = self.at + TURN * np.arange(self.pads) / self.pads
         pads = [(float(q) - place * self.arc, self.arc, float(q)) for q in pivots]
-        return self.of_grid(max(self.around // self.pads, 12), False, pads)
+        around = max(self.around // self.pads, 12)
+        p = self.of_grid(around, False, pads)
+        # Pads that turn the other way have their other edge in front.
+        share = max(self.pivot, 1.0 - self.pivot)
+        fold = _fold(share, self.arc, self.length / self.radius, around, self.along, float(p[CUT]))
+        return np.array([*p, *fold, min(fold[_FOLD], max(_GIVES_WAY * fold[_FOLD], _SHAPE))])
 
     def rough(self) -> TiltingPads:
         """The same on a grid that knows the stiffness to some 10 %."""
@@ -173,16 +294,38 @@ class TiltingPads(JournalOil):
             f"{self.heat_left_out}, turbulence and tilt of the journal in its film",
         )
 
+    def doubts(self, d: Any, speed: float) -> Iterator[tuple[str, str]]:
+        """Flutter of pads without a film, and the other stable tilt of pads that the journal moved away from."""
+        fold, _, _, gives_way = self.parameters()[FIRST + 3 * self.pads :]
+        empty = []
+        either = []
+        failing = []
+        for number, (_, _, e_r, F, *_) in enumerate(self._each_pad(np.asarray(d, float), speed), 1):
+            away = -float(e_r @ d) / self.pad_clearance - self.preload
+            if F[0] <= 0.0:
+                empty.append(number)
+            elif away > fold - gives_way:
+                failing.append(number)
+            elif away > 0.0:
+                either.append(number)
+        for what, pads in (
+            ("flutter of pads that have no film", empty),
+            ("the tilt without a film at which pads may stay as well, after a shock", either),
+            ("the fold of loaded tilts: near it a part of the pad's film is counted", failing),
+        ):
+            if pads:
+                yield what, f"pad{'s' if len(pads) > 1 else ''} {', '.join(map(str, pads))}"
+
     def _each_pad(self, d: np.ndarray, speed: float) -> Iterator[tuple[Any, ...]]:
         """Of each pad start and pivot in rad, e_r (2,), force (2,), K and C (2, 2) in (e_r, e_t), eta, and pressure."""
         p = self.parameters()
-        for start, extent, q in p[FIRST:].reshape(-1, 3):
+        for start, extent, q in p[FIRST : FIRST + 3 * self.pads].reshape(-1, 3):
             e_r = np.array([np.cos(q), np.sin(q)])
             F = np.zeros(2)
             K = np.zeros((2, 2))
             C = np.zeros((2, 2))
             pressure = np.zeros((int(p[AROUND]) - 1, self.along))
-            answer = (F, K.reshape(4), C.reshape(4), pressure, np.zeros(2))
+            answer = (F, K.reshape(4), C.reshape(4), pressure, np.zeros(3))
             eta = tilted(p, self.order * speed, float(e_r @ d), 0.0, start, extent, q, *answer)
             yield start, q, e_r, F, K, C, eta, pressure
 

@@ -38,6 +38,10 @@ if TYPE_CHECKING:
 
 # A contact pulls where its force is below minus this share of the largest one.
 _PULLS = 1e-9
+# Of the largest stiffness of a law.
+_ROUNDING = 1e-14
+# Condition of the stiffness of a law, along what it can hold, above which it holds less than that.
+_LOOSE = 1e12
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,10 @@ class LawState:
         # Rolling elements that turn: force and tangents are means over a pitch of them.
         averaged = bool(self.part.law.cycle()) and speed != 0.0
         return OperatingPoint(self.part.part, speed, self.force, self.d, self.stiffness, self.damping, averaged)
+
+    def doubts(self, speed: float) -> tuple[Note, ...]:
+        """What the law leaves out in this equilibrium, at a speed of the reference shaft in rad/s."""
+        return tuple(Note(self.part.part, what, "", value) for what, value in self.part.law.doubts(self.d, speed))
 
 
 @dataclass(frozen=True)
@@ -190,7 +198,19 @@ def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawS
         q = np.asarray(q - R @ np.linalg.lstsq(system.dofs.expand(R)[rows], here, rcond=1e-9)[0])
     if parts:  # derivatives are about the state found
         K, R = _held(system, [*groups, *(law_group(law.part, law.stiffness) for law in laws)], speed)
-        solver = StaticSolver(K, R)
+        try:
+            solver = StaticSolver(K, R)
+        except AnalysisError:
+            held = [np.ix_(at, at) for at in (np.flatnonzero(np.diag(k)) for k in about)]
+            loose = [
+                law.part.part for law, at in zip(laws, held, strict=True) if np.linalg.cond(law.stiffness[at]) > _LOOSE
+            ]
+            if not loose:
+                raise
+            raise AnalysisError(
+                f"{', '.join(loose)}: in equilibrium at {speed * RPM_PER_RAD_S:.6g} rpm nothing holds a motion of the shafts: "
+                "a law there has no stiffness along one of its directions, such as tilting pads of which one alone carries"
+            ) from None
     force = np.where(closed, lines.force(q), 0.0)
     moment = np.where(closed, lines.moment(q), 0.0)
     return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, moment, notes, tuple(laws))
@@ -204,7 +224,8 @@ def _held(system: System, groups: list[ElementGroup], speed: float) -> tuple[sp.
 
 
 def law_group(part: LocalPart, stiffness: np.ndarray) -> ElementGroup:
-    """A law as springs of a stiffness (k, k) between its displacements."""
+    """A law as springs of a stiffness (k, k) between its displacements; one that is rounding beside the largest is none."""
+    stiffness = np.where(np.abs(stiffness) > _ROUNDING * np.abs(stiffness).max(), stiffness, 0.0)
     dofs = np.flatnonzero(np.any(part.columns != 0.0, axis=1))
     symmetric = 0.5 * (stiffness + stiffness.T)
     skew = 0.5 * (stiffness - stiffness.T)
