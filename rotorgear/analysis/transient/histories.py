@@ -186,7 +186,8 @@ def run_task(
             "values": task.channels.values(records),
         }
         if text and records.t.size:
-            found.parts.clear()
+            # Their ends are compared.
+            del found.parts[:-1]
         elif grid.kept > 1:
             # Counted from the end, so that the last record is one of those that are kept.
             kept = (grid.records - np.rint(records.t / grid.spacing).astype(int)) % grid.kept == 0

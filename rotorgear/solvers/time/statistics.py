@@ -36,6 +36,8 @@ _STILL = 1e-6
 # Roache's margin, for where sides meet and part and impacts begin and end an order holds in the mean only.
 # J. Fluids Eng. 116 (1994) 405.
 _MARGIN = 1.25
+# Where runs of a step and of half of it agree by luck, the error is this share of what a run of twice the step says of it.
+_BY_LUCK = 0.2
 # Which side touches is known at the ends of steps only: both switches of a flight are off by up to half a step, evenly, and its
 # length by sqrt(1/12 + 1/12) of one.
 _COUNTED = 6.0**-0.5
@@ -261,6 +263,19 @@ def _largest(values: Callable[[np.ndarray], np.ndarray], t: np.ndarray, F: np.nd
 def gain(ratio: float) -> float:
     """By how much a step that is smaller by a ratio is better, less 1, with second order, and with a margin."""
     return (ratio**2 - 1.0) / _MARGIN
+
+
+def by_steps(
+    own: np.ndarray, finer: np.ndarray, coarser: np.ndarray | None, ratio: float, counted: np.ndarray
+) -> np.ndarray:
+    """Errors (s,) of a run's statistics by one of half the step and one of `ratio` times the step, with second order.
+
+    `counted`: what counting by steps leaves; the run of half the step knows it better, a quarter is the least.
+    """
+    errors = np.maximum(np.abs(own - finer) / 0.75, 0.25 * counted)
+    if coarser is None:
+        return np.asarray(errors)
+    return np.asarray(np.maximum(errors, _BY_LUCK * np.abs(own - coarser) / (ratio**2 - 1.0)))
 
 
 def compared(fine: np.ndarray, coarse: np.ndarray, scale: np.ndarray, factor: float, luck: float = 1.0) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.solvers.time.statistics import STATISTICS, PeriodicCurve, over_period
+from rotorgear.solvers.time.statistics import STATISTICS, PeriodicCurve, by_steps, over_period
 from tests.unit.analysis.impact_oscillator import ImpactOscillator
 
 # Flanks that stay together, flanks that part, flanks that strike on both sides; some are lightly damped.
@@ -17,6 +17,8 @@ PARTING = ImpactOscillator(W=1.2, ripple=2.0, z=0.03)
 STRIKING = ImpactOscillator(W=0.5, ripple=2.0, z=0.02)
 # One motion alone to settle on.
 SETTLING = ImpactOscillator(W=0.7, ripple=1.4, z=0.05)
+# Motions of two steps part, however small both are.
+CHAOTIC = ImpactOscillator(W=0.9, ripple=3.0, z=0.02)
 # Below this share of its size a statistic is right to rounding, and its error is nothing to judge.
 ROUNDING = 1e-11
 
@@ -104,9 +106,63 @@ def test_errors_of_a_transient_are_those_of_each_statistic(case: ImpactOscillato
     assert effectivity.min() > 0.3
     assert 0.5 < np.median(effectivity) < 3.0
     assert off[STATISTICS.index("contact loss")] <= 3.0 * error[STATISTICS.index("contact loss")]
-    assert found.error_estimate > 0.3 * (off / scale).max()
+    shown = np.array(STATISTICS) != "smallest force"  # in no table, and with an error of its own
+    assert found.error_estimate > 0.3 * (off / scale)[shown].max()
     assert scale[1] == pytest.approx(value[1])
     assert scale[-2:] == pytest.approx(value[-2:])
+
+
+def test_errors_of_chaos_are_how_much_other_steps_differ() -> None:
+    times = {"time": 64 * CHAOTIC.period, "discard": 150 * CHAOTIC.period}
+    found = rg.transient(CHAOTIC.model(), **times)
+    assert "the scatter of the record" in found.error_source
+    assert "as in chaos" in found.status
+    covered = []
+    for steps in (90, 110, 130, 150, 170):
+        other = rg.transient(CHAOTIC.model(), steps=steps, error_estimate=False, **times)
+        off = np.abs(found.quantity_value - other.quantity_value)
+        judged = (found.quantity_scale < np.inf) & (off > 1e-7 * found.quantity_scale)
+        covered += list(off[judged] <= found.quantity_error[judged])
+    assert np.mean(covered) >= 0.9
+
+
+def test_errors_of_a_run_up_are_those_of_each_statistic() -> None:
+    model = PARTING.model()
+    speed = PARTING.speed(0.5)
+    options = {"speed": speed, "speed_to": 3.0 * speed, "time": 60 * PARTING.period}
+    truth = rg.transient(model, method="newmark", steps=4800, error_estimate=False, **options)
+    for steps in (60, 120):
+        found = rg.transient(model, steps=steps, **options)
+        off = np.abs(found.quantity_value - truth.quantity_value)
+        judged = (off > 1e-5 * found.quantity_scale) & np.isfinite(found.quantity_scale)
+        effectivity = found.quantity_error[judged] / off[judged]
+        assert effectivity.min() > 0.3
+        assert 0.5 < np.median(effectivity) < 3.0
+        assert found.error_estimate > 0.5 * (off / found.quantity_scale)[judged].max()
+
+
+def test_two_steps_that_agree_by_luck_have_the_error_of_a_third() -> None:
+    own, finer, coarser = np.array([1.0, 1.0]), np.array([1.0, 0.97]), np.array([1.3, 1.09])
+    error = by_steps(own, finer, coarser, 2.0, np.zeros(2))
+    assert error == pytest.approx([0.02, 0.04])
+    assert by_steps(own, finer, None, 2.0, np.array([0.2, 0.0])) == pytest.approx([0.05, 0.04])
+
+
+def test_a_run_prints_the_error_of_each_statistic_beside_it() -> None:
+    found = rg.transient(LINEAR.model(), steps=40, time=20 * LINEAR.period, discard=0.0)
+    text = str(found)
+    table = text[text.index("Estimated errors, relative") :].splitlines()
+    heads, row = table[1].split(), table[2].split()
+    assert heads == ["contact", "mean", "rms", "largest", "TE", "appr.", "loss", "coast"]
+    stated = float(row[heads.index("rms")])
+    assert stated == pytest.approx(found.error_of("rms force pair"), rel=0.15)
+    number = found.quantity.index("rms force pair")
+    assert found.error_of("rms force pair") == found.quantity_error[number] / found.contacts[0].rms_force_n
+    assert "half and of twice the step" in text.replace("\n", " ")
+    unknown = rg.transient(LINEAR.model(), steps=40, time=20 * LINEAR.period, discard=0.0, error_estimate=False)
+    assert "Estimated errors" not in str(unknown)
+    with pytest.raises(KeyError):
+        found.error_of("rms force other")
 
 
 def test_errors_of_a_sweep_are_those_of_each_statistic() -> None:
