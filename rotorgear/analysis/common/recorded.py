@@ -15,7 +15,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from rotorgear.cpu import Clock
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, Interrupted
 from rotorgear.model.checks.names import estimated
 from rotorgear.model.checks.plausibility import implausible, implausible_speed
 from rotorgear.model.model import Model, model_hash
@@ -53,13 +53,20 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
             raise AnalysisError(f"{analysis.__name__}: {_no_model(subject)}")
         for name, value in given:
             _check_list(name, value, str(signature.parameters[name].annotation))
-        result = analysis(*args, **kwargs)
+        stopped = False
+        try:
+            result = analysis(*args, **kwargs)
+        except Interrupted as stop:
+            result, stopped = stop.result, True
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         clock.lap("analysis")
         seconds = result.seconds or clock.total()
         doubts = (*_doubts(subject, dict(given)), *estimated(subject.layout)) if isinstance(subject, Model) else ()
         warnings = tuple(dict.fromkeys((*result.warnings, *doubts)))
-        return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
+        result = replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
+        if stopped:
+            raise Interrupted(result)
+        return result
 
     return run
 
