@@ -99,9 +99,8 @@ def with_values(model: Tables, values: Mapping[str, Any]) -> dict[str, Any]:
         except ModelError as error:
             problems += error.problems
             continue
-        for (
-            place
-        ) in places:  # each its own copy: what a later address changes in one is neither another's nor the caller's
+        # Each place its own copy: what a later address changes in one is neither another's nor the caller's.
+        for place in places:
             _put(data, [place], deepcopy(given))
     if problems:
         raise ModelError(problems)

@@ -134,9 +134,8 @@ def bearing(
             notes.append(Note("", f"{rpm} is left out", str(missing)))
             continue
         there = law_at(near, address)
-        mass, whirl = None, None
-        if across:
-            mass, whirl = rigid_threshold(there.stiffness[:2, :2], there.damping[:2, :2], ratio * at)
+        plane = there.stiffness[:2, :2], there.damping[:2, :2]
+        mass, whirl = rigid_threshold(*plane, ratio * at) if across else (None, None)
         rows.append(
             BearingSpeed(
                 speed=at,
