@@ -164,25 +164,18 @@ def _response(made: dict[str, Any]) -> Section:
     section.words.append(
         "Linear response to the unbalances, transmission errors and stiffness variation that the model has."
     )
-    ratio = f"a damping ratio of {result.damping_ratio:g} of every elastic mode" if result.damping_ratio else ""
-    tables = ("bearings", "meshes", "couplings", "supports", "casings")
-    damped = [name for name in tables if _has_damping(getattr(result.model, name))]
-    damped += ["whole"] if np.any(list(result.model.damping.model_dump(exclude_defaults=True).values())) else []
-    parts = f"the damping that the model gives to its {' and '.join(damped)}" if damped else ""
-    given = " and ".join(filter(None, [ratio, parts]))
-    section.words.append(
-        f"Damping: {given}."
-        if given
-        else "No damping is given: heights near resonances are those of the nearest speed."
-    )
+    # Films, tables over speed and laws damp as well as keys named damping: the analysis knows whether anything does.
+    if any("nothing damps the model" in text for text in result.warnings):
+        section.words.append("Nothing damps the model: heights near resonances are those of the nearest speed.")
+    elif result.damping_ratio:
+        section.words.append(
+            f"Damping: that of the model, and a damping ratio of {result.damping_ratio:g} of every elastic mode."
+        )
+    else:
+        section.words.append("Damping: that of the model alone.")
     if not result.damping_ratio:
         section.words.append("No modal damping was added: peaks may be far too high. --modal-damping 0.02 adds 2 %.")
     return section.draw("Amplitudes over speed.", result.plot(), "Run-up")
-
-
-def _has_damping(parts: dict[str, Any]) -> bool:
-    """Whether any of some bearings, meshes or couplings has damping of its own in the file."""
-    return any(getattr(part, "damping", None) or getattr(part, "damping_ratio", None) for part in parts.values())
 
 
 def _teeth(made: dict[str, Any], names: list[str]) -> Section:
