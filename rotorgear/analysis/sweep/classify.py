@@ -69,9 +69,9 @@ def classify(
         return NOT_PERIODIC
     if exponent > max(chaos, error) and not _grows(x):
         return CHAOTIC
-    if abs(exponent) <= chaos:
+    half = len(x) // 2
+    if half and abs(exponent) <= chaos:
         # Both halves of the section cover the same range.
-        half = len(x) // 2
         first, second, whole = (np.array([part.min(axis=0), part.max(axis=0)]) for part in (x[:half], x[half:], x))
         if np.all(np.abs(first - second) <= SAME_RANGE * np.maximum(whole[1] - whole[0], 1e-300)):
             return QUASI_PERIODIC
@@ -97,4 +97,4 @@ def period_in(kind: str) -> int:
 def _grows(x: np.ndarray) -> bool:
     """Whether the range of the second half of a section is far larger than that of the first: unstable, not chaotic."""
     half = len(x) // 2
-    return bool(np.any(np.ptp(x[half:], axis=0) > _GROWTH * np.ptp(x[:half], axis=0)))
+    return half > 0 and bool(np.any(np.ptp(x[half:], axis=0) > _GROWTH * np.ptp(x[:half], axis=0)))

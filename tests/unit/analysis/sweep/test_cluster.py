@@ -20,6 +20,7 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import cluster as clusters
 from rotorgear.analysis.sweep.blocks import run_blocks
 from rotorgear.cli.main import app
+from rotorgear.cpu import timed
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.version import VERSION
 from tests.unit.analysis.sweep.test_sweep import PAIR, ROOT, SHORT, same
@@ -151,17 +152,18 @@ class Hand:
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
         self.lying += 1
         self.most = max(self.most, self.lying)
-        return Held(self, arguments)
+        _, *task = arguments
+        return Held(self, timed(lambda: tuple(task)))
 
 
 class Held:
-    def __init__(self, hand: Hand, arguments: tuple[Any, ...]) -> None:
+    def __init__(self, hand: Hand, answer: Any) -> None:
         self.hand = hand
-        self.arguments = arguments
+        self.answer = answer
 
     def result(self) -> Any:
         self.hand.lying -= 1
-        return self.arguments
+        return self.answer
 
     def cancel(self) -> None:
         self.hand.cancelled += 1

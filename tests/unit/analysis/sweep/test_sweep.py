@@ -269,6 +269,7 @@ def test_kinds_of_motion_by_the_stated_criterion() -> None:
     assert classify(torus, extent, 0.5, 0.6) == "not settled"
     assert classify(torus * np.exp(-k / 50.0)[:, None], extent, -0.01, 0.01) == "not settled"
     assert classify(torus, extent, None, 0.0) == "not periodic"
+    assert {classify(torus[:1], extent, exponent, 0.01) for exponent in (-0.1, 0.0)} == {"not settled"}
     assert period_of(np.tile(torus[:7], (20, 1)), extent) == 7
 
 
