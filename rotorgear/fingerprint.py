@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
+from rotorgear.files.own import bytes_of, text_of
+
 PACKAGE = Path(__file__).resolve().parent
 _IMPORT = re.compile(r"^\s*from rotorgear\.([\w.]+) import (\([^)]*\)|[^\n]+)", re.MULTILINE)
 
@@ -15,7 +17,7 @@ _IMPORT = re.compile(r"^\s*from rotorgear\.([\w.]+) import (\([^)]*\)|[^\n]+)", 
 def imported_files(file: Path) -> set[Path]:
     """The files of this package that one of its files imports, at the top or inside a function."""
     found = set()
-    for module, names in _IMPORT.findall(file.read_text(encoding="utf-8")):
+    for module, names in _IMPORT.findall(text_of(file)):
         place = PACKAGE / module.replace(".", "/")
         candidates = [place.with_suffix(".py")]
         candidates += [place / f"{name}.py" for name in re.findall(r"\w+", names)]
@@ -40,7 +42,7 @@ def hash_of(files: Iterable[Path]) -> str:
     digest = hashlib.sha256()
     for file in sorted(files):
         digest.update(file.relative_to(PACKAGE).as_posix().encode())
-        digest.update(file.read_bytes())
+        digest.update(bytes_of(file))
     return digest.hexdigest()[:16]
 
 

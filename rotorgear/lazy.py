@@ -14,16 +14,17 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
+from rotorgear.files.own import text_of
+
 
 def homes_of(file: str) -> dict[str, tuple[str, str]]:
     """Public name -> its module and the name that it has there, from the stub beside a package's `__file__`."""
     homes = {}
     # Read as lines rather than parsed: `ast` alone takes longer than the rest of the import.
-    with open(os.path.join(os.path.dirname(file), "__init__.pyi"), encoding="utf-8") as stub:
-        for line in stub:
-            match line.split():
-                case ["from", module, "import", name, "as", public]:
-                    homes[public] = (module, name)
+    for line in text_of(os.path.join(os.path.dirname(file), "__init__.pyi")).splitlines():
+        match line.split():
+            case ["from", module, "import", name, "as", public]:
+                homes[public] = (module, name)
     return homes
 
 

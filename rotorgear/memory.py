@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import sys
 
+from rotorgear.files.own import text_of
+
 
 def largest_memory() -> float | None:
     """The most memory that this process has held, in bytes; None where the system does not tell."""
@@ -19,10 +21,9 @@ def largest_memory() -> float | None:
 def free_memory() -> float | None:
     """Memory in bytes that the machine can still give, with what its caches would yield; None where the system does not tell."""
     try:
-        with open("/proc/meminfo", encoding="ascii") as file:
-            for line in file:
-                if line.startswith("MemAvailable:"):
-                    return 1024.0 * float(line.split()[1])
+        for line in text_of("/proc/meminfo", "ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return 1024.0 * float(line.split()[1])
         return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     except (OSError, ValueError, AttributeError):
         return None

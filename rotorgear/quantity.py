@@ -18,6 +18,8 @@ from typing import Any, SupportsFloat
 
 from rotorgear.common_units import COMMON_UNITS
 from rotorgear.errors import RotorgearError
+from rotorgear.files.bounds import LONGEST_QUANTITY
+from rotorgear.files.numbers import NUMBER
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ _TABLE = [
 ]
 DIMENSIONS = {row[0]: Dimension(*row) for row in _TABLE}
 
-_NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*\Z", re.DOTALL)
+_NUMBER_AND_UNIT = re.compile(rf"({NUMBER})(.*)\Z", re.DOTALL)
 _UNIT_TEXT = re.compile(r"[A-Za-z0-9µμ°·²³*/^()\s%-]*\Z")
 _EXPONENT_OR_RECIPROCAL = re.compile(r"\^\s*-?[0-9](?![0-9])|^1(?=\s*/)")
 # No length, mass, stiffness ... of a machine comes near this bound, and powers and products within it stay finite.
@@ -127,7 +129,7 @@ def _number_and_unit(value: Any, wanted: Dimension) -> tuple[float, str | None]:
         raise QuantityError(_expected(wanted))
     if not isinstance(value, str):
         return _sensible(value, wanted), None
-    match = _NUMBER_AND_UNIT.match(value)
+    match = _NUMBER_AND_UNIT.match(value.strip()) if len(value) <= LONGEST_QUANTITY else None
     if match is None or not _UNIT_TEXT.match(match[2]):
         raise QuantityError(_expected(wanted) + ("; decimals take a point" if "," in value else ""))
     return float(match[1]), " ".join(match[2].split())

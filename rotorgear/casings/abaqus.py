@@ -7,13 +7,16 @@ only, and takes no sets from headings. Here any number of blocks is read; elemen
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from rotorgear.casings.elements import element
-from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, NamedSet, gathered, not_read, places_of, set_of
+from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, Listed, NamedSet, gathered, not_read, places_of, set_of
+from rotorgear.files.bounds import MESH
+from rotorgear.files.numbers import is_count, number_of, whole_of
+from rotorgear.files.read import text_lines
 
 # Elements by how their names begin: kind and number of nodes; the longest beginning counts.
 _ELEMENTS = {
@@ -32,6 +35,8 @@ _ELEMENTS = {
     **dict.fromkeys(("T2D2", "T3D2", "B21", "B31"), ("line", 2)),
     **dict.fromkeys(("T2D3", "T3D3", "B22", "B32"), ("line3", 3)),
 }
+# Lines that a keyword may go on over.
+_MOST_CONTINUED = 100
 _SHELL_SIDES = ("SPOS", "SNEG")
 # Keywords of loads and connections that decks hold beside the elements; they are not read, and a note says so.
 _BESIDE = (
@@ -55,8 +60,8 @@ def read_abaqus(path: Path) -> FileMesh:
     """Read a deck; ValueError says what in it can't be read."""
     coordinates: dict[int, list[float]] = {}
     blocks: list[tuple[str, np.ndarray, np.ndarray]] = []
-    node_sets: dict[str, list[int]] = {}
-    cell_sets: dict[str, list[int]] = {}
+    node_sets: dict[str, Listed] = {}
+    cell_sets: dict[str, Listed] = {}
     surfaces: dict[str, list[tuple[str, str]]] = {}
     nodes_of_elements: dict[str, str] = {}
     instanced = False
@@ -71,25 +76,25 @@ def read_abaqus(path: Path) -> FileMesh:
                 number, *xyz = line.rstrip(",").split(",")
                 if len(xyz) < 3:
                     raise ValueError(f"node {number.strip()} has {len(xyz)} coordinates, not three")
-                place = [float(x) for x in xyz[:3]]
-                if coordinates.setdefault(int(number), place) != place:
+                place = [number_of(x) for x in xyz[:3]]
+                if coordinates.setdefault(whole_of(number), place) != place:
                     raise ValueError(f"node {number.strip()} is given twice, at two places")
             if "NSET" in options:
-                node_sets.setdefault(options["NSET"], []).extend(int(line.split(",")[0]) for line in lines)
+                node_sets.setdefault(options["NSET"], Listed()).numbers += [int(line.split(",")[0]) for line in lines]
         elif keyword == "ELEMENT":
             kind, count = _element(options.get("TYPE", "").upper())
-            numbers = [int(item) for line in lines for item in line.split(",") if item.strip()]
+            numbers = [whole_of(item) for line in lines for item in line.split(",") if item.strip()]
             if len(numbers) % (count + 1):
                 raise ValueError(f"elements {options.get('TYPE')} with another number of nodes than {count}")
             table = np.array(numbers, dtype=np.int64).reshape(-1, count + 1)
             blocks.append((kind, table[:, 1:], table[:, 0]))
             if "ELSET" in options:
-                cell_sets.setdefault(options["ELSET"], []).extend(table[:, 0].tolist())
+                cell_sets.setdefault(options["ELSET"], Listed()).numbers += table[:, 0].tolist()
         elif keyword == "NSET" and "ELSET" in options:
             nodes_of_elements[options.get("NSET", "")] = options["ELSET"]
         elif keyword in ("NSET", "ELSET"):
             sets = node_sets if keyword == "NSET" else cell_sets
-            sets.setdefault(options.get(keyword, ""), []).extend(_members(options, lines, sets))
+            _list(sets.setdefault(options.get(keyword, ""), Listed()), options, lines, sets)
         elif keyword == "SURFACE":
             items = [[item.strip().strip('"') for item in f"{line}, ".split(",")] for line in lines]
             surfaces.setdefault(options.get("NAME", ""), []).extend((row[0], row[1]) for row in items)
@@ -103,24 +108,37 @@ def read_abaqus(path: Path) -> FileMesh:
         raise ValueError("it has no *NODE")
     places = places_of(coordinates, "node")
     cells = [(kind, places(rows), ids) for kind, rows, ids in blocks]
-    named = {name: NamedSet(np.unique(places(nodes))) for name, nodes in node_sets.items() if name and nodes}
+    known = np.array(list(coordinates))
 
-    def chosen(numbers: Iterable[int]) -> list[tuple[str, np.ndarray]]:
-        wanted = list(numbers)
-        return [(kind, nodes[np.isin(ids, wanted)]) for kind, nodes, ids in cells]
+    def nodes_of(listed: Listed) -> np.ndarray:
+        """Places of listed nodes; single ones must be there, of a range those that are count."""
+        places(listed.numbers)
+        return np.flatnonzero(listed.among(known))
 
-    for name, numbers in cell_sets.items():
-        found = set_of(chosen(numbers))
+    named = {name: NamedSet(nodes_of(listed)) for name, listed in node_sets.items() if name}
+    named = {name: one for name, one in named.items() if len(one.nodes)}
+
+    def chosen(listed: Listed) -> list[tuple[str, np.ndarray]]:
+        return [(kind, nodes[listed.among(ids)]) for kind, nodes, ids in cells]
+
+    for name, listed in cell_sets.items():
+        found = set_of(chosen(listed))
         # A deck often has one name for the nodes and for the faces of a place; then the faces say more.
         if name and (name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes))):
             named[name] = found
     for name, elements in nodes_of_elements.items():
-        named.setdefault(name, NamedSet(set_of(chosen(cell_sets.get(elements, []))).nodes))
+        named.setdefault(name, NamedSet(set_of(chosen(cell_sets.get(elements, Listed()))).nodes))
     for name, sides in surfaces.items():
-        faces = [rows for which, label in sides for rows in _faces(chosen(_members({}, [which], cell_sets)), label)]
-        nodes = [node for which, _ in sides for node in _members({}, [which], node_sets) if node in coordinates]
-        if name and name not in named and (faces or nodes):
-            all_nodes = np.concatenate([rows.ravel() for rows in faces] or [places(nodes)])
+        # Sides of one list and face belong together: a surface may name each element by itself.
+        lists: dict[str, tuple[Listed, Listed]] = {}
+        for which, label in sides:
+            cells_listed, nodes_listed = lists.setdefault(label, (Listed(), Listed()))
+            _list(cells_listed, {}, [which], cell_sets)
+            _list(nodes_listed, {}, [which], node_sets)
+        faces = [rows for label, (listed, _) in lists.items() for rows in _faces(chosen(listed), label)]
+        nodes = [np.flatnonzero(listed.among(known)) for _, listed in lists.values()]
+        if name and name not in named and (faces or any(map(len, nodes))):
+            all_nodes = np.concatenate([rows.ravel() for rows in faces] or nodes)
             corners = [rows[:, : 4 if rows.shape[1] in (4, 8, 9) else 3] for rows in faces]
             named[name] = NamedSet(np.unique(all_nodes), corners)
     return FileMesh(
@@ -150,12 +168,13 @@ def _faces(cells: list[tuple[str, np.ndarray]], label: str) -> Iterator[np.ndarr
 
 def _keywords(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
     """Yield keyword, options (names in capitals) and lines of data of every block."""
-    with path.open(encoding="utf-8", errors="replace") as file:
-        lines = [line for raw in file if (line := raw.strip()) and not line.startswith("**")]
+    lines = [line for raw in text_lines(path, MESH.most_bytes) if (line := raw.strip()) and not line.startswith("**")]
     for block in re.split(r"^\*", "\n".join(lines), flags=re.MULTILINE)[1:]:
         head, *data = block.rstrip("\n").split("\n")
-        while head.endswith(",") and data:  # a keyword goes on in the next line
-            head += data.pop(0)
+        for _ in range(_MOST_CONTINUED):
+            if not (head.endswith(",") and data):
+                break
+            head += data.pop(0)  # a keyword goes on in the next line
         keyword, *items = head.split(",")
         options = (item.partition("=") for item in items)
         yield (
@@ -173,15 +192,20 @@ def _element(name: str) -> tuple[str, int]:
     return _ELEMENTS[max(known, key=len)]
 
 
-def _members(options: dict[str, str], lines: list[str], sets: dict[str, list[int]]) -> Iterator[int]:
+def _list(listed: Listed, options: dict[str, str], lines: list[str], sets: dict[str, Listed]) -> None:
+    """Add what lines of data list: numbers, ranges, and names of other sets."""
     for line in lines:
         items = [item.strip() for item in line.split(",") if item.strip()]
         if "GENERATE" in options:
-            first, last = int(items[0]), int(items[1])
-            yield from range(first, last + 1, int(items[2]) if len(items) > 2 else 1)
+            if not 2 <= len(items) <= 3:
+                raise ValueError("GENERATE without first and last number")
+            first, last, step = (*map(whole_of, items), 1)[:3]
+            if step < 1:
+                raise ValueError(f"GENERATE with the step {step}")
+            listed.ranges.append((first, last, step))
             continue
         for item in items:
-            if item.isdigit():
-                yield int(item)
+            if is_count(item):
+                listed.numbers.append(int(item))
             else:
-                yield from sets.get(item.strip('"'), [])
+                listed.add(sets.get(item.strip('"'), Listed()))

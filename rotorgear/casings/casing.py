@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import fields, replace
 from typing import TypeVar
 
@@ -12,8 +11,10 @@ from rotorgear.casings.reduction import reduce
 from rotorgear.casings.settings import BEYOND, CasingSettings
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.casings.wheel_reduction import reduce_wheel
-from rotorgear.disk_cache import entry_path, read_entry, write_entry
 from rotorgear.errors import AnalysisError
+from rotorgear.files.bounds import MESH
+from rotorgear.files.cache import read_entry, write_entry
+from rotorgear.files.read import UnreadableError, digest_of_named, named_file
 from rotorgear.fingerprint import fingerprint
 from rotorgear.progress import Progress, part_of, silent
 
@@ -56,26 +57,28 @@ def keep(settings: CasingSettings, body: ReducedBody) -> None:
 
 def key_of(settings: CasingSettings, modes_to: float | None) -> str:
     """A text that tells all inputs of a body; files enter with their contents."""
-    files = tuple((part, hashlib.sha256(path.read_bytes()).hexdigest()) for part, path in settings.files)
+    files = tuple((part, digest_of_named(path, MESH.most_bytes)) for part, path in settings.files)
     return f"{fingerprint(*_MAKERS)} {files} {modes_to!r} {replace(settings, files=())!r}"
 
 
 def _kept(kind: type[Body], settings: CasingSettings, modes_to: float | None, progress: Progress) -> Body:
     for _, path in settings.files:
-        if not path.is_file():  # the reader says it with the nearest name
+        try:
+            named_file(path, MESH.most_bytes)
+        except UnreadableError:  # the reader says it with the nearest name
             finite_element_body(settings)
     key = key_of(settings, modes_to)
     body = _KEPT.get(key)
     if body is None:
-        path = entry_path("bodies", kind.__name__, key)
-        stored = read_entry(path, key)
+        stored = read_entry("bodies", kind.__name__, key)
         if stored is None:
             fe = finite_element_body(settings, part_of(progress, 0.0, 0.3))
             tell = part_of(progress, 0.3, 1.0)
             body = reduce(fe, modes_to, tell)[0] if kind is ReducedBody else reduce_wheel(fe, modes_to, tell)
             values = {one.name: getattr(body, one.name) for one in fields(body) if one.name != "surface"}
             assert body.surface is not None, "a body of a mesh has a surface"
-            write_entry(path, key, values | {_SURFACE + name: value for name, value in vars(body.surface).items()})
+            values |= {_SURFACE + name: value for name, value in vars(body.surface).items()}
+            write_entry("bodies", kind.__name__, key, values)
         else:
             surface = Surface(*(stored.pop(_SURFACE + one.name) for one in fields(Surface)))
             # A casing that is held has no rigid motions.

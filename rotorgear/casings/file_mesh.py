@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.files.bounds import MOST_LISTED
+
 # Kinds of cells, in the words of meshio, by what rotorgear does with them.
 SOLIDS = ("tetra", "tetra10", "hexahedron", "hexahedron20", "hexahedron27")
 # How the names of all kinds of solids begin, of higher orders too.
@@ -54,6 +56,47 @@ class FileMesh:
     cells: dict[str, np.ndarray]
     sets: dict[str, NamedSet] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+
+
+class Listed:
+    """Numbers as a deck lists them: single ones, and ranges, which stay ranges: of a million million there may be three nodes."""
+
+    def __init__(self) -> None:
+        self.numbers: list[int] = []
+        self.ranges: list[tuple[int, int, int]] = []
+
+    def add(self, other: Listed) -> None:
+        """Take the numbers of another list; ValueError where they are more than any mesh has."""
+        if len(self.numbers) + len(self.ranges) + len(other.numbers) + len(other.ranges) > MOST_LISTED:
+            raise ValueError(f"a set of more than {MOST_LISTED} numbers")
+        self.numbers += other.numbers
+        self.ranges += other.ranges
+
+    def among(self, numbers: np.ndarray) -> np.ndarray:
+        """Which of some numbers (n,) are listed, (n,).
+
+        Raises:
+            ValueError: ranges with steps go through them more often than any mesh asks for.
+        """
+        found = np.isin(numbers, np.array(self.numbers, dtype=np.int64))
+        if not self.ranges:
+            return found
+        first, last, step = np.array(self.ranges, dtype=np.int64).T
+        order = np.argsort(numbers, kind="stable")
+        low = np.searchsorted(numbers, first, "left", sorter=order)
+        high = np.searchsorted(numbers, last, "right", sorter=order)
+        # Ranges begin and end: where more have begun than ended, a number is inside of one.
+        plain = (step == 1) & (high > low)
+        edges = np.zeros(len(numbers) + 1, dtype=np.int64)
+        np.add.at(edges, low[plain], 1)
+        np.add.at(edges, high[plain], -1)
+        found[order[np.cumsum(edges[:-1]) > 0]] = True
+        if int((high - low)[(step > 1) & (high > low)].sum()) > MOST_LISTED:
+            raise ValueError(f"ranges with steps over more than {MOST_LISTED} numbers")
+        for k in np.flatnonzero((step > 1) & (high > low)):
+            some = order[low[k] : high[k]]
+            found[some[(numbers[some] - first[k]) % step[k] == 0]] = True
+        return found
 
 
 def not_read(cards: list[str]) -> list[str]:

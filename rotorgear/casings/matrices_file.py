@@ -13,8 +13,6 @@ Everything beside stiffness and mass may be left out, but some interface must be
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -23,6 +21,10 @@ import scipy.linalg as la
 
 from rotorgear.casings.reduced_body import ReducedBody, Surface, mass_properties, modal_damping, rigid_coordinates
 from rotorgear.errors import AnalysisError
+from rotorgear.files.archive import read_arrays
+from rotorgear.files.bounds import MATRICES
+from rotorgear.files.read import UnreadableError
+from rotorgear.quantity import LARGEST
 
 _SURFACE = ("surface_points", "surface_triangles", "surface_basis")
 _KNOWN = ("stiffness", "mass", "seats", "positions", "damping", "rigid", "weight", *_SURFACE)
@@ -122,20 +124,22 @@ def _arrays(path: Path, address: str) -> dict[str, np.ndarray]:
             "(np.savez with stiffness, mass, seats, positions) and name that"
         )
     try:
-        with np.load(path, allow_pickle=False) as file:
-            if not isinstance(file, np.lib.npyio.NpzFile):
-                raise ValueError("one array, not an archive")
-            arrays = {name: file[name] for name in file.files}
-    except FileNotFoundError:
-        raise AnalysisError(f"{address}: there is no file '{path}'") from None
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
-        words = " ".join(str(error).split()) or "it is cut off"
-        raise AnalysisError(f"{address}: '{path.name}' can't be read as a NumPy archive (.npz): {words}") from None
+        arrays = read_arrays(path, MATRICES.most_bytes)
+    except UnreadableError as error:
+        if error.missing:
+            raise AnalysisError(f"{address}: there is no file '{path}'") from None
+        raise AnalysisError(
+            f"{address}: '{path.name}' can't be read as a NumPy archive (.npz): {error.reason}"
+        ) from None
     for name in arrays:
         if name not in _KNOWN:
             known = ", ".join(_KNOWN)
             raise AnalysisError(
                 f"{address}: '{path.name}' has an array '{name}' that means nothing here; known are {known}"
+            )
+        if arrays[name].dtype.kind in "fiuc" and not np.all(np.abs(arrays[name]) < LARGEST):
+            raise AnalysisError(
+                f"{address}: {name} in '{path.name}' has entries that are no finite numbers below {LARGEST:g}"
             )
     return arrays
 

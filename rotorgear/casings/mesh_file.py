@@ -18,9 +18,16 @@ from rotorgear.casings.abaqus import read_abaqus
 from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
 from rotorgear.casings.nastran import read_nastran
 from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.files.bounds import MESH
+from rotorgear.files.hdf5 import opened_hdf5
+from rotorgear.files.read import UnreadableError, named_file
 
 # Data that name groups by numbers: their names stand elsewhere in the file.
 _TAGS = ("point_tags", "cell_tags")
+# Formats that meshio reads from the named file alone. Those of XDMF, TetGen and others name or fetch further files.
+_BY_MESHIO = (".msh", ".vtu", ".vtk", ".med", ".mesh", ".meshb", ".su2", ".avs", ".f3grid", ".vol", ".ugrid")
+# Of the data in MED, how many times the file they may be when they are unpacked.
+_PACKED = 50
 _DECKS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".fem": read_nastran, ".dat": read_nastran}
 
 
@@ -35,20 +42,32 @@ def read_mesh(path: Path, address: str) -> FileMesh:
         AnalysisError: no such file, or one that can't be read.
         MissingExtraError: meshio is not installed.
     """
+    kinds = (*_DECKS, *_BY_MESHIO)
     if path.is_dir():
         raise AnalysisError(f"{address}: '{path}' is a folder, not the file of a mesh.")
-    if not path.is_file():
+    try:
+        named_file(path, MESH.most_bytes)
+    except UnreadableError as error:
+        if not error.missing:
+            raise AnalysisError(f"{address}: '{path.name}' can't be read as a mesh: {error.reason}.") from None
         there = sorted(item.name for item in path.parent.iterdir() if item.is_file()) if path.parent.is_dir() else []
         from rotorgear.quantity import nearest
 
         guess = nearest(path.name, there)
         hint = f" Did you mean '{guess}'?" if guess else " The path is taken from the folder of the model file."
-        raise AnalysisError(f"{address}: there is no file '{path}'.{hint}")
+        raise AnalysisError(f"{address}: there is no file '{path}'.{hint}") from None
+    if path.suffix.lower() not in kinds:
+        raise AnalysisError(
+            f"{address}: '{path.name}' can't be read as a mesh: its ending is none of {', '.join(kinds)}. Export it "
+            "as Gmsh .msh 4.1, Abaqus .inp or .vtu, with its solids and its named sets."
+        )
     reader = _DECKS.get(path.suffix.lower())
     try:
         mesh = reader(path) if reader else _by_meshio(path)
     except (MissingExtraError, AnalysisError):
         raise
+    except UnreadableError as error:
+        raise AnalysisError(f"{address}: '{path.name}' can't be read as a mesh: {error.reason}.") from None
     except Exception as error:
         words = " ".join(str(error).split())[:200]
         # A ValueError is a sentence of the readers beside this one, or Python's on what is no number.
@@ -74,6 +93,9 @@ def _by_meshio(path: Path) -> FileMesh:
         import meshio
     except ImportError:
         raise MissingExtraError("A casing from a mesh file", "meshio", "casing") from None
+    if path.suffix.lower() == ".med":
+        with opened_hdf5(path, MESH.most_bytes, packed=_PACKED):
+            pass
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):

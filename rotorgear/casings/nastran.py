@@ -14,8 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, not_read, places_of, set_of
+from rotorgear.casings.file_mesh import FileMesh, Listed, NamedSet, gathered, not_read, places_of, set_of
+from rotorgear.files.bounds import MESH
+from rotorgear.files.numbers import is_count, number_of, whole_of
+from rotorgear.files.read import text_lines
 
+# A line of fields has 80 columns; free fields may have more.
+_LONGEST_LINE = 10_000
 _ELEMENTS = {
     "CTETRA": {4: "tetra", 10: "tetra10"},
     "CHEXA": {8: "hexahedron", 20: "hexahedron20"},
@@ -39,7 +44,7 @@ def read_nastran(path: Path) -> FileMesh:
     """Read a deck; ValueError says what in it can't be read."""
     points: dict[int, list[float]] = {}
     rows: dict[tuple[str, int], list[list[int]]] = {}
-    node_sets: dict[str, list[tuple[int, int]]] = {}
+    node_sets: dict[str, Listed] = {}
     beside: Counter[str] = Counter()
     for fields in _cards(path):
         name = fields[0].upper()
@@ -53,21 +58,21 @@ def read_nastran(path: Path) -> FileMesh:
             if fields[2].strip() not in ("", "0"):
                 raise ValueError(f"GRID {fields[1]} is in a coordinate system of its own: export global coordinates")
             place = [_number(text) for text in (*fields[3:6], "", "", "")[:3]]
-            if points.setdefault(int(fields[1]), place) != place:
+            if points.setdefault(whole_of(fields[1]), place) != place:
                 raise ValueError(f"GRID {fields[1]} is given twice, at two places")
         elif name in _ELEMENTS:
-            nodes = [int(text) for text in fields[3:] if re.fullmatch(r"\d+", text)]
+            nodes = [int(text) for text in fields[3:] if is_count(text)]
             kinds = _ELEMENTS[name]
             if name in _SOLIDS and (len(nodes) not in kinds or any(fields[3 + len(nodes) :])):
                 raise ValueError(f"{name} {fields[1]} has {len(nodes)} nodes, not {' or '.join(map(str, kinds))}")
             count = next((count for count in sorted(kinds, reverse=True) if len(nodes) >= count), 0)
             if not count:
                 raise ValueError(f"{name} {fields[1]} has {len(nodes)} nodes")
-            rows.setdefault((kinds[count], int(fields[2] or 0)), []).append(nodes[:count])
+            rows.setdefault((kinds[count], whole_of(fields[2] or "0")), []).append(nodes[:count])
         elif name in ("SET", "SET1"):
-            node_sets.setdefault(f"set_{fields[1]}", []).extend(_listed(fields[2:]))
+            node_sets.setdefault(f"set_{fields[1]}", Listed()).add(_listed(fields[2:]))
         elif name == "SPC1":
-            node_sets.setdefault(f"spc_{fields[1]}", []).extend(_listed(fields[3:]))
+            node_sets.setdefault(f"spc_{fields[1]}", Listed()).add(_listed(fields[3:]))
     if not points:
         raise ValueError("it has no GRID")
     places = places_of(points, "GRID")
@@ -79,12 +84,9 @@ def read_nastran(path: Path) -> FileMesh:
         if kind.startswith(("triangle", "quad")):
             sets[f"property_{number}"] = set_of(cells[-1:])
     numbers = np.array(list(points))
-    for name, ranges in node_sets.items():
+    for name, listed in node_sets.items():
         # A set of the case control may be a set of elements: numbers that no node has are passed over.
-        member = np.isin(numbers, [first for first, last in ranges if first == last])
-        for first, last in ranges:
-            if first < last:
-                member |= (numbers >= first) & (numbers <= last)
+        member = listed.among(numbers)
         if member.any():
             sets[name] = NamedSet(np.flatnonzero(member))
     left_out = not_read([f"{count} {name}" for name, count in beside.items()])
@@ -94,40 +96,43 @@ def read_nastran(path: Path) -> FileMesh:
 def _cards(path: Path) -> Iterator[list[str]]:
     """Yield the fields of each card, with those of its continuations."""
     card: list[str] = []
-    pending = ""
+    pending: list[str] = []
     number = ""
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for raw in file:
-            line = raw.partition("$")[0].rstrip("\n").expandtabs(8)
-            if not line.strip():
-                continue
-            case = re.match(r"\s*SET\s+(\d+)\s*=\s*(.*)", line, re.IGNORECASE)
-            if case or pending:
-                pending += case.group(2) if case else line
-                number = case.group(1) if case else number
-                if not pending.rstrip().endswith(","):  # a set goes on in the next line
-                    yield ["SET", number, *(text.strip() for text in re.split(r"[,\s]+", pending) if text)]
-                    pending = ""
-                continue
-            fields = _fields(line)
-            if card and line[0] in "+* ,":
-                card += fields[1:]
-                continue
-            if card:
-                yield card
-            card = fields
+    for raw in text_lines(path, MESH.most_bytes):
+        line = raw.partition("$")[0].rstrip("\n")[:_LONGEST_LINE].expandtabs(8)
+        if not line.strip():
+            continue
+        case = re.match(r"\s*+SET\s++([0-9]++)\s*+=\s*+(.*)", line, re.IGNORECASE)
+        if case or pending:
+            pending.append(case.group(2) if case else line)
+            number = case.group(1) if case else number
+            if not line.rstrip().endswith(","):  # a set goes on in the next line
+                yield ["SET", number, *(text for text in re.split(r"[,\s]++", ",".join(pending)) if text)]
+                pending = []
+            continue
+        fields = _fields(line)
+        if card and line[0] in "+* ,":
+            card += fields[1:]
+            continue
+        if card:
+            yield card
+        card = fields
     if card:
         yield card
 
 
-def _listed(fields: list[str]) -> Iterator[tuple[int, int]]:
-    """First and last number of each entry of a list with "a THRU b"."""
+def _listed(fields: list[str]) -> Listed:
+    """The numbers of a list with "a THRU b"."""
+    found = Listed()
     words = [text.upper() for text in fields if text]
     for place, word in enumerate(words):
         if word == "THRU":
-            yield int(words[place - 1]), int(words[place + 1])
-        elif word.isdigit():
-            yield int(word), int(word)
+            if not (0 < place < len(words) - 1):
+                raise ValueError("a list with THRU and no number before or behind it")
+            found.ranges.append((whole_of(words[place - 1]), whole_of(words[place + 1]), 1))
+        elif is_count(word):
+            found.numbers.append(int(word))
+    return found
 
 
 def _fields(line: str) -> list[str]:
@@ -140,4 +145,4 @@ def _fields(line: str) -> list[str]:
 
 def _number(text: str) -> float:
     """A number as Nastran writes it: 1.5-3 is 1.5e-3, and nothing is 0."""
-    return float(re.sub(r"(?<=[0-9.])([+-]\d+)$", r"e\1", text.replace("D", "E"))) if text else 0.0
+    return number_of(re.sub(r"(?<=[0-9.])([+-][0-9]+)$", r"e\1", text.replace("D", "E"))) if text else 0.0

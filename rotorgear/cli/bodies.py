@@ -10,7 +10,7 @@ from typing import Any
 import typer
 
 import rotorgear as rg
-from rotorgear.cli.console import console, progress_bar
+from rotorgear.cli.console import console, progress_bar, say
 from rotorgear.cli.options import spelling
 from rotorgear.cli.run import Call
 from rotorgear.cli.show import numbers_of_modes, show, write_json
@@ -127,16 +127,16 @@ def export(call: Call) -> None:
         written = rg.write_state_space(system, state_space)
         console().print(system.table())
         write_json(call, system.to_dict())
-        typer.echo(f"wrote {written}")
+        say(f"wrote {written}")
     if matrices:
-        typer.echo(f"wrote {rg.write_matrices(call.source, matrices, **call.arguments('write_matrices'))}")
+        say(f"wrote {rg.write_matrices(call.source, matrices, **call.arguments('write_matrices'))}")
     if uff:
         asked = {name: call.asked(name) for name in ("speed", "elements")}
         to_fmax = call["fmax"] is not None and call["modes"] is None
         by = {"fmax": call["fmax"]} if to_fmax else {"modes": call["modes"] or 12}
         with progress_bar("modes") as progress:
             modes = rg.modal(call.source, **by, **asked, progress=progress)
-        typer.echo(f"wrote {rg.write_uff(modes, uff)}")
+        say(f"wrote {rg.write_uff(modes, uff)}")
 
 
 def report(call: Call) -> None:
@@ -145,9 +145,9 @@ def report(call: Call) -> None:
         asked = {"output": call["output"]} | call.arguments("report")
         done = rg.report(call.source_path, **asked, progress=progress)
     write_json(call, done.to_dict())
-    typer.echo(f"wrote {done.path}, {done.path.stat().st_size / 1e6:.2f} MB")
+    say(f"wrote {done.path}, {done.path.stat().st_size / 1e6:.2f} MB")
     for name, reason in done.missing.items():
-        typer.echo(f"not there: {name}: {reason}")
+        say(f"not there: {name}: {reason}")
 
 
 def view(call: Call) -> None:
@@ -159,8 +159,8 @@ def new(call: Call) -> None:
     """A model file of one's own, begun as a copy of a shipped one."""
     path = call.source_path
     for written in rg.new(path, **call.arguments("new")):
-        typer.echo(f"wrote {written}")
-    typer.echo(f"Next:  rotorgear check {path}")
+        say(f"wrote {written}")
+    say(f"Next:  rotorgear check {path}")
 
 
 def models(call: Call) -> None:
@@ -182,7 +182,7 @@ def import_rexs(call: Call) -> None:
     written = rg.write_model_file(result, output)
     console().print(result.table())
     write_json(call, result.to_dict())
-    typer.echo(f"wrote {written}\nNext:  rotorgear check {written}")
+    say(f"wrote {written}\nNext:  rotorgear check {written}")
 
 
 def schema(call: Call) -> None:
@@ -191,10 +191,10 @@ def schema(call: Call) -> None:
 
     data = rg.schema()
     if call["json"] is None:
-        typer.echo(json.dumps(data, indent=2))
+        say(json.dumps(data, indent=2))
     else:
         write_json(call, data)
-        typer.echo(f"wrote {call['json']}")
+        say(f"wrote {call['json']}")
 
 
 def validate(call: Call) -> None:

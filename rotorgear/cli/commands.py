@@ -16,6 +16,7 @@ from rotorgear.cli.command import Command
 from rotorgear.cli.old_options import current
 from rotorgear.cli.options import Option, axes_of
 from rotorgear.cli.verb import REQUIRED
+from rotorgear.files.read import noting_inputs
 
 
 def _frequencies(path: Path) -> list[float]:
@@ -345,8 +346,9 @@ def command(name: str) -> Any:
 def _run(command: Command, given: dict[str, Any]) -> None:
     """Run a command; what it runs is imported now, and not for help."""
     module, _, name = command.body.rpartition(".")
-    call = import_module("rotorgear.cli.run").Call(command, given)
-    getattr(import_module(f"rotorgear.cli.{module}"), name)(call)
+    with noting_inputs():
+        call = import_module("rotorgear.cli.run").Call(command, given)
+        getattr(import_module(f"rotorgear.cli.{module}"), name)(call)
 
 
 class _ByName(Mapping[str, Any]):

@@ -8,10 +8,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+import typer
+
+from rotorgear.files.shown import shown
 from rotorgear.progress import Progress, listening, silent
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+
+def say(text: str, *, err: bool = False) -> None:
+    """Write a line to the terminal; no text of a file is obeyed by it."""
+    typer.echo(shown(text), err=err)
 
 
 def console() -> Console:

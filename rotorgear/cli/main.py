@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import warnings
@@ -12,6 +13,8 @@ import typer
 from rotorgear.cli.commands import CommandGroup
 from rotorgear.cli.start import start_fast
 from rotorgear.errors import RotorgearError
+from rotorgear.files.own import nowhere
+from rotorgear.files.shown import shown
 from rotorgear.old_names import OldNameWarning
 
 app = typer.Typer(
@@ -45,33 +48,41 @@ def _root(
 def main() -> None:
     """Run the command line."""
     start_fast()
-    # Former names in a model file are the user's to mend: no path and line of this package before the sentence.
+    # Former names in a model file are the user's to mend: no path and line of this package before the sentence. What libraries
+    # warn of is for who works on the package, and asks for it (python -W).
     show = warnings.showwarning
 
     def sentence(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
         if issubclass(category, OldNameWarning):
-            sys.stderr.write(f"Warning: {message}\n")
-        else:
+            sys.stderr.write(f"Warning: {shown(str(message))}\n")
+        elif sys.warnoptions:
             show(message, category, *place, **rest)
 
     warnings.showwarning = sentence
     if sys.stdout is None:  # started with a closed output
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        sys.stdout = nowhere()
+    # A terminal may lack letters of a title; that is no reason to lose a result.
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
     try:
         try:
             app()
         finally:
             sys.stdout.flush()  # while a failure can still be told
     except RotorgearError as error:
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"{shown(str(error))}\n")
+        raise SystemExit(2) from None
+    except MemoryError:
+        sys.stderr.write("this takes more memory than there is: ask for less at a time, or for fewer elements\n")
         raise SystemExit(2) from None
     except BrokenPipeError:  # the reader of our output went away: nothing to report to
         sys.stderr.close()
         raise SystemExit(1) from None
     except OSError as error:  # a full disk, most likely
-        from rotorgear.export.files import reason_of
+        from rotorgear.files.write import reason_of
 
         what = f"{error.filename}" if error.filename else "the output can't be written"
-        sys.stderr.write(f"{what}: {reason_of(error)}\n")
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what waits to be written would fail again at the end
+        sys.stderr.write(f"{shown(what)}: {reason_of(error)}\n")
+        with nowhere() as sink:
+            os.dup2(sink.fileno(), 1)  # what waits to be written would fail again at the end
         raise SystemExit(2) from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import typer
+from rotorgear.cli.console import say
 
 # Command -> former option -> option.
 OPTIONS: dict[str, dict[str, str]] = {
@@ -47,4 +47,4 @@ def current(args: list[str]) -> list[str]:
 
 
 def _warn(old: str, new: str) -> None:
-    typer.echo(f"Warning: {old} is now {new}; the old name is read for the last time in this version", err=True)
+    say(f"Warning: {old} is now {new}; the old name is read for the last time in this version", err=True)

@@ -13,6 +13,7 @@ import typer
 
 from rotorgear.cli.verb import REQUIRED, Argument
 from rotorgear.errors import AnalysisError
+from rotorgear.files.numbers import is_count, number_of, whole_of
 
 # The default of an option that has that of its verb.
 AS_VERB = object()
@@ -103,6 +104,25 @@ def spelling(name: str) -> str:
     return _FLAGS.get(name, f"--{name.replace('_', '-')}")
 
 
+def _reader(option: Option) -> Callable[[Any], Any]:
+    """What reads a number as pages write it (1_0 is none), and not below its least value.
+
+    What is infinite or no number, the verb refuses with its reason.
+    """
+
+    def read(given: Any) -> Any:
+        whole = option.kind == "int"
+        try:
+            value = given if not isinstance(given, str) else whole_of(given) if whole else number_of(given, words=True)
+        except ValueError:
+            raise typer.BadParameter(f"{given!r} is not a valid {'integer' if whole else 'float'}.") from None
+        if option.least is not None and not value >= option.least:
+            raise typer.BadParameter(f"{value} is not in the range x>={option.least}.")
+        return value
+
+    return read
+
+
 def parameter(name: str, option: Option, panel: str, positional: bool = False) -> inspect.Parameter:
     """What typer makes the option of."""
     default = ... if option.default is REQUIRED else option.default
@@ -110,8 +130,9 @@ def parameter(name: str, option: Option, panel: str, positional: bool = False) -
     settings: dict[str, Any] = {
         "help": option.help,
         "show_default": default not in (None, False, ...),
-        "min": option.least,
     }
+    if option.kind in ("int", "float"):
+        settings["parser"] = _reader(option)
     if positional:
         info: Any = typer.Argument(
             **settings, metavar=option.shown or ("MODEL" if option.help.startswith("Model") else None)
@@ -179,7 +200,7 @@ def numbers_of(flag: str, text: str, *, whole: bool = False, zero: bool = False)
     if text.strip() in ("", "none"):
         return ()
     try:
-        numbers = tuple(float(part) for part in text.split(","))
+        numbers = tuple(number_of(part, words=True) for part in text.split(","))
     except ValueError:
         numbers = (-1.0,)
     if any(
@@ -222,7 +243,7 @@ def axes_of(texts: list[str]) -> dict[str, list[float]]:
         if dimension is None:
             raise AnalysisError(f"--over: got '{name}={values}', expected torque=... or misalignment=...")
         parts = [part.strip() for part in values.split(":")]
-        count = int(parts.pop()) if len(parts) == 3 and parts[2].isdigit() else None
+        count = int(parts.pop()) if len(parts) == 3 and is_count(parts[2]) else None
         try:
             numbers = [parse_quantity(part, dimension) for part in parts]
         except QuantityError as error:

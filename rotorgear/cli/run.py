@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import typer
-
 import rotorgear as rg
 from rotorgear.cli.command import Command
-from rotorgear.cli.console import progress_bar
-from rotorgear.cli.options import value_of
+from rotorgear.cli.console import progress_bar, say
+from rotorgear.cli.options import spelling, value_of
 from rotorgear.cli.verb import REQUIRED, arguments_of
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.extras import require
+from rotorgear.files.write import WriteError, check_output
+
+# Options that name what is written: files, and folders where a name has no ending.
+_OUTPUTS = ("json", "save", "plot", "waterfall", "vtk", "uff", "csv", "output", "state_space", "matrices")
 
 
 class Call:
@@ -48,6 +50,28 @@ class Call:
             raise AnalysisError(
                 "--workers are threads on this machine, --cluster are workers elsewhere: give one of them"
             )
+        self._check_outputs()
+
+    def _check_outputs(self, inputs: Iterable[str | Path] = ()) -> None:
+        """Refuse, before anything is computed, what could not be written in the end, or would be written onto an input.
+
+        Args:
+            inputs: beside the files that options name.
+        """
+        paths = {name: given for name, given in self.given.items() if isinstance(given, Path)}
+        outputs = {name: paths[name] for name in _OUTPUTS if name in paths}
+        read = [path for name, path in paths.items() if name not in outputs]
+        read += [
+            path for given in self.given.values() if isinstance(given, list) for path in given if isinstance(path, Path)
+        ]
+        known: dict[Path, str] = {}
+        for name, path in outputs.items():
+            if any(_same(path, one) for one in (*read, *inputs)):
+                raise WriteError(path, "this run reads it; give another name")
+            check_output(path, folder=name == "vtk" or (name == "plot" and not path.suffix))
+            other = known.setdefault(path.absolute(), name)
+            if other != name and not path.is_char_device():
+                raise AnalysisError(f"{spelling(other)} and {spelling(name)} would both be written to {path}")
 
     @staticmethod
     def _require_picture(path: Path) -> None:
@@ -86,7 +110,14 @@ class Call:
     @cached_property
     def source(self) -> Any:
         """The model or the saved result of the file that is named first."""
-        return rg.read(self.source_path) if self.saved else rg.load(self.source_path)
+        if self.saved:
+            return rg.read(self.source_path)
+        model = rg.load(self.source_path)
+        # Meshes are read later; tables that the model names were read with it.
+        meshes = [file for casing in model.casings.values() for file in (*casing.mesh.values(), casing.matrices)]
+        meshes += [gear.body.mesh for gear in model.gears.values()]
+        self._check_outputs([file for file in meshes if file])
+        return model
 
     def result(self, verb: str = "", **more: Any) -> Any:
         """Run a verb, by default that of the command, with a bar of progress; `more` goes before what was given."""
@@ -106,6 +137,13 @@ class Call:
             return getattr(rg, verb)(source, **arguments)
 
 
+def _same(path: Path, other: str | Path) -> bool:
+    """Whether both name one file that is there."""
+    with suppress(OSError, ValueError):
+        return path.samefile(other)
+    return False
+
+
 @contextmanager
 def _kept_blocks(save: Path) -> Iterator[None]:
     """Say, where a run that saves blocks is interrupted, that those which were done are kept."""
@@ -113,5 +151,5 @@ def _kept_blocks(save: Path) -> Iterator[None]:
         yield
     except (KeyboardInterrupt, RotorgearError):
         if any(Path(f"{save}.parts").glob("chunk_*")):
-            typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
+            say(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
         raise

@@ -12,12 +12,15 @@ from typing import Any
 import typer
 
 import rotorgear as rg
-from rotorgear.cli.console import console, progress_bar
+from rotorgear.cli.console import console, progress_bar, say
 from rotorgear.cli.run import Call
 from rotorgear.errors import AnalysisError
+from rotorgear.files.numbers import is_count
 
 # Modes that modal draws and writes for ParaView unless --shapes says otherwise.
 _LOWEST = 6
+# No result has more modes.
+_MOST_MODES = 1_000_000
 
 
 def analyse(call: Call) -> None:
@@ -46,23 +49,23 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
     early = call.command.name == "transient" and result.ended_early
     # First the file that holds everything.
     if call["save"] and not early:
-        typer.echo(f"saved {rg.save(result, call['save'])}")
+        say(f"saved {rg.save(result, call['save'])}")
         if "stream" in call.command.arguments:
             rg.stream(call["save"]).close()
     write_json(call, data)
     if call["plot"]:
         _draw(call, result if drawn is None else drawn, call["plot"])
     if call["waterfall"]:
-        typer.echo(f"wrote {rg.plot.save(rg.plot.waterfall(result, at=call['at']), call['waterfall'])}")
+        say(f"wrote {rg.plot.save(rg.plot.waterfall(result, at=call['at']), call['waterfall'])}")
     if call["vtk"]:
         _write_vtk(call, result, call["vtk"])
     if call["uff"]:
         modes = None if call["shapes"] is None else _shapes(call, result)
-        typer.echo(f"wrote {rg.write_uff(result, call['uff'], modes=modes)}")
+        say(f"wrote {rg.write_uff(result, call['uff'], modes=modes)}")
     if call["csv"]:
         from rotorgear.export.tables import write_csv
 
-        typer.echo(f"wrote {write_csv(_rows_of_a_map(result), call['csv'])}")
+        say(f"wrote {write_csv(_rows_of_a_map(result), call['csv'])}")
     if call["output"]:
         source = call.source_path
         write: Callable[[Path], Path] = {
@@ -70,16 +73,16 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
             "update": partial(rg.write_updated_model, result, source),
             "optimise": partial(rg.write_optimised_model, result, source),
         }[result.kind]
-        typer.echo(f"wrote {write(call['output'])}")
+        say(f"wrote {write(call['output'])}")
     if early:
-        typer.echo("the run ended early: what it gave so far stands above", err=True)
+        say("the run ended early: what it gave so far stands above", err=True)
         raise typer.Exit(1)
 
 
 def write_json(call: Call, data: dict[str, Any]) -> None:
     """Write plain values where a file was asked for."""
     if call["json"]:
-        from rotorgear.export.files import write_json as write
+        from rotorgear.files.write import write_json as write
 
         write(data, call["json"])
 
@@ -87,7 +90,7 @@ def write_json(call: Call, data: dict[str, Any]) -> None:
 def _draw(call: Call, result: Any, path: Path) -> None:
     """Draw a result: to a file where the name has an ending, else every picture of it into a folder."""
     if result.kind == "modal":
-        from rotorgear.export.files import replacing
+        from rotorgear.files.write import written
         from rotorgear.plots.mode_pictures import write_modes
 
         modes = _shapes(call, result)
@@ -99,14 +102,14 @@ def _draw(call: Call, result: Any, path: Path) -> None:
                 return
             if path.suffix.lower() != ".png":
                 raise AnalysisError(f"--plot: modes are rendered as PNG; got '{path.name}'")
-            with TemporaryDirectory() as folder, replacing(path) as scratch:
+            with TemporaryDirectory() as folder, written(path) as scratch:
                 (picture,) = write_modes(result, folder, modes=modes[:1], progress=progress)
                 shutil.copyfile(picture, scratch)
-        typer.echo(f"wrote {path}, mode {modes[0] + 1}")
+        say(f"wrote {path}, mode {modes[0] + 1}")
         return
     draw = partial(result.plot, **{name: call[name] for name in call.command.picture})
     if path.suffix:
-        typer.echo(f"wrote {rg.plot.save(draw(), path)}")
+        say(f"wrote {rg.plot.save(draw(), path)}")
         return
     if result.kind == "transient":
         from rotorgear.plots import transient
@@ -181,7 +184,11 @@ def numbers_of_modes(text: str | None) -> list[int] | None:
     chosen: list[int] = []
     for part in text.split(","):
         first, _, last = part.strip().partition("-")
-        if not first.isdigit() or (last and not last.isdigit()) or int(first) < 1:
+        if (
+            not is_count(first)
+            or (last and not is_count(last))
+            or not 1 <= int(first) <= int(last or first) <= _MOST_MODES
+        ):
             raise AnalysisError(f"--shapes: got '{text}', expected numbers of modes such as 1,6,9-12")
         chosen += range(int(first) - 1, int(last or first))
     return chosen
@@ -192,7 +199,7 @@ def _of_modes(result: Any, modes: list[int]) -> str:
 
 
 def _tell(what: str, paths: list[Path], folder: Path, hint: str = "") -> None:
-    typer.echo(f"wrote {len(paths)} {what}{'s'[: len(paths) != 1]} to {folder}{hint}")
+    say(f"wrote {len(paths)} {what}{'s'[: len(paths) != 1]} to {folder}{hint}")
 
 
 def _rows_of_a_map(points: Any) -> list[dict[str, float]]:

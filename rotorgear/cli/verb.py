@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import rotorgear
+from rotorgear.files.own import text_of
 from rotorgear.lazy import homes_of
 
 # The default of an argument that has none.
@@ -34,7 +35,7 @@ class Argument:
 def source_of(module: str) -> str:
     """The text of a module of rotorgear."""
     path = Path(rotorgear.__file__).parent.joinpath(*module.split(".")[1:])
-    return (path / "__init__.py" if path.is_dir() else path.with_suffix(".py")).read_text(encoding="utf-8")
+    return text_of(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
 
 
 @cache

@@ -5,21 +5,19 @@ Layout: the root's attributes say what it is; every field of the result is a dat
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
-from rotorgear.export.files import replacing
+from rotorgear.errors import ModelError, RotorgearError
 from rotorgear.export.hdf5_values import digest_of, get_value, put_value, stored_fields
+from rotorgear.files.bounds import RESULT
+from rotorgear.files.hdf5 import new_hdf5, opened_hdf5
+from rotorgear.files.read import UnreadableError
 from rotorgear.results.kinds import kinds
 from rotorgear.results.result import Result
 from rotorgear.version import VERSION
-
-if TYPE_CHECKING:
-    from types import ModuleType
 
 FORMAT = "rotorgear result"
 FORMAT_VERSION = 1
@@ -55,23 +53,6 @@ def save(result: Result, path: str | Path) -> Path:
     return Path(path)
 
 
-@contextmanager
-def new_hdf5(path: str | Path) -> Iterator[tuple[ModuleType, Any]]:
-    """Give h5py and a new file of it, which takes its place when all went well.
-
-    The file is made in memory and then written as bytes: on a full disk h5py leaves objects behind that it can't close, which
-    print their innards and end Python with a crash.
-
-    Raises:
-        WriteError: the file can't be written.
-    """
-    h5 = _import_h5py()
-    with replacing(path) as scratch, h5.File(scratch, "w", driver="core", backing_store=False) as file:
-        yield h5, file
-        file.flush()
-        scratch.write_bytes(file.id.get_file_image())
-
-
 def read(path: str | Path) -> Any:
     """Read a result from an HDF5 file.
 
@@ -85,17 +66,11 @@ def read(path: str | Path) -> Any:
         ReadError: no such file, no HDF5, not written by rotorgear, written by a newer one, or changed or damaged.
     """
     path = Path(path)
-    if not path.is_file():
-        raise ReadError(path, "it is a folder" if path.is_dir() else "there is no such file")
-    h5 = _import_h5py()
-    try:
-        path.open("rb").close()
-        file = h5.File(path, "r")
-    except PermissionError:
-        raise ReadError(path, "no permission to read it") from None
-    except OSError:
-        raise ReadError(path, "it is no HDF5 file, or damaged") from None
-    with file:
+    with ExitStack() as stack:
+        try:
+            file = stack.enter_context(opened_hdf5(path, RESULT.most_bytes))
+        except UnreadableError as error:
+            raise ReadError(path, error.reason) from None
         cls = _kind(path, file)
         try:
             digest = digest_of(file)
@@ -118,14 +93,6 @@ def read(path: str | Path) -> Any:
             cause = "it is damaged: its values are not those that rotorgear wrote; run the analysis again"
             raise ReadError(path, cause)
         return result
-
-
-def _import_h5py() -> ModuleType:
-    try:
-        import h5py
-    except ImportError:
-        raise MissingExtraError("Saving and reading results", "h5py", "all") from None
-    return h5py
 
 
 def _kind(path: Path, file: Any) -> type[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,10 @@ from rotorgear.analysis.common.request import check_request, speed_in_si
 from rotorgear.analysis.response.mesh import meshed
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError, RotorgearError
-from rotorgear.export.files import reason_of, replacing
+from rotorgear.files.archive import read_arrays
+from rotorgear.files.bounds import MATRICES
+from rotorgear.files.read import UnreadableError
+from rotorgear.files.write import reason_of, written
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.results.state_space import StateSpace
@@ -62,7 +66,8 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
         "reduction_error": result.reduction_error,
     }
     names = {key: getattr(result, key) for key in ("inputs", "outputs", "input_units", "output_units")}
-    with replacing(target) as scratch, open(scratch, "wb") as stream:
+    with written(target) as scratch:
+        stream = BytesIO()
         if target.suffix.lower() == ".mat":
             from scipy.io import savemat
 
@@ -71,11 +76,12 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
         else:
             arrays = values | {key: np.array(texts) for key, texts in names.items()}
             np.savez_compressed(stream, allow_pickle=False, **arrays)
+        scratch.write_bytes(stream.getvalue())
     return target
 
 
 # Name in the file, and what it is in M q'' + (C + W G) q' + K q = f.
-MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "transform")
+NAMES = ("mass", "damping", "gyroscopic", "stiffness", "transform")
 
 
 def write_matrices(
@@ -137,8 +143,10 @@ def write_matrices(
         names.append(of_nodes[min(moved)] if len(moved) else f"{system.dofs.describe(k, system.nodes)} [{k}]")
         units.append("" if not len(moved) else "rad" if min(moved) % 6 > 2 else "m")
     values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(of_nodes)}
-    with replacing(target) as scratch, open(scratch, "wb") as stream:
-        np.savez_compressed(stream, allow_pickle=False, **values)
+    stream = BytesIO()
+    np.savez_compressed(stream, allow_pickle=False, **values)
+    with written(target) as scratch:
+        scratch.write_bytes(stream.getvalue())
     return target
 
 
@@ -156,17 +164,21 @@ def read_matrices(path: str | Path) -> dict[str, Any]:
         RotorgearError: no such file, or another one.
     """
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            found: dict[str, Any] = {
-                name: sp.csc_array(
-                    tuple(stored[f"{name}_{part}"] for part in ("data", "indices", "indptr")),
-                    shape=tuple(int(count) for count in stored[f"{name}_shape"]),
-                )
-                for name in MATRICES
-            }
-            found |= {name: [str(text) for text in stored[name]] for name in ("dofs", "units", "node_dofs")}
-            return {**found, "speed_rad_s": float(stored["speed_rad_s"]), "title": str(stored["title"])}
-    except (OSError, ValueError, KeyError, EOFError) as error:
+        stored = read_arrays(path, MATRICES.most_bytes)
+        found: dict[str, Any] = {
+            name: sp.csc_array(
+                tuple(stored[f"{name}_{part}"] for part in ("data", "indices", "indptr")),
+                shape=tuple(int(count) for count in stored[f"{name}_shape"]),
+            )
+            for name in NAMES
+        }
+        for name in NAMES:
+            found[name].check_format()  # scipy trusts the indices of an array that it is given
+        found |= {name: [str(text) for text in stored[name]] for name in ("dofs", "units", "node_dofs")}
+        return {**found, "speed_rad_s": float(stored["speed_rad_s"]), "title": str(stored["title"])}
+    except UnreadableError as error:
+        raise RotorgearError(f"{path}: no file of matrices: {error.reason}") from None
+    except (ValueError, KeyError, TypeError) as error:
         raise RotorgearError(f"{path}: no file of matrices: {reason_of(error)}") from None
 
 

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import replacing
 from rotorgear.extras import require
+from rotorgear.files.bounds import MODEL
+from rotorgear.files.read import read_text
+from rotorgear.files.write import written
 from rotorgear.model.shipped import models, shipped_model
 from rotorgear.results.optimise import OptimiseResult, value_words
 from rotorgear.results.rexs_import import RexsImport
@@ -51,7 +53,7 @@ def new(path: str | Path, source: str | None = None, force: bool = False) -> lis
     if there and not force:
         raise AnalysisError(f"{' and '.join(there)} would be overwritten: choose another name, or give --force")
     for file, original in copies.items():
-        with replacing(file) as scratch:
+        with written(file) as scratch:
             shutil.copyfile(original, scratch)
     return list(copies)
 
@@ -152,7 +154,7 @@ def write_updated_model(result: UpdateResult, source: str | Path, path: str | Pa
         + ("" if row.identified else f", not identified ({100 * row.learnt:.0f} % learnt)")
         for row in result.parameters
     }
-    return _write(path, scaled_text(Path(source).read_text(encoding="utf-8"), factors, remarks))
+    return _write(path, scaled_text(read_text(source, MODEL.most_bytes), factors, remarks))
 
 
 def write_optimised_model(result: OptimiseResult, source: str | Path, path: str | Path) -> Path:
@@ -172,7 +174,7 @@ def write_optimised_model(result: OptimiseResult, source: str | Path, path: str 
     # No factor changes 0, "start" or "end": there the new place itself is written.
     texts = {row.address: f"{1e3 * row.after:.7g} mm" for row in moved if row.unit == "m"}
     remarks = {row.address: f"optimised, was {value_words(row, row.before)}" for row in moved}
-    return _write(path, scaled_text(Path(source).read_text(encoding="utf-8"), factors, remarks, texts))
+    return _write(path, scaled_text(read_text(source, MODEL.most_bytes), factors, remarks, texts))
 
 
 def write_model_file(result: RexsImport, path: str | Path) -> Path:
@@ -189,6 +191,6 @@ def write_model_file(result: RexsImport, path: str | Path) -> Path:
 
 
 def _write(path: str | Path, text: str) -> Path:
-    with replacing(path) as scratch:
+    with written(path) as scratch:
         scratch.write_text(text, encoding="utf-8")
     return Path(path)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Mapping
+from io import StringIO
 from pathlib import Path
 
-from rotorgear.export.files import replacing
+from rotorgear.files.write import written
 from rotorgear.results.sensors import SensorPlan
 
 
@@ -25,10 +26,12 @@ def write_csv(rows: Iterable[Mapping[str, object]], path: str | Path) -> Path:
     """
     listed = [dict(row) for row in rows]
     target = Path(path)
-    with replacing(target) as scratch, open(scratch, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=list(listed[0]) if listed else [], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(listed)
+    text = StringIO()
+    writer = csv.DictWriter(text, fieldnames=list(listed[0]) if listed else [], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(listed)
+    with written(target) as scratch:
+        scratch.write_bytes(text.getvalue().encode("utf-8", "backslashreplace"))
     return target
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from rotorgear.analysis.common.points import coordinates, point_node
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import replacing
+from rotorgear.files.write import written
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult, NodeTable
@@ -56,7 +56,7 @@ def write_uff(
         sets = _responses(result, binary)
     else:
         sets = _order_functions(result, binary)
-    with replacing(path) as scratch:
+    with written(path) as scratch:
         scratch.write_bytes(b"".join([units_set(datasets.Units()), *sets]))
     return Path(path)
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.export.attachment import nodes_in_order
-from rotorgear.export.files import filling, publish
 from rotorgear.export.paraview import add_texts, save_mesh, save_shape, undeformed, write_collection
 from rotorgear.export.solids import Solids
+from rotorgear.files.write import filling, publish
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.export.files import filling, publish, replacing
 from rotorgear.export.paraview import import_pyvista, save_mesh
+from rotorgear.files.write import filling, publish
 from rotorgear.results.casing import CasingSurvey
 from rotorgear.results.tooth_field import ToothFields
 
@@ -26,25 +26,22 @@ def write_casing_vtk(survey: CasingSurvey, folder: str | Path) -> list[Path]:
         The files.
 
     Raises:
-        MissingExtraError: pyvista is not installed. OSError: the files can't be written.
+        MissingExtraError: pyvista is not installed. WriteError: the folder can't be written.
     """
     pv = import_pyvista("VTK output")
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name, row in survey.casings.items():
-        faces = np.column_stack([np.full(len(row.triangles), 3), row.triangles])
-        mesh = pv.PolyData(row.points.astype(np.float32), faces=faces.ravel())
-        for kind in ("free", "held"):
-            for mode, shape in enumerate(np.moveaxis(getattr(row, f"{kind}_shapes"), 2, 0), start=1):
-                largest = np.linalg.norm(shape, axis=1).max()
-                mesh.point_data[f"{kind}_{mode:02d}"] = (shape / largest).astype(np.float32)
-            mesh.field_data[f"{kind}_frequency_hz"] = np.array(getattr(row, f"{kind}_frequency_hz"))
-        path = folder / f"casing_{name}.vtp"
-        with replacing(path) as scratch:
-            save_mesh(mesh, scratch)
-        written.append(path)
-    return written
+    names = []
+    with filling(folder) as scratch:
+        for name, row in survey.casings.items():
+            faces = np.column_stack([np.full(len(row.triangles), 3), row.triangles])
+            mesh = pv.PolyData(row.points.astype(np.float32), faces=faces.ravel())
+            for kind in ("free", "held"):
+                for mode, shape in enumerate(np.moveaxis(getattr(row, f"{kind}_shapes"), 2, 0), start=1):
+                    largest = np.linalg.norm(shape, axis=1).max()
+                    mesh.point_data[f"{kind}_{mode:02d}"] = (shape / largest).astype(np.float32)
+                mesh.field_data[f"{kind}_frequency_hz"] = np.array(getattr(row, f"{kind}_frequency_hz"))
+            names.append(f"casing_{name}.vtp")
+            save_mesh(mesh, scratch / names[-1])
+        return publish(scratch, Path(folder), names)
 
 
 _README = """Loaded teeth of mesh '{mesh}' at position {position:g} of the mesh period, first helix.

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import filling, publish
 from rotorgear.export.paraview import save_shape, undeformed, write_collection
 from rotorgear.export.vtk import check_amplitude, write_period
+from rotorgear.files.write import filling, publish
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult

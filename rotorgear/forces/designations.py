@@ -102,8 +102,11 @@ _SERIES = {
     )
     for series, size in (name.split(":") for name in names.split())
 }
+# No maker's name with a designation is longer.
+_LONGEST = 100
 _FORM = re.compile(
-    r"(?<![0-9A-Z])(?P<series>R?N(?:UP|U|J)? ?(?:10|22|23|[234])|QJ ?[023]|\d{2,3})(?P<code>\d\d)(?!\d)[\s-]*(?P<suffix>.*)"
+    r"(?<![0-9A-Z])(?P<series>R?N(?:UP|U|J)? ?(?:10|22|23|[234])|QJ ?[023]|[0-9]{2,3})"
+    r"(?P<code>[0-9]{2})(?![0-9])[\s-]*(?P<suffix>.*)"
 )
 # Letters of the contact angle of an angular contact bearing; C before a digit or N is a clearance.
 _LETTER = re.compile(r"B|A5|AC|AD|A(?![A-Z])|C(?!\d|N)|E")
@@ -162,7 +165,7 @@ def designated(text: str, *, anywhere: bool = False) -> Designation | None:
         text: with the designation at its begin.
         anywhere: it may stand further behind too, as in "SKF 6205-2Z".
     """
-    text = text.strip().upper()
+    text = text[:_LONGEST].strip().upper()
     found = _FORM.search(text) if anywhere else _FORM.match(text)
     series = found["series"].replace(" ", "") if found else ""
     kind, angle, size = _SERIES.get(re.sub("^R?N[UJP]*", "N", series), ("", 0.0, ""))

@@ -12,6 +12,7 @@ from copy import deepcopy
 from typing import Any
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.files.numbers import is_count
 from rotorgear.forces.designations import bore_of, inner_geometry
 from rotorgear.model.parts.fields import Part
 from rotorgear.model.parts.old_names import current_address
@@ -112,7 +113,7 @@ def _keys(value: Any, part: str, address: str, last: bool) -> list[str | int]:
     if isinstance(value, list):
         if part == "*":
             return list(range(len(value)))
-        if part.isdecimal() and int(part) < len(value):
+        if is_count(part) and int(part) < len(value):
             return [int(part)]
         raise _nowhere(address, f"'{part}' is no place in a list of {len(value)} (the first is 0)")
     if isinstance(value, dict):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.files.bounds import LONGEST_TEXT, MODEL
+from rotorgear.files.read import UnreadableError, read_text
+from rotorgear.files.toml import long_texts, tables_of
 from rotorgear.model.model import SCHEMA_VERSION, Model
-from rotorgear.model.parts.problems import shown
+from rotorgear.model.parts.problems import address, shown
 from rotorgear.model.spreads import scatter_problems
 from rotorgear.quantity import nearest
 
@@ -29,18 +31,14 @@ def load(path: str | Path) -> Model:
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")  # some editors put a byte order mark in front
-    except FileNotFoundError:
+        text = read_text(path, MODEL.most_bytes)
+    except UnreadableError as error:
+        if not error.missing:
+            raise _refused(path, f"can't be read: {error.reason}", "a model file is plain text") from None
         names = sorted(item.name for item in path.parent.glob("*.toml")) if path.parent.is_dir() else []
         guess = nearest(path.name, names)
         hint = f"did you mean '{path.parent / guess}'?" if guess else ""
         raise _refused(path, "there is no such file", hint) from None
-    except UnicodeDecodeError as error:
-        place = f"byte {error.object[error.start]:#04x} at position {error.start}"
-        raise _refused(path, f"not a text in UTF-8: {place}", "a model file is plain text") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise _refused(path, f"can't be read: {reason}") from None
     return loads(text, path.name, path.parent)
 
 
@@ -59,11 +57,14 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
         ModelError: the text is no TOML, or holds mistakes; all of them at once.
     """
     try:
-        data: dict[str, Any] = tomllib.loads(text)
-    except RecursionError:
-        raise ModelError([Problem(source, "", "not valid TOML: brackets within brackets too deep")], source) from None
+        data = tables_of(text)
     except ValueError as error:  # a TOMLDecodeError, or a number of thousands of digits
         raise ModelError([_syntax_problem(source, str(error), text)], source) from None
+    long = [
+        Problem(address(place), "", f"a text or name of up to {LONGEST_TEXT} letters") for place in long_texts(data)
+    ]
+    if long:
+        raise ModelError(long, source)
     _find_files(data, Path(folder))
     try:
         model = Model(**data)

@@ -15,6 +15,8 @@ from typing import Any
 from pydantic import BaseModel, Field, ValidationError
 
 from rotorgear.errors import ModelError
+from rotorgear.files.bounds import MESH
+from rotorgear.files.read import UnreadableError, digest_of_named
 from rotorgear.model.address import with_values
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
@@ -171,7 +173,6 @@ def _hash(model: Model) -> str:
 def _digest(path: Path) -> str:
     """SHA-256 of what a file holds; of one that is not there, which no analysis gets past, its name."""
     try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError:
+        return digest_of_named(path, MESH.most_bytes)
+    except UnreadableError:
         return str(path)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import AnalysisError
+from rotorgear.files.own import text_of
 from rotorgear.quantity import did_you_mean
 
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -38,7 +39,7 @@ def models() -> tuple[ShippedModel, ...]:
     folder = inside if inside.is_dir() else _PACKAGE.parent / "models"
     found = []
     for path in sorted(folder.glob("*.toml")):
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(text_of(path))
         named = {path.with_name(text) for text in _texts(data) if text.endswith((".msh", ".inp", ".csv", ".npz"))}
         beside = sorted(file for file in {*named, path.with_name(f"{path.stem}_rig.csv")} if file.is_file())
         found.append(ShippedModel(path.stem, str(data.get("title", "")), path, tuple(beside)))

@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from rotorgear.analysis.common.recorded import setting
+from rotorgear.analysis.common.request import check_grade, check_modal_damping, check_request
 from rotorgear.analysis.rig.rig_file import read_rig_lines
 from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import replacing
 from rotorgear.export.hdf5 import read
 from rotorgear.extras import require
+from rotorgear.files.own import text_of
+from rotorgear.files.write import check_output, written
 from rotorgear.model.load import load
 from rotorgear.model.model import Model, model_hash
-from rotorgear.page.contents import computed, error_of
-from rotorgear.page.sections import RESULTS, sections
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.result import Result
@@ -92,8 +91,15 @@ def report(
     target = Path(output)
     if target.suffix.lower() not in _ENDINGS:
         raise AnalysisError(f"a report is a page: its name ends in .html; got '{target.name}'")
-    if not target.resolve().parent.is_dir():
-        raise AnalysisError(f"{target}: there is no folder {target.resolve().parent}; make it first")
+    check_output(target)
+    # A section that is refused is left out of a page; what no page can be made with is refused here.
+    check_grade(grade)
+    check_modal_damping(modal_damping)
+    check_request(fmax=fmax)
+    # All analyses, which take a second to load.
+    from rotorgear.page.contents import computed, error_of
+    from rotorgear.page.sections import RESULTS, sections
+
     source = "" if isinstance(model, Model) else Path(model).name
     built = model if isinstance(model, Model) else load(model)
     lines = read_rig_lines(rig) if isinstance(rig, str | Path) else tuple(rig)
@@ -133,7 +139,7 @@ def report(
 
         surfaces = scene(modes)
     text = _page(built, numbers, list(sections(found, studies)), surfaces)
-    with replacing(target) as scratch:
+    with written(target) as scratch:
         scratch.write_text(text, encoding="utf-8")
     progress(1.0, "done")
     return Report(target, dict(found.results), dict(found.missing), numbers)
@@ -143,14 +149,14 @@ def _page(model: Model, numbers: dict[str, Any], parts: list[Any], turntable: st
     """The template filled; what comes from the model is escaped."""
     from jinja2 import Environment, StrictUndefined
 
-    folder = files("rotorgear.page")
+    folder = Path(__file__).parent
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string((folder / "page.html").read_text(encoding="utf-8"))
+    template = environment.from_string(text_of(folder / "page.html"))
     return template.render(
         title=model.title or numbers["file"] or "A model",
         numbers=numbers,
         sections=parts,
         turntable=turntable,
-        script=(folder / "turntable.js").read_text(encoding="utf-8") if turntable else "",
+        script=text_of(folder / "turntable.js") if turntable else "",
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
     )

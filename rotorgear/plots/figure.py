@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import filling, publish, replacing
 from rotorgear.extras import require
+from rotorgear.files.write import filling, publish, written
 from rotorgear.results.schema import Record
 from rotorgear.results.table import label_of, scale, unit_of
 
@@ -30,7 +30,7 @@ def new_figure(size: tuple[float, float], title: str = "") -> Any:
     """
     require("matplotlib", "A plot")
     # That fonts are listed for the first time, or that one is missing, is no news of a result.
-    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")
@@ -136,7 +136,7 @@ def save(picture: Any, path: str | Path) -> Path:
     target = Path(path)
     # Without a date the same result gives the same file.
     metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(kind)
-    with replacing(target) as scratch:
+    with written(target) as scratch:
         figure.savefig(scratch, dpi=130, format=kind[1:], metadata=metadata)
     return target
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import filling, publish
 from rotorgear.export.paraview import import_pyvista
 from rotorgear.export.solids import FINE, build_solids
 from rotorgear.export.vtk import check_amplitude, chosen_modes
+from rotorgear.files.write import filling, publish
 from rotorgear.plots.scene import GREY, Scene, add_headline, best_direction, look, rendering
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult

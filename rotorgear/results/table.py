@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.files.shown import shown
 from rotorgear.quantity import RPM_PER_RAD_S, counted
 from rotorgear.results.schema import Declared, Record, Row, Rows, place_of
 
@@ -356,15 +357,15 @@ def _number(value: Any, declared: Declared, column: Column, path: tuple[str | in
 
 
 def as_rich(blocks: Iterable[Block]) -> RenderableType:
-    """The blocks for the terminal, as one rich renderable; brackets in a text are no markup."""
+    """The blocks for the terminal, as one rich renderable; brackets in a text are no markup, and nothing in it is obeyed."""
     from rich.text import Text
 
     def rendered(block: Block) -> RenderableType:
         if isinstance(block, Table):
             return _rich_table(block)
         if isinstance(block, Line):
-            return Text.assemble((block.bold, "bold"), (block.rest, "dim" if block.dim else ""))
-        return Text(block)
+            return Text.assemble((shown(block.bold), "bold"), (shown(block.rest), "dim" if block.dim else ""))
+        return Text(shown(block))
 
     return _Unpadded(list(map(rendered, blocks)))
 
@@ -396,7 +397,7 @@ def _rich_table(table: Table) -> Any:
     out = RichTable(
         box=box.SIMPLE_HEAD if table.ruled else None,
         pad_edge=False,
-        title=(table.caption if table.ruled else f"\n{table.caption}") if table.titled else None,
+        title=Text(shown(table.caption if table.ruled else f"\n{table.caption}")) if table.titled else None,
         title_justify="left",
         title_style="italic" if table.ruled else "bold",
         header_style="bold",
@@ -406,14 +407,14 @@ def _rich_table(table: Table) -> Any:
     for number, (column, left) in enumerate(zip(table.columns, _sides(table), strict=True)):
         last = table.ruled and number == len(table.columns) - 1
         out.add_column(
-            column.heading,
+            Text(shown(column.heading)),
             justify="left" if left else "right",
             no_wrap=table.no_wrap or (table.ruled and not last),
             overflow="fold",
             ratio=1 if last else None,
         )
     for row in table.rows:
-        out.add_row(*(Text(cell.text) for cell in row))
+        out.add_row(*(Text(shown(cell.text)) for cell in row))
     return out
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.files.numbers import is_count
 
 _BINARY = re.compile(r"\s*58\s*[bB]")
 _HEADER_LINES = 11
@@ -175,7 +176,7 @@ def _binary(cursor: _Cursor, identifier: str, name: str) -> Block:
 def binary_fields(identifier: str) -> list[int]:
     """Byte order, format of numbers, lines of the header and bytes of a set 58b; 0 for what its identifier does not say."""
     fields = identifier[identifier.lower().index("b") + 1 :].split()
-    return ([int(field) if field.isdigit() else 0 for field in fields] + [0, 0, 0, 0])[:4]
+    return ([int(field) if is_count(field) else 0 for field in fields] + [0, 0, 0, 0])[:4]
 
 
 def sizes_of(lines: tuple[str, ...]) -> tuple[int, ...]:

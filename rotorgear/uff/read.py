@@ -17,6 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.files.bounds import UNIVERSAL
+from rotorgear.files.numbers import is_count
+from rotorgear.files.read import UnreadableError, read_named
 from rotorgear.quantity import GRAVITY
 from rotorgear.uff import datasets
 from rotorgear.uff.blocks import Block, binary_fields, blocks_of, columns, is_whole, sizes_of
@@ -224,10 +227,9 @@ def read_universal(path: str | Path) -> datasets.UniversalFile:
     """
     file = Path(path)
     try:
-        data = file.read_bytes()
-    except OSError as error:
-        reason = "there is no such file" if not file.exists() else (error.strerror or str(error))
-        raise ModelError([Problem(str(file), "", "a universal file (UFF)", reason)], str(file)) from None
+        data = read_named(file, UNIVERSAL.most_bytes)
+    except UnreadableError as error:
+        raise ModelError([Problem(str(file), "", "a universal file (UFF)", error.reason)], str(file)) from None
     blocks = blocks_of(data, file.name)
     if not blocks:
         raise ModelError([Problem(str(file), "", "a universal file (UFF) with datasets", "it has none")], str(file))
@@ -265,7 +267,7 @@ def _units(block: Block) -> datasets.Units:
         raise block.problem(0, "a units code, and factors of length and force")
     code, description = columns(block.lines[0], (10, 20))
     factors = block.numbers_from(2)
-    if not code.isdigit() or len(factors) < 2 or not (factors[:2] > 0.0).all():
+    if not is_count(code) or len(factors) < 2 or not (factors[:2] > 0.0).all():
         raise block.problem(2, "a units code, and factors of length and force above 0", " ".join(block.lines)[:70])
     given = (float(factors[0]), float(factors[1]))
     known = _CODES.get(int(code))

@@ -20,6 +20,7 @@ GROUND = 0
 FACE = 9
 ROOF = 11
 FLOORS = {
+    "files": 0,
     "solvers": 1,
     "uff": 1,
     "gears": 2,

@@ -22,9 +22,9 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import cluster as clusters
 from rotorgear.cli import main as command_line
 from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
-from rotorgear.export.files import WriteError, write_json
 from rotorgear.export.hdf5 import ReadError
 from rotorgear.export.stream import ChunkStream
+from rotorgear.files.write import WriteError, write_json
 from tests.extreme.models import points
 from tests.paths import ROOT
 

@@ -16,7 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from rotorgear.cpu import Clock
-from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.checks.names import estimated
 from rotorgear.model.checks.plausibility import implausible, implausible_speed
 from rotorgear.model.model import Model, model_hash
@@ -38,7 +38,8 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
     The first argument is what is analysed (a model, a system, or another result) and no setting.
 
     Raises:
-        AnalysisError: by the analysis, if a model is to be analysed and the first argument is none.
+        AnalysisError: by the analysis; a model is to be analysed and the first argument is none; memory is not enough.
+        ConvergenceError: by the analysis; its numbers are beyond double precision.
     """
     signature = inspect.signature(analysis)
     first = next(iter(signature.parameters.values()))
@@ -54,7 +55,16 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
             raise AnalysisError(f"{analysis.__name__}: {_no_model(subject)}")
         for name, value in given:
             _check_list(name, value, str(signature.parameters[name].annotation))
-        result = analysis(*args, **kwargs)
+        try:
+            result = analysis(*args, **kwargs)
+        except MemoryError as error:
+            words = " ".join(str(error).split()) or "it is full"
+            raise AnalysisError(f"{analysis.__name__}: not enough memory ({words}); ask for less at a time") from None
+        except (np.linalg.LinAlgError, OverflowError) as error:
+            cause = f"; look at {_farthest(subject)}" if isinstance(subject, Model) else ""
+            raise ConvergenceError(
+                f"{analysis.__name__}: the equations can't be solved in double precision ({error}){cause}"
+            ) from error
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         clock.lap("analysis")
         seconds = result.seconds or clock.total()
@@ -63,6 +73,25 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 
     return run
+
+
+def _farthest(model: Model) -> str:
+    """Address and value of the number that is most decades away from 1: solvers fail at those, not at what is usual."""
+    most = ("the model's numbers", 0.0, 1.0)
+
+    def walk(value: Any, address: str) -> None:
+        nonlocal most
+        if isinstance(value, dict):
+            for key, entry in value.items():
+                walk(entry, f"{address}.{key}" if address else str(key))
+        elif isinstance(value, list):
+            for number, entry in enumerate(value):
+                walk(entry, f"{address}[{number}]")
+        elif isinstance(value, float) and value and abs(np.log10(abs(value))) > most[1]:
+            most = (address, abs(np.log10(abs(value))), value)
+
+    walk(model.model_dump(mode="json", exclude_none=True), "")
+    return f"{most[0]}, {most[2]:.4g} in SI"
 
 
 def _check_list(name: str, value: Any, annotation: str) -> None:

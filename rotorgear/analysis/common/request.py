@@ -104,6 +104,16 @@ def check_modal_damping(ratio: float) -> None:
         raise AnalysisError(f"the modal damping ratio must lie between 0 and 1, got {ratio:g}")
 
 
+def check_grade(grade: float) -> None:
+    """Refuse a balance quality grade in mm/s that is none.
+
+    Raises:
+        AnalysisError: it is not positive and finite.
+    """
+    if not 0.0 < grade < float("inf"):
+        raise AnalysisError(f"grade: expected a balance quality grade above 0 mm/s, got {grade:g}")
+
+
 def check_speed_is_fixed(addresses: Iterable[str], instead: str) -> None:
     """Refuse the operating speed among numbers that vary: modes and excitations are those at the speed that is asked for.
 

@@ -28,6 +28,7 @@ from rotorgear.analysis.rig.measured import MeasuredFrf, read_rig_frf
 from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.analysis.rig.sensor_table import read_sensor_table
 from rotorgear.errors import AnalysisError, ModelError, Problem
+from rotorgear.files.numbers import number_of
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -238,7 +239,7 @@ def _cuts_of_csv(file: Path) -> tuple[OrderCut, ...]:
     problems = []
     for number, cells in rows[1:]:
         try:
-            values = [float(cell) if cell else np.nan for cell in cells]
+            values = [number_of(cell) if cell else np.nan for cell in cells]
         except ValueError:
             values = []
         if len(values) != len(header) or not all(x > 0.0 for x in values[:2]) or min(values[2:]) < 0.0:

@@ -12,7 +12,6 @@ only ever paired with a mode of its own campaign.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +24,9 @@ from rotorgear.analysis.common.points import coordinates
 from rotorgear.analysis.rig.rig_file import refuse_repeated, rig_lines_of
 from rotorgear.analysis.rig.sensor_table import Sensor, sensors_of
 from rotorgear.errors import AnalysisError, ModelError, Problem
+from rotorgear.files.bounds import LONGEST_TEXT, MODEL
+from rotorgear.files.read import UnreadableError, read_text
+from rotorgear.files.toml import long_texts, tables_of
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.results.comparison import RigLine
@@ -293,9 +295,11 @@ def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
     """
     file = Path(path)
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        data = tables_of(read_text(file, MODEL.most_bytes))
+        if any(long_texts(data)):
+            raise ValueError(f"a text or name of more than {LONGEST_TEXT} letters")
+    except (UnreadableError, ValueError) as error:
+        reason = error.reason if isinstance(error, UnreadableError) else str(error)
         raise ModelError([Problem(str(file), "", f"no file of campaigns (TOML): {reason}")], file.name) from None
     tables = data.get("campaign")
     if not isinstance(tables, list) or not tables or set(data) != {"campaign"}:

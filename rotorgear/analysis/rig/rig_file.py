@@ -11,10 +11,13 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from rotorgear.errors import AnalysisError, ModelError, Problem
+from rotorgear.files.bounds import LONGEST_TEXT, MOST_ROWS, TABLE
+from rotorgear.files.read import UnreadableError, read_text
 from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 from rotorgear.results.comparison import RigLine
 
@@ -32,12 +35,13 @@ def csv_rows(file: Path, expected: str) -> tuple[str, list[tuple[int, list[str]]
         ModelError: no such file, no text in UTF-8, a quote that is not closed in its line.
     """
     try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise ModelError([Problem(file.name, "", expected, reason)], str(file)) from error
+        text = read_text(file, TABLE.most_bytes)
+    except UnreadableError as error:
+        raise ModelError([Problem(file.name, "", expected, error.reason)], str(file)) from None
     numbered = enumerate(text.splitlines(), start=1)
     lines = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
+    if len(lines) > MOST_ROWS:
+        raise ModelError([Problem(file.name, "", f"up to {MOST_ROWS} rows; it has {len(lines)}")], str(file))
     # The header tells the delimiter: below it, commas may also be in numbers and labels.
     delimiter = max(",;\t", key=lines[0][1].count if lines else len)
     rows = []
@@ -51,6 +55,10 @@ def csv_rows(file: Path, expected: str) -> tuple[str, list[tuple[int, list[str]]
         except csv.Error:
             closed = "every quote closed in its line, and nothing behind it in its cell"
             raise ModelError([Problem(f"{file.name}:{number}", repr(line), closed)], str(file)) from None
+        if max(map(len, cells), default=0) > LONGEST_TEXT:
+            raise ModelError(
+                [Problem(f"{file.name}:{number}", "", f"cells of up to {LONGEST_TEXT} letters")], str(file)
+            )
         if any(cells):
             rows.append((number, cells))
     return delimiter, rows
@@ -204,7 +212,6 @@ def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, 
 
 def refuse_repeated(lines: Iterable[RigLine]) -> None:
     """AnalysisError where two lines have one frequency: each of them would need a mode of its own."""
-    hz = [line.frequency_hz for line in lines]
-    for f in hz:
-        if hz.count(f) > 1:
+    for f, count in Counter(line.frequency_hz for line in lines).items():
+        if count > 1:
             raise AnalysisError(f"the rig line {f:g} Hz is given twice: keep one of them")

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.points import coordinates
 from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
+from rotorgear.files.numbers import is_count
 from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
@@ -105,7 +106,7 @@ def read_sensor_table(file: Path) -> list[Sensor]:
         address = f"{file.name}:{number}"
         point = given["point"]
         direction = given["direction"].lower()
-        if not given["node"].isdecimal():
+        if not is_count(given["node"]):
             problems.append(Problem(f"{address}:node", repr(given["node"]), "the number of a node"))
             continue
         if direction.lstrip("+-") not in AXES:

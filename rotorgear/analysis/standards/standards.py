@@ -18,7 +18,7 @@ from rotorgear.analysis.campbell.critical import critical
 from rotorgear.analysis.common.describe_model import check
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.common.request import check_grade, speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.mesh import damped_plant, meshed
 from rotorgear.analysis.response.plant import Plant
@@ -87,7 +87,7 @@ def standards(
     """
     speed = operating_speed_of(model)
     top = abs(speed_in_si(stop) or HIGHEST * speed)
-    _require_grade(grade)
+    check_grade(grade)
     progress(0.05, "critical speeds")
     return judged(critical(model, start=start, stop=math.copysign(top, speed)), model, grade, progress)
 
@@ -104,11 +104,6 @@ def operating_speed_of(model: Model) -> float:
     return speed
 
 
-def _require_grade(grade: float) -> None:
-    if not (math.isfinite(grade) and grade > 0.0):
-        raise AnalysisError(f"grade: expected a balance quality grade above 0 mm/s, got {grade:g}")
-
-
 def judged(found: CriticalResult, model: Model, grade: float, progress: Progress = silent) -> StandardsResult:
     """The rules from critical speeds that are known already.
 
@@ -117,7 +112,7 @@ def judged(found: CriticalResult, model: Model, grade: float, progress: Progress
         model, grade, progress: as in `standards`.
     """
     speed = operating_speed_of(model)
-    _require_grade(grade)
+    check_grade(grade)
     direction = 1 if speed > 0.0 else -1
     operating = abs(speed)
     top = abs(found.top_speed)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError, ModelError
+from rotorgear.files.numbers import is_count
 from rotorgear.model.address import Place, changed, places_of, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.old_names import current_address
@@ -44,7 +45,7 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     address = current_address(address)
     if isinstance(values, str) and ":" in values:
         parts = values.split(":")
-        if len(parts) != 3 or not parts[2].strip().isdecimal() or int(parts[2]) < 2:
+        if len(parts) != 3 or not is_count(parts[2].strip()) or int(parts[2]) < 2:
             raise AnalysisError(
                 f"over {address}: got '{values}', expected FROM:TO:COUNT such as '3000 rpm:6000 rpm:31'"
             )

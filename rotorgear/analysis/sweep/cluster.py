@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any
 
 from rotorgear.errors import AnalysisError, MissingExtraError, RotorgearError
+from rotorgear.files.numbers import is_count
 
 # Seconds that a scheduler, or its first worker, gets to answer.
 TIMEOUT = 10.0
@@ -44,7 +45,7 @@ def cluster(address: Any, *, timeout: float = TIMEOUT) -> Cluster:
         return Cluster(address, (), str(address.scheduler.address), timeout)
     if address.startswith("local:"):
         number = address.removeprefix("local:")
-        if not number.isdigit() or not 1 <= int(number) <= _MOST_LOCAL:
+        if not is_count(number) or not 1 <= int(number) <= _MOST_LOCAL:
             raise AnalysisError(f"cluster: got '{address}', expected {_FORMS} (1 to {_MOST_LOCAL})")
         own = distributed.LocalCluster(
             n_workers=int(number), threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.disk_cache import entry_path, read_entry, write_entry
+from rotorgear.files.cache import read_entry, write_entry
 from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact, solve_many
@@ -262,15 +262,14 @@ def _kept(teeth: ToothPair, load: float, positions: int | None, near: bool) -> C
 def kept_map(key: Any, solve: Callable[[], ContactMap]) -> ContactMap:
     """The map of a key from disk, or solved, and kept where that took as long as a file is worth."""
     text = f"{fingerprint(*_MAKERS)} {_text(key)}"
-    path = entry_path("teeth", "map", text)
-    stored = read_entry(path, text)
+    stored = read_entry("teeth", "map", text)
     if stored is not None:
         return ContactMap(**stored)
     start = time.process_time()
     found = solve()
     if time.process_time() - start >= _WORTH:
         assert found.compliance is not None
-        write_entry(path, text, {one.name: getattr(found, one.name) for one in fields(found)})
+        write_entry("teeth", "map", text, {one.name: getattr(found, one.name) for one in fields(found)})
     return found
 
 

@@ -24,8 +24,8 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.disk_cache import entry_path, read_entry, write_entry
 from rotorgear.errors import AnalysisError
+from rotorgear.files.cache import read_entry, write_entry
 from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.geometry.blank import BlankShape, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
@@ -246,11 +246,10 @@ def cached(key: Any, compute: Callable[[], GearCompliance]) -> GearCompliance:
     """The compliance of a frozen key from memory, from disk, or computed and kept."""
     text = f"{fingerprint(*MAKERS)} {key!r}"
     if text not in _KEPT:
-        path = entry_path("teeth", "gear", text)
-        stored = read_entry(path, text)
+        stored = read_entry("teeth", "gear", text)
         compliance = compute() if stored is None else GearCompliance(**stored)
         if stored is None:
-            write_entry(path, text, vars(compliance))
+            write_entry("teeth", "gear", text, vars(compliance))
         while len(_KEPT) >= _MOST_KEPT:
             _KEPT.pop(next(iter(_KEPT)))  # the oldest: dicts keep their order
         _KEPT[text] = compliance

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
+from rotorgear.files.numbers import is_count
 from rotorgear.gears.geometry.flank_tolerance import FLANK_CLASSES
 from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
 from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
@@ -192,7 +193,7 @@ def _flank(address: str, flank: Flank, outline: ToothOutline, width: float) -> I
     either = "the tip is rounded or chamfered: give one of tip_rounding and tip_chamfer"
     low_chamfer = f"less than the height of the involute, {millimetres(height)}"
     low_rounding = f"up to {millimetres(most)}, where both rounded edges meet in the middle of the tip"
-    unknown = [item for item in flank.pitch_errors if not item.isdigit() or int(item) >= teeth]
+    unknown = [item for item in flank.pitch_errors if not is_count(item) or int(item) >= teeth]
     yield from told(
         address,
         ("end_relief_length", length > 0.5 * width, millimetres(length), half),

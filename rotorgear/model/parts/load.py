@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, Self, get_args
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from rotorgear.files.numbers import number_of
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.fields import Part, Station, Unit, listed, refuse
 from rotorgear.model.parts.topography import csv_table, from_csv
@@ -117,7 +118,7 @@ def parse_history(text: str, name: str) -> dict[str, Any]:
     for line, cells in rows:
         try:
             pairs = zip(cells, columns, strict=True)
-            table.append([parse_quantity(f"{float(cell)!r} {unit}", kind) for cell, (_, kind, unit) in pairs])
+            table.append([parse_quantity(f"{number_of(cell)!r} {unit}", kind) for cell, (_, kind, unit) in pairs])
         except (ValueError, QuantityError):
             raise refuse(
                 "a finite number with a decimal point in each cell (leave rows without a value out); "

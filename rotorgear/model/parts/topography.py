@@ -18,6 +18,9 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
+from rotorgear.files.bounds import LONGEST_TEXT, MOST_ROWS, TABLE
+from rotorgear.files.numbers import is_count, number_of
+from rotorgear.files.read import UnreadableError, read_text
 from rotorgear.model.parts.fields import Length, Part, refuse
 from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 
@@ -28,8 +31,6 @@ _LENGTHS = ("roll_length", "diameter", "z", "deviation")
 _COLUMNS = (*_LENGTHS, "tooth", "flank")
 # Units of a header, as the quantities know them: both letters for micro are in use.
 _UNITS = {"m": "m", "mm": "mm", "um": "um", "\u00b5m": "um", "\u03bcm": "um"}
-# More points are no measurement of a flank.
-_MOST_ROWS = 200_000
 
 
 class MeasuredGrid(Part):
@@ -87,12 +88,14 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
     for (tooth, side), points in flanks.items():
         places = sorted({place for place, _ in points})
         z = sorted({station for _, station in points})
-        empty = [(place, station) for place in places for station in z if (place, station) not in points]
-        if empty:
+        lacking = len(places) * len(z) - len(points)
+        if lacking:
+            # The first one: it is found after as many steps as there are points.
+            first = next((place, station) for place in places for station in z if (place, station) not in points)
             whose = " ".join([*([] if tooth is None else [f"tooth {tooth}"]), *([f"{side} flank"] if side else [])])
-            where = f"{1e3 * empty[0][0]:g} mm at z = {1e3 * empty[0][1]:g} mm"
+            where = f"{1e3 * first[0]:g} mm at z = {1e3 * first[1]:g} mm"
             raise refuse(
-                f"a whole grid, each place at each z; {name}{f' ({whose})' if whose else ''} lacks {len(empty)} of "
+                f"a whole grid, each place at each z; {name}{f' ({whose})' if whose else ''} lacks {lacking} of "
                 f"{len(places)} x {len(z)} points, the first {where}"
             )
         rows_of_z = [[points[place, station] for station in z] for place in places]
@@ -104,16 +107,13 @@ def from_csv(value: Any, what: str, parse: Callable[[str, str], Any]) -> Any:
     """A path becomes what `parse(text, name)` makes of its file; numbers stay. `what` the file holds is for the error."""
     if not isinstance(value, str):
         return value
-    file = Path(value)
     try:
-        text = file.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise refuse(f"a CSV file of {what}; there is no '{value}'") from None
-    except UnicodeDecodeError:
-        raise refuse(f"a CSV file in UTF-8, which '{file.name}' is not") from None
-    except (OSError, ValueError) as error:
-        raise refuse(f"a CSV file that can be read: {error}") from None
-    return parse(text, file.name)
+        text = read_text(value, TABLE.most_bytes)
+    except UnreadableError as error:
+        if error.missing:
+            raise refuse(f"a CSV file of {what}; there is no '{value}'") from None
+        raise refuse(f"a CSV file of {what}; '{error.path.name}' can't be read: {error.reason}") from None
+    return parse(text, Path(value).name)
 
 
 def csv_table(
@@ -126,12 +126,21 @@ def csv_table(
     written = [(f"{name}:{n}", line) for n, line in enumerate(text.splitlines(), 1) if not re.match(r"\s*(#|$)", line)]
     if len(written) < 2:
         raise refuse(f"a header and at least one {example}; {name} has none")
-    if len(written) > _MOST_ROWS:
-        raise refuse(f"up to {_MOST_ROWS} rows; {name} has {len(written) - 1}")
+    if len(written) > MOST_ROWS:
+        raise refuse(f"up to {MOST_ROWS} rows; {name} has {len(written) - 1}")
     delimiter = max(";\t,", key=written[0][1].count)
-    (head, header), *rows = [
-        (where, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for where, line in written
-    ]
+
+    def cells_of(line: str, where: str) -> list[str]:
+        """The cells of a line; none is longer than any name."""
+        try:
+            cells = [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
+        except csv.Error as error:
+            raise refuse(f"cells that can be read; {where}: {error}") from None
+        if max(map(len, cells)) > LONGEST_TEXT:
+            raise refuse(f"cells of up to {LONGEST_TEXT} letters; {where} has a longer one")
+        return cells
+
+    (head, header), *rows = [(where, cells_of(line, where)) for where, line in written]
     columns = [column(cell, head) for cell in header]
     for where, cells in rows:
         if len(cells) != len(columns):
@@ -160,11 +169,11 @@ def _cell(cell: str, column: str, unit: str, line: str) -> Any:
             raise refuse(f"left or right as flank; {line} has '{cell}'")
         return cell.lower() or None
     if column == "tooth":
-        if cell and not cell.isdigit():
+        if cell and not is_count(cell):
             raise refuse(f"the number of a tooth from 0 on; {line} has '{cell}'")
         return int(cell) if cell else None
     try:
-        value = parse_quantity(f"{float(cell)!r} {unit}", "length")
+        value = parse_quantity(f"{number_of(cell)!r} {unit}", "length")
     except (ValueError, QuantityError):
         value = math.nan
     if not math.isfinite(value):

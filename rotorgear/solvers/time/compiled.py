@@ -7,19 +7,16 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
-import tempfile
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from rotorgear.compiled_once import CompiledOnce
 from rotorgear.cpu import CompilationWatch
-from rotorgear.disk_cache import user_cache_folder
 from rotorgear.errors import MissingExtraError
+from rotorgear.files.cache import folder_of_version
+from rotorgear.files.compiled_once import CompiledOnce
 from rotorgear.fingerprint import fingerprint
 
 try:
@@ -34,8 +31,6 @@ event.register("numba:compiler_lock", event.Listener.register(CompilationWatch)(
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 # Places in the package whose functions are compiled, or compiled into others.
 COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/batch", "solvers/periodic")
-# Number of such folders that are kept: other checkouts or versions may be in use at the same time.
-MOST_VERSIONS = 12
 # Sums may be reordered so that they vectorise; NaN and infinity keep their meaning, so that divergence is seen.
 FAST = {"contract", "nsz", "reassoc"}
 _vector = numba.types.Array(numba.types.float64, 1, "C")
@@ -46,28 +41,15 @@ FORCE = numba.types.void(*[_vector] * 8)
 
 @cache
 def cache_folder() -> Path | None:
-    """Where compiled code of these very sources is kept; None where nothing can be written.
+    """Where compiled code of these very sources is kept; None where there is no folder to trust.
 
     numba marks what it keeps by the file of the outer function alone. Functions of other files are compiled into it, so a change
     of theirs would be answered with old machine code. The folder is therefore named by a hash of all sources that compiled code
-    may come from. It lies below NUMBA_CACHE_DIR, ROTORGEAR_CACHE or the user's cache folder, else in the temporary folder.
+    may come from. It lies below NUMBA_CACHE_DIR, ROTORGEAR_CACHE or the user's cache folder.
     """
-    given = numba.config.CACHE_DIR or os.environ.get("ROTORGEAR_CACHE")
-    likely = Path(given) / "compiled" if given else user_cache_folder("compiled")
-    for parent in (likely, Path(tempfile.gettempdir()) / "rotorgear-compiled"):
-        folder = parent / fingerprint(*COMPILED)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-            os.utime(folder)
-        except OSError:
-            continue
-        # The folders of sources that have not been run for longest are removed.
-        with suppress(OSError):
-            for old in sorted(parent.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_VERSIONS]:
-                shutil.rmtree(old, ignore_errors=True)
-        return folder
-    return None
+    return folder_of_version(
+        "compiled", fingerprint(*COMPILED), numba.config.CACHE_DIR or os.environ.get("ROTORGEAR_CACHE")
+    )
 
 
 def compiled(
@@ -111,7 +93,13 @@ def compiled(
         try:
             made = numba.njit(cache=True, **options)(function)
             place = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
-            made._cache = CompiledOnce(made._cache, folder / (re.sub(r"[^\w.-]", "_", place) + ".lock"))
+            lock = folder / (re.sub(r"[^\w.-]", "_", place) + ".lock")
+            # numba names its files by the module's last name, the function and its line.
+            stem = Path(function.__code__.co_filename).stem
+            name = (
+                f"{stem}.{function.__qualname__.replace('<', '').replace('>', '')}-{function.__code__.co_firstlineno}."
+            )
+            made._cache = CompiledOnce(made._cache, lock, name)
         except (RuntimeError, OSError):  # a function without a file, such as one typed at a prompt
             made = None
         finally:

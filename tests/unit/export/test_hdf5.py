@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rotorgear.export import hdf5
-from rotorgear.export.files import WriteError
 from rotorgear.export.hdf5 import ReadError, read, save
+from rotorgear.files.write import WriteError
 from rotorgear.model.model import Model
 from tests.unit.export.small_models import CHAIN, HERRINGBONE, PAIR, modes_of
 

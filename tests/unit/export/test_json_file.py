@@ -4,7 +4,7 @@ import os
 import pytest
 
 from rotorgear.errors import RotorgearError
-from rotorgear.export.files import WriteError, write_json
+from rotorgear.files.write import WriteError, write_json
 from tests.unit.export.small_models import PAIR, modes_of
 
 

@@ -18,8 +18,8 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import RotorgearError
-from rotorgear.export.files import WriteError
 from rotorgear.export.stream import read_chunk
+from rotorgear.files.write import WriteError
 from rotorgear.model.model import model_hash
 from tests.models import spur_pair
 from tests.paths import ROOT

@@ -9,7 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import WriteError
+from rotorgear.files.write import WriteError
 from tests.paths import ROOT
 
 PAIR = ROOT / "models" / "geared_pair.toml"

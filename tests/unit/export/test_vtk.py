@@ -8,9 +8,9 @@ import pytest
 
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.export import vtk
-from rotorgear.export.files import WriteError
 from rotorgear.export.solids import build_solids
 from rotorgear.export.vtk import write_vtk
+from rotorgear.files.write import WriteError
 from tests.unit.export.small_models import CHAIN, PAIR, modes_of
 
 pv = pytest.importorskip("pyvista")
@@ -181,7 +181,7 @@ def test_an_interrupted_run_leaves_nothing_behind(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         write_vtk(modes_of(PAIR), tmp_path / "out", frames=2, progress=stop)
-    assert list((tmp_path / "out").iterdir()) == []
+    assert not (tmp_path / "out").exists()
 
 
 def test_progress_rises_from_nothing_to_all(tmp_path):

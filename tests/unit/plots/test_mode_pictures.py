@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError, MissingExtraError
-from rotorgear.export.files import WriteError
+from rotorgear.files.write import WriteError
 from rotorgear.plots import scene, view
 from rotorgear.plots.mode_pictures import write_modes
 from rotorgear.plots.scene import RenderError, Scene, colour_map, headline, rendering, working_window

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rotorgear.compiled_once import CompiledOnce
+from rotorgear.files.compiled_once import CompiledOnce
 
 
 class Kept:
