@@ -62,6 +62,14 @@ class ConvergenceError(AnalysisError):
         self.partial = partial
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C in a long analysis. `result` holds what was done until then; its status says how much that is."""
+
+    def __init__(self, result: Any) -> None:
+        super().__init__()
+        self.result = result
+
+
 class MissingExtraError(RotorgearError):
     """An optional dependency is needed for what was asked; the text names the extra to install."""
 

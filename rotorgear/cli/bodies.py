@@ -15,7 +15,7 @@ from rotorgear.cli.options import spelling
 from rotorgear.cli.run import Call
 from rotorgear.cli.show import numbers_of_modes, show, write_json
 from rotorgear.cli.verb import arguments_of
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, Interrupted
 
 # Points that --plot of a sweep draws portraits and spectra of.
 _PORTRAITS = 9
@@ -79,7 +79,12 @@ def accuracy(call: Call) -> None:
     """A convergence study."""
     if call["analysis"] == "sweep" and call["plot"]:
         raise AnalysisError("--plot: the study of a sweep has no picture; --json writes its numbers")
-    show(call, call.result())
+    try:
+        result = call.result()
+    except Interrupted as stop:
+        show(call, stop.result)
+        raise
+    show(call, result)
 
 
 def compare(call: Call) -> None:

@@ -124,7 +124,7 @@ class Call:
         verb = verb or self.command.verbs[0]
         known = arguments_of(verb)
         with ExitStack() as stack:
-            progress = stack.enter_context(progress_bar(self.command.name))
+            progress = stack.enter_context(progress_bar(self.command.name, lines=self.command.name == "accuracy"))
             arguments = self.arguments(verb) | more
             source = self.source
             if self["cluster"] is not None:

@@ -22,7 +22,9 @@ _NEAR = 0.03
 def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     """Draw a convergence study: error against CPU seconds and, where meshes differ, against degrees of freedom.
 
-    Every point is labelled with what was asked for: elements, an accuracy, or steps; its bar is the spread of the times.
+    Every point is labelled with what was asked for: elements, an accuracy, or steps; its bar goes from the fastest run
+    to the slowest, and a point that was
+    timed once is hollow.
 
     Args:
         result: a convergence study of any analysis but teeth.
@@ -59,8 +61,14 @@ def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
         rungs = [rung for rung in reached if rung.family == family]
         x = np.array([float(getattr(rung, key)) for rung in rungs])
         y = np.array([max(rung.error, _NONE) for rung in rungs])
-        bar = [0.5 * rung.spread * rung.seconds for rung in rungs] if key == "seconds" else None
+        bar = None
+        if key == "seconds":
+            ends = [(r.seconds - r.seconds_least, r.seconds_most - r.seconds) for r in rungs]
+            bar = np.maximum(np.array(ends).T, 0.0) if any(r.timed > 1 for r in rungs) else None
         axis.errorbar(x, y, xerr=bar, marker=marker, color=colour, lw=1.2, ms=5, elinewidth=0.8, label=name)
+        once = np.array([rung.timed < 2 for rung in rungs], bool)
+        if key == "seconds":  # one run says nothing of its spread
+            axis.plot(x[once], y[once], marker, color=colour, mfc="white", ms=5, zorder=3)
         axis.plot(x, [max(rung.estimate, _NONE) for rung in rungs], "x", color=colour, ms=6, alpha=0.7)
         for place, text in _labels(x, y, [rung.setting for rung in rungs]):
             # Inside the axes, and those of one family above, of the next below: different families may meet in a point.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -41,6 +40,8 @@ class Rung(Record):
     spread: float = of(
         "spread of the times", note=": difference of their quartiles over the median", default=0.0, kw_only=True
     )
+    seconds_least: float = of("CPU time of the fastest run", "s", default=0.0, kw_only=True)
+    seconds_most: float = of("CPU time of the slowest run", "s", default=0.0, kw_only=True)
     timed: int = of("number of runs timed", default=0, kw_only=True)
     memory: int = of(
         "largest memory of arrays and objects", "byte", note=", without factors of matrices", default=0, kw_only=True
@@ -81,22 +82,28 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
                 marks.setdefault(note, "*+'\"^~"[len(marks) % 6])
         yield Line(self.title, f": {self.analysis}, {self.modes} {self.compared}")
         yield f"error: the largest relative one, against {self.reference}"
-        yield "ratio: estimate over error"
+        yield "ratio: estimate over error; CPU s: median of the runs, beside the fastest and slowest"
+        if self.ended_early:
+            yield self.status
         yield from (*(f"{sign} {note}" for note, sign in marks.items()), *self.remarks(), "")
 
         def known(name: str) -> Column:
             return Column("", name, without="")
 
-        spread = "{:.0f}%".format
         columns = (
             Column("discretisation", lambda rung: rung.method + "".join(marks[note] for note in rung.notes)),
             Column("", "dofs", where=lambda rung: rung.dofs > 0, without=""),
             known("seconds"),
-            Column("+-", "spread", spread, "%", where=lambda r: math.isfinite(r.seconds) and r.timed > 1, without=""),
+            Column("range", _range, where=lambda rung: rung.timed > 1, without=""),
             Column("MB", lambda r: r.memory / 1e6, ".1f", where=lambda rung: bool(rung.memory), without=""),
         )
         last = (known("estimate"), known("effectivity"), known("order"))
         yield from (table_of(self, "rungs", *columns, "error", *last), "")
+
+
+def _range(rung: Rung) -> str:
+    """The times of the fastest and of the slowest run in words."""
+    return f"{rung.seconds_least:.2g}-{rung.seconds_most:.2g}"
 
 
 class MeshRung(Record):

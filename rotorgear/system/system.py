@@ -101,11 +101,11 @@ class System:
 
     def with_plan(self, plan: Plan) -> System:
         """The same model under the same load on another mesh."""
-        return System(self.model, plan=plan, state=self.state)
+        return type(self)(self.model, plan=plan, state=self.state)
 
     def with_state(self, state: State) -> System:
         """The same mesh about another state."""
-        return System(self.model, plan=self.plan, state=state)
+        return type(self)(self.model, plan=self.plan, state=state)
 
     @property
     def load(self) -> State:

@@ -16,7 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from rotorgear.cpu import Clock
-from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
+from rotorgear.errors import AnalysisError, ConvergenceError, Interrupted, RotorgearError
 from rotorgear.model.checks.names import estimated
 from rotorgear.model.checks.plausibility import implausible, implausible_speed
 from rotorgear.model.model import Model, model_hash
@@ -55,8 +55,11 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
             raise AnalysisError(f"{analysis.__name__}: {_no_model(subject)}")
         for name, value in given:
             _check_list(name, value, str(signature.parameters[name].annotation))
+        stopped = False
         try:
             result = analysis(*args, **kwargs)
+        except Interrupted as stop:
+            result, stopped = stop.result, True
         except MemoryError as error:
             words = " ".join(str(error).split()) or "it is full"
             raise AnalysisError(f"{analysis.__name__}: not enough memory ({words}); ask for less at a time") from None
@@ -70,7 +73,10 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         seconds = result.seconds or clock.total()
         doubts = (*_doubts(subject, dict(given)), *estimated(subject.layout)) if isinstance(subject, Model) else ()
         warnings = tuple(dict.fromkeys((*result.warnings, *doubts)))
-        return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
+        result = replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
+        if stopped:
+            raise Interrupted(result)
+        return result
 
     return run
 

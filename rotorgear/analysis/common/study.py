@@ -1,34 +1,37 @@
 """Error against run time of any analysis. A study is a knob and its values (the settings), the quantity that is compared and what
 judges it, and a reference that is taken for the truth.
 
-Every setting is run and timed. Times are CPU seconds of this process on one BLAS thread, the median of several runs; the first
-run, which warms caches up and counts memory, is not among them. A time whose quartiles lie far apart is noise, and the row
-says so.
+Every setting is run and timed. Times are CPU seconds on one BLAS thread, the median of several runs beside the least and the
+largest; the first run, which warms caches up and counts memory, is not among them. Short runs are repeated until the quartiles of
+their times lie within a tenth of the median; a long run is timed once, and the row says so.
 """
 
 from __future__ import annotations
 
 import tracemalloc
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from rotorgear.cpu import cpu_seconds
-from rotorgear.errors import RotorgearError
+from rotorgear.cpu import compiling_seconds, cpu_seconds
+from rotorgear.errors import Interrupted, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of
 from rotorgear.results.convergence import ConvergenceStudy, Rung
 from rotorgear.solvers.sparse.factor import single_thread
 
 R = TypeVar("R")
-# Runs that are timed at least; short ones are repeated up to the largest number, a long one is not repeated.
+# Runs that are timed at least; they are repeated until their times agree, within the largest number and the seconds of all. A
+# long one is not repeated.
 REPEAT = 3
-_MOST = 9
-_SHORT = 0.3  # s of all runs together
+_MOST = 15
+_ENOUGH = 2.0  # s of all runs together
 _LONG = 2.0  # s of one run
-# Difference of the quartiles over the median above which a time is noise.
+# Difference of the quartiles over the median: below the first, times agree; above the second they are noise.
+_AGREE = 0.1
 _NOISE = 0.25
 
 
@@ -44,11 +47,15 @@ class Setting:
 
 @dataclass(frozen=True)
 class Judged:
-    """What one run found of c quantities: relative errors against the reference and its own estimates of them, (c,) each."""
+    """What one run found of c quantities: relative errors against the reference and its own estimates of them, (c,) each.
+
+    `missed` counts quantities that it has and the reference has not, or the other way round; their errors are infinite.
+    """
 
     dofs: int
     error: np.ndarray
     estimate: np.ndarray
+    missed: int = 0
 
 
 @dataclass(frozen=True)
@@ -82,23 +89,27 @@ class Study(Generic[R]):
         self, analysis: str, model: Model, repeat: int, progress: Progress, also: Study[Any] | None = None
     ) -> ConvergenceStudy:
         """Run all settings, and then those of another study whose rows belong to the same table."""
+        found: list[Rung] = []
+
+        def study(status: str = "success") -> ConvergenceStudy:
+            title = model.title or "model"
+            of = {"compared": self.compared, "resolution": self.resolution, "status": status}
+            return ConvergenceStudy(title, analysis, self.reference, self.count, tuple(found), **of)  # type: ignore[arg-type]
+
         half = 0.5 if also else 1.0
-        rungs = self.rungs(repeat, part_of(progress, 0.0, half))
-        if also:
-            rungs += also.rungs(repeat, part_of(progress, half, 1.0))
-        return ConvergenceStudy(
-            model.title or "model",
-            analysis,
-            self.reference,
-            self.count,
-            rungs,
-            compared=self.compared,
-            resolution=self.resolution,
-        )
+        with kept(found, len(self.settings) + len(also.settings if also else ()), study):
+            self._run(found, repeat, part_of(progress, 0.0, half))
+            if also:
+                also._run(found, repeat, part_of(progress, half, 1.0))
+        return study()
 
     def rungs(self, repeat: int, progress: Progress) -> tuple[Rung, ...]:
         """Run all settings, each timed `repeat` times at least; one that does not converge has a row that says so."""
         found: list[Rung] = []
+        self._run(found, repeat, progress)
+        return tuple(found)
+
+    def _run(self, found: list[Rung], repeat: int, progress: Progress) -> None:
         for number, setting in enumerate(self.settings):
             progress(number / len(self.settings), setting.method)
             before = found[-1] if found and found[-1].family == setting.family else None
@@ -110,7 +121,6 @@ class Study(Generic[R]):
                 continue
             found.append(self._rung(setting, self.judge(result), seconds, memory, before))
         progress(1.0, "done")
-        return tuple(found)
 
     def _rung(self, setting: Setting, judged: Judged, seconds: np.ndarray, memory: int, before: Rung | None) -> Rung:
         error = float(np.max(judged.error, initial=0.0))
@@ -126,11 +136,13 @@ class Study(Generic[R]):
             notes.append("exact: error and estimate are 0" if max(error, estimate) == 0.0 else self.below)
         if setting.family == "accuracy" and not max(error, estimate) <= max(setting.number, self.resolution):
             notes.append("accuracy missed")
-        # Difference of the quartiles over the median; 0 for a single run.
-        low, middle, high = np.percentile(seconds, [25.0, 50.0, 75.0])
-        spread = float((high - low) / middle) if middle else 0.0
+        if judged.missed:
+            notes.append(f"{judged.missed} missed, or found where there is none")
+        spread = spread_of(seconds)
         if spread > _NOISE:
             notes.append("time is noise")
+        if len(seconds) == 1:
+            notes.append("timed once")
         # Quantities that have estimates of their own have effectivities of their own.
         told = np.zeros(0, bool)
         if judged.estimate.shape == judged.error.shape:
@@ -146,6 +158,8 @@ class Study(Generic[R]):
             estimate=estimate,
             order=order,
             spread=spread,
+            seconds_least=float(np.min(seconds)),
+            seconds_most=float(np.max(seconds)),
             timed=len(seconds),
             memory=memory,
             effectivity=estimate / error if resolved else None,
@@ -153,6 +167,27 @@ class Study(Generic[R]):
             effectivity_largest=None if ratio is None else float(ratio.max()),
             notes=tuple(notes),
         )
+
+
+@contextmanager
+def kept(rows: Sequence[Any], count: int, result: Callable[[str], Any]) -> Iterator[None]:
+    """Where an interrupt comes after the first of `count` rows, pass it on with the result of those there are.
+
+    Raises:
+        Interrupted: with `result(status)`.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not rows:
+            raise
+        raise Interrupted(result(f"interrupted after {len(rows)} of {count} rows")) from None
+
+
+def spread_of(seconds: Sequence[float] | np.ndarray) -> float:
+    """Difference of the quartiles of times over their median; 0 for a single run."""
+    low, middle, high = np.percentile(seconds, [25.0, 50.0, 75.0])
+    return float((high - low) / middle) if middle else 0.0
 
 
 def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, np.ndarray, int]:
@@ -167,16 +202,18 @@ def measured(run: Callable[[], R], repeat: int = REPEAT) -> tuple[R, np.ndarray,
             tracemalloc.start()
         tracemalloc.reset_peak()
         before = tracemalloc.get_traced_memory()[0]
-        start = cpu_seconds()
+        start = cpu_seconds() - compiling_seconds()
         try:
             result = run()
-            first = cpu_seconds() - start
+            first = cpu_seconds() - compiling_seconds() - start
             memory = tracemalloc.get_traced_memory()[1] - before
         finally:
             if not watched:
                 tracemalloc.stop()
         seconds: list[float] = []
-        while len(seconds) < repeat or (repeat > 1 and len(seconds) < _MOST and sum(seconds) < _SHORT):
+        while len(seconds) < repeat or (
+            repeat > 1 and len(seconds) < _MOST and sum(seconds) < _ENOUGH and spread_of(seconds) > _AGREE
+        ):
             start = cpu_seconds()
             run()
             seconds.append(cpu_seconds() - start)

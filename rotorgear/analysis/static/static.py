@@ -37,7 +37,7 @@ from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.laws import law_rows
 from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
 from rotorgear.system.plan import Plan
-from rotorgear.system.system import flow_system
+from rotorgear.system.system import System
 
 # Enough for a smooth line of deflection; the forces do not depend on it.
 DEFAULT_ELEMENTS = 4
@@ -102,13 +102,19 @@ def static(
 
 
 def solved(
-    model: Model, plan: Plan, speed: float | None, progress: Progress, beside: State | None = None
+    model: Model,
+    plan: Plan,
+    speed: float | None,
+    progress: Progress,
+    beside: State | None = None,
+    kind: type[System] = System,
 ) -> Equilibrated:
     """The equilibrium on a mesh, with loaded teeth over the mesh cycle where they need it; errors are those of `static`.
 
-    `beside` is a state of a model next to this one, whose face maps serve, as in `state_at`.
+    `beside` is a state of a model next to this one, whose face maps serve, as in `state_at`. `kind` says how the shafts of the
+    system are made.
     """
-    system = flow_system(model, plan, direction=direction_of(speed), kind="static")
+    system = kind(model, plan=plan, state=model.torque_flow(direction_of(speed)).of_kind("static"))
     if beside is not None:
         system = system.with_state(replace(system.state, mapped_at=beside.shared_maps))
     system.require_freedom()

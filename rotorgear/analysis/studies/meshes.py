@@ -6,26 +6,35 @@ Each is a row of the table: the analysis that runs, the quantity that is compare
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment, root_scalar
 
 from rotorgear.analysis.campbell.campbell import campbell
 from rotorgear.analysis.campbell.critical import critical
+from rotorgear.analysis.common.casings import with_casing_modes
+from rotorgear.analysis.common.points import moving_rows
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_or_operating
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.frequency_response import frf, relative_change
-from rotorgear.analysis.response.mesh import strongest_orders
+from rotorgear.analysis.response.mesh import meshed, strongest_orders
+from rotorgear.analysis.response.orders import orders_of
 from rotorgear.analysis.response.response import response
+from rotorgear.analysis.response.run_up import direct_sweep
+from rotorgear.analysis.static.mean_state import about_mean
+from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.analysis.static.static import forces_of, solved, static
-from rotorgear.errors import AnalysisError
+from rotorgear.analysis.studies.continuum import Continuum, ContinuumPlant, ContinuumSystem
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.campbell import CampbellResult
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.critical import CriticalResult
+from rotorgear.results.critical import CriticalResult, CriticalSpeed
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.response import ResponseResult
@@ -42,6 +51,10 @@ REFERENCE = 1e-10
 AMPLITUDE_REFERENCE = 1e-9
 # Ten times the accuracy of the reference: below, the ratio of estimate and error is that of the reference.
 RESOLUTION = 1e-9
+# Share by which Newton's method starts beside the frequencies of the finest mesh.
+_ASIDE = 1e-6
+# Share above the highest mode up to which modes are counted.
+_ABOVE_ALL = 1e-7
 # Amplitudes at a resonance of 0.1 % damping move 500 times as much as its frequency.
 AMPLITUDE_RESOLUTION = 1e-7
 
@@ -63,6 +76,32 @@ def _as_continuum(model: Model) -> Model:
 def _elastic(result: ModalResult) -> np.ndarray:
     """Which modes are neither rigid nor roots at zero, (m,)."""
     return np.asarray(~result.rigid & (np.abs(result.eigenvalues) > 0.0))
+
+
+# What all references have in common with what they judge.
+SHARED = "all other parts, and the assembly, are those of the model"
+
+
+def _exact_modes(model: Model, finest: ModalResult) -> tuple[np.ndarray, str, float]:
+    """Frequencies in Hz of the elastic modes from the dynamic stiffness of continuous shafts, in words what they are, and their
+    rounding."""
+    s = finest.eigenvalues[_elastic(finest)]
+    served, _ = with_casing_modes(_as_continuum(model), float(np.abs(s).max()) / (2.0 * np.pi))
+    # Up to above the highest mode.
+    limit = float(np.abs(s).max()) * (1.0 + _ABOVE_ALL)
+    exact = Continuum(linear_system(served, [finest.speed]), finest.speed, limit)
+    try:
+        truth = np.abs([exact.root(value * (1.0 + _ASIDE)) for value in s]) / (2.0 * np.pi)
+    except ConvergenceError as error:
+        words = f"the same elements, refined to {REFERENCE:g}, {finest.dofs} dofs: {error}"
+        return np.abs(s) / (2.0 * np.pi), words, 0.0
+    words = f"the exact dynamic stiffness of Timoshenko's shafts, {exact.system.n} dofs, by Newton's method; {SHARED}"
+    # The highest mode may be one of a pair.
+    below, count = (exact.count_below(share * limit) for share in (1.0 - 2.0 * _ABOVE_ALL, 1.0))
+    if finest.speed is not None or below is None or count is None:
+        return truth, f"{words}; how many modes there are is the finest mesh's word", exact.rounding
+    met = "which confirms them" if below < len(finest) <= count else f"not the {len(finest)} found"
+    return truth, f"{words}; Wittrick and Williams count {count} modes up to there, {met}", exact.rounding
 
 
 @recorded
@@ -87,8 +126,8 @@ def convergence_study(
         modes: how many modes are compared (rigid ones count, but have no error).
         elements: numbers of basic elements in each shaft segment.
         accuracies: relative accuracies to refine to.
-        reference: natural frequencies in Hz of the modes that are not rigid; None for the model's own finest (accuracy 1e-10,
-            by elements of high order, and with consistent mass where the model's is lumped).
+        reference: natural frequencies in Hz of the modes that are not rigid; None for those of continuous shafts (with
+            consistent mass where the model's is lumped), next to the modes of the finest mesh.
         repeat: runs of each rung that are timed at least; the median time counts.
         progress: callable that is told fraction and step.
 
@@ -99,9 +138,11 @@ def convergence_study(
     truth = finest.natural_frequency_hz[_elastic(finest)]
     if truth.size == 0:
         raise AnalysisError("the model has no elastic mode among those asked for, so there is no error to measure")
-    order = max((part.order for part in finest.discretisation), default=1)
-    words = f"elements of order up to {order}, refined to {REFERENCE:g}, {finest.dofs} dofs"
-    if reference is not None:
+    rounding = 0.0
+    if reference is None:
+        progress(0.0, "reference")
+        truth, words, rounding = _exact_modes(model, finest)
+    else:
         computed = truth.size
         truth = np.sort(np.asarray(reference, float))
         words = f"{truth.size} given frequencies"
@@ -129,7 +170,7 @@ def convergence_study(
         compared="frequencies",
         count=len(truth),
         reference=words,
-        resolution=RESOLUTION if reference is None else 0.0,
+        resolution=max(RESOLUTION, 10.0 * rounding) if reference is None else 0.0,
     ).result("modal", model, repeat, progress)
 
 
@@ -206,7 +247,8 @@ def critical_convergence_study(
 ) -> ConvergenceStudy:
     """Find the critical speeds over a series of discretisations.
 
-    The reference are the critical speeds on the finest mesh, each of them confirmed by the modes at that speed.
+    The reference are the speeds at which modes of continuous shafts meet the lines, next to those on the finest mesh.
+    A speed that one of both has more than the other has an infinite error.
 
     Args:
         model, stop: as for `critical`.
@@ -217,27 +259,34 @@ def critical_convergence_study(
     """
     progress(0.0, "reference")
     finest = critical(_as_continuum(model), stop=stop, accuracy=REFERENCE)
-    truth = _by_line(finest)
+    truth = {line: speeds for line, (speeds, _) in _by_line(finest).items()}
     if not finest.speeds:
         raise AnalysisError("there is no critical speed in this range, so there is no error to measure; raise --to")
-    missed = []  # by the nearest mode at each critical speed, relative to its line
-    for item in finest.speeds:
-        w = 2.0 * np.pi * item.frequency_hz
-        fmax = 1.05 * item.frequency_hz / (1.0 - item.damping_ratio**2) ** 0.5
-        found = modal(_as_continuum(model), speed=item.speed, fmax=fmax, accuracy=REFERENCE)
-        missed.append(float(np.min(np.abs(found.eigenvalues.imag - w)) / w))
+    rounding = 0.0
+    for line in truth:
+        items = sorted((item for item in finest.speeds if item.line == line), key=lambda item: abs(item.speed))
+        exact_speeds, roundings = np.abs([_exact_critical(model, item) for item in items]).T
+        truth[line] = exact_speeds
+        rounding = max(rounding, float(roundings.max()))
+    # Branches that are followed over speed, and their crossings.
+    diagram = campbell(model, stop=stop, fmax=1.2 * max(item.frequency_hz for item in finest.speeds))
+    crossings = sum(item.line in truth for item in diagram.crossings)
 
     def judge(result: CriticalResult) -> Judged:
-        error = []
-        estimate = []
         here = _by_line(result)
-        for line, (exact, _) in truth.items():
+        size = sum(max(len(exact), len(here.get(line, ((),))[0])) for line, exact in truth.items())
+        error, estimate = np.full((2, size), np.inf)
+        at = missed = 0
+        for line, exact in truth.items():
             speeds, told = here.get(line, (np.zeros(0), np.zeros(0)))
-            # A critical speed near the end of the range may lie beyond it on a coarse mesh.
-            both = min(len(speeds), len(exact))
-            error.append(np.abs(speeds[:both] / exact[:both] - 1.0))
-            estimate.append(told[:both])
-        return Judged(result.dofs, np.concatenate(error), np.concatenate(estimate))
+            # Each goes with the nearest: of two counts, the pairs with the least difference stay together.
+            pairs = _paired(exact, speeds)
+            for k, (one, other) in enumerate(pairs):
+                error[at + k] = abs(speeds[other] / exact[one] - 1.0)
+                estimate[at + k] = told[other]
+            missed += len(exact) + len(speeds) - 2 * len(pairs)
+            at += max(len(exact), len(speeds))
+        return Judged(result.dofs, error, estimate, missed)
 
     return Study(
         _settings(elements, accuracies),
@@ -245,10 +294,38 @@ def critical_convergence_study(
         judge=judge,
         compared="critical speeds",
         count=len(finest.speeds),
-        reference=f"the mesh refined to {REFERENCE:g}, {finest.dofs} dofs; the modes at these speeds, solved for themselves, "
-        f"meet the lines to {max(missed):.0e}",
-        resolution=RESOLUTION,
+        reference="modes of the exact dynamic stiffness of Timoshenko's shafts on the lines, by Newton's method and secants; "
+        f"{SHARED}; next to the {len(finest.speeds)} speeds of the finest mesh; a Campbell diagram has {crossings} crossings",
+        resolution=max(RESOLUTION, 10.0 * rounding),
     ).result("critical", model, repeat, part_of(progress, 0.1, 1.0))
+
+
+def _exact_critical(model: Model, item: CriticalSpeed) -> tuple[float, float]:
+    """The speed in rad/s at which a mode of continuous shafts meets the line of a critical speed, Im s = p |W|; its rounding."""
+    own = _as_continuum(model)
+    w = 2.0 * np.pi * item.frequency_hz
+    ratio = w / abs(item.speed)
+    s = complex(-item.damping_ratio * w / np.sqrt(1.0 - item.damping_ratio**2), w)
+
+    rounding = 0.0
+
+    def beside(speed: float) -> float:
+        nonlocal s, rounding
+        exact = Continuum(linear_system(own, [speed]), speed, 1.1 * w)
+        s = exact.root(s * (1.0 + _ASIDE))
+        rounding = max(rounding, exact.rounding)
+        return s.imag - ratio * abs(speed)
+
+    found = root_scalar(
+        beside, x0=item.speed * (1.0 + _ASIDE), x1=item.speed * (1.0 - _ASIDE), method="secant", rtol=1e-12
+    )
+    return float(found.root), rounding
+
+
+def _paired(first: np.ndarray, second: np.ndarray) -> list[tuple[int, int]]:
+    """Numbers of the values of both that go together, each once, with the least sum of relative differences."""
+    rows, columns = linear_sum_assignment(np.abs(np.log(first[:, None] / second[None, :])))
+    return list(zip(rows.tolist(), columns.tolist(), strict=True))
 
 
 def _by_line(result: CriticalResult) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -258,10 +335,6 @@ def _by_line(result: CriticalResult) -> dict[str, tuple[np.ndarray, np.ndarray]]
         items = sorted((item for item in result.speeds if item.line == line), key=lambda item: abs(item.speed))
         found[line] = np.array([abs(item.speed) for item in items]), np.array([item.error_estimate for item in items])
     return found
-
-
-# Internal polynomials up to this order beside the exact static shapes: a mesh that no rung has.
-_STATIC_ORDER = 4
 
 
 @recorded
@@ -276,14 +349,15 @@ def static_convergence_study(
 ) -> ConvergenceStudy:
     """Run the static analysis over numbers of elements.
 
-    The errors are those of the forces of contacts, bearings and supports, relative to the largest. The basic element is exact in
-    statics: what remains is rounding, and the study shows that it is no more.
+    The errors are those of the forces of contacts, bearings and supports, relative to the largest. The reference integrates the
+    equations along each piece. The basic element is exact in statics: what remains is rounding, and the study shows that it is no
+    more.
 
     Args:
         model, speed: as for `static`.
         elements, accuracies, repeat, progress: as for `convergence_study`.
     """
-    finest = solved(model, Plan(1, _STATIC_ORDER), speed_or_operating(speed, model), silent)
+    finest = solved(model, Plan(), speed_or_operating(speed, model), silent, kind=ContinuumSystem)
     truth = forces_of(finest)
     size = max(float(np.abs(truth).max(initial=0.0)), np.finfo(float).tiny)
 
@@ -298,7 +372,8 @@ def static_convergence_study(
         judge=judge,
         compared="forces",
         count=len(truth),
-        reference=f"elements with internal polynomials up to order {_STATIC_ORDER}, {finest.system.n} dofs",
+        reference=f"Timoshenko's equations integrated along each piece, {finest.system.n} dofs; {SHARED}, and so "
+        "is the search of the equilibrium",
         resolution=RESOLUTION,
         below="rounding only",
     ).result("static", model, repeat, progress)
@@ -329,8 +404,14 @@ def response_convergence_study(
         return response(of, points=101, fmax=fmax, modal_damping=modal_damping, **options)
 
     progress(0.0, "reference")
-    finest = run({"method": "direct", "accuracy": AMPLITUDE_REFERENCE}, _as_continuum(model))
-    truth = _forces(finest)
+    if modal_damping or model.damping.modal_ratio:
+        finest = run({"method": "direct", "accuracy": AMPLITUDE_REFERENCE}, _as_continuum(model))
+        truth = _forces(finest)
+        words = f"direct solutions, {_finer(finest)}"
+    else:
+        first = run({"method": "direct", "elements": 1}, _as_continuum(model))
+        truth, dofs = _exact_response(_as_continuum(model), first)
+        words = f"the exact dynamic stiffness of Timoshenko's shafts at every speed, {dofs} dofs; {SHARED}"
     size = np.abs(truth).max(axis=2)
     strongest = strongest_orders(size)
     if not size[:, strongest].any():
@@ -348,9 +429,34 @@ def response_convergence_study(
         judge=judge,
         compared="orders, each by its largest force over speed",
         count=len(strongest),
-        reference=f"direct solutions on a mesh of {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}",
+        reference=words,
         resolution=AMPLITUDE_RESOLUTION,
     ).result("response", model, repeat, part_of(progress, 0.2, 1.0))
+
+
+# Speeds at which tangents of laws are taken.
+_TANGENTS = 8
+
+
+def _finer(finest: ResponseResult | FrequencyResponse) -> str:
+    """What a finest mesh is in words, and why it has to do."""
+    return (
+        f"a mesh of {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}; the same elements, because "
+        "damping by modes is that of the modes of a mesh"
+    )
+
+
+def _exact_response(model: Model, first: ResponseResult) -> tuple[np.ndarray, int]:
+    """Forces (s, o, f) of all orders with continuous shafts, and their number of unknowns; the loads are those of the model."""
+    speeds = first.speeds
+    last = float(speeds[-1])
+    top = float(np.max(first.ratio * abs(last) / (2.0 * np.pi) + first.fixed_frequency))  # Hz
+    about = about_mean(model, [float(value) for value in speeds[:: max(1, len(speeds) // _TANGENTS)]], last)
+    system = meshed(with_casing_modes(model, top)[0], about, last, top, 1)
+    plant = ContinuumPlant(system)
+    orders = orders_of(replace(about[1], system=system, lines=plant.lines))[0]
+    kept = [order for order in orders if order.name in first.orders]
+    return direct_sweep(plant, kept, speeds, silent)[0].stacked, system.n
 
 
 def _forces(result: ResponseResult) -> np.ndarray:
@@ -414,10 +520,16 @@ def frf_convergence_study(
         return frf(of, points=_FREQUENCIES, **asked, **options)
 
     progress(0.0, "reference")
-    finest = run({"accuracy": AMPLITUDE_REFERENCE}, _as_continuum(model))
+    if modal_damping or model.damping.modal_ratio:
+        finest = run({"accuracy": AMPLITUDE_REFERENCE}, _as_continuum(model))
+        truth = finest.receptance
+        words = _finer(finest)
+    else:
+        truth, dofs = _exact_receptance(_as_continuum(model), at, np.linspace(fmax / _FREQUENCIES, fmax, _FREQUENCIES))
+        words = f"the exact dynamic stiffness of Timoshenko's shafts, {dofs} dofs; {SHARED}"
 
     def judge(result: FrequencyResponse) -> Judged:
-        error = relative_change(finest.receptance, result.receptance)
+        error = relative_change(truth, result.receptance)
         return Judged(result.dofs, np.array([error]), np.array([result.error_estimate]))
 
     return Study(
@@ -426,7 +538,16 @@ def frf_convergence_study(
         judge=judge,
         compared="receptance",
         count=1,
-        reference=f"elements of high order, {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}; "
-        f"force and response at {at}, {_FREQUENCIES} frequencies to {fmax:.5g} Hz",
+        reference=f"{words}; force and response at {at}, {_FREQUENCIES} frequencies to {fmax:.5g} Hz",
         resolution=AMPLITUDE_RESOLUTION,
     ).result("frf", model, repeat, part_of(progress, 0.1, 1.0))
+
+
+def _exact_receptance(model: Model, at: str, hz: np.ndarray) -> tuple[np.ndarray, int]:
+    """Driving-point receptance (f, 1, 1) with continuous shafts at standstill, and their number of unknowns."""
+    served, _ = with_casing_modes(model, float(hz[-1]))
+    about = about_mean(model, [None], 0.0)
+    exact = Continuum(linear_system(served, [0.0], state=about[1].with_tangents(about[0])), 0.0)
+    f = moving_rows(exact.system, [at]).T
+    found = [f.T @ exact.solve(2.0 * np.pi * float(value), f) for value in hz]
+    return np.array(found), exact.system.n

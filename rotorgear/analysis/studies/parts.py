@@ -17,7 +17,7 @@ from rotorgear.analysis.bearing.state import (
 )
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_or_operating
-from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
+from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study, kept
 from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.teeth.errors import error_parts
 from rotorgear.analysis.teeth.request import mesh_request, solve_helices
@@ -93,11 +93,11 @@ def bearing_convergence_study(
     if film:
         truth = at(_FINEST_GRID)
         settings = [Setting(f"{on_grid(law, g).cells} cells", "grid", g, {"fineness": g}) for g in _GRIDS]
-        words = f"the film on {on_grid(law, _FINEST_GRID).cells} cells"
+        words = f"the same film on {on_grid(law, _FINEST_GRID).cells} cells"
     else:
         truth = at(_FINEST_POINTS)
         settings = [Setting(f"{n} positions in a pitch", "positions", float(n), {"fineness": n}) for n in _POINTS]
-        words = f"means over {_FINEST_POINTS} positions in a pitch"
+        words = f"the same law, means over {_FINEST_POINTS} positions in a pitch"
     return Study(
         settings,
         run=lambda options: (at(options["fineness"]), at(2.0 * options["fineness"])),
@@ -160,38 +160,45 @@ def mesh_convergence_study(
     steps = len(runs) + 4
     reference, exact, *_ = solved(replace(teeth, fe=finest), part_of(progress, 0.0, 4.0 / steps))
     truth = _figures(exact)
-    rungs = []
-    for number, (name, pair) in enumerate(runs):
-        told = part_of(progress, (number + 4) / steps, (number + 5) / steps)
-        problem, cycle, fe_seconds, contact_seconds = solved(pair, told)
-        figures = _figures(cycle)
-        estimate = None
-        if name.startswith("preset"):
-            # What an analysis with this preset states of one helix; its compliances may come from the disk.
-            one = replace(request, senses=(1,))
-            helices = solve_helices(one, pair, POSITIONS, judged=True)
-            parts = error_parts(one, pair, helices)
-            estimate = parts.total if parts else None
-        rungs.append(
-            MeshRung(
-                name,
-                size_of(pair).elements,
-                size_of(pair).face,
-                problem.unknowns,
-                fe_seconds,
-                contact_seconds,
-                *figures,
-                MeshErrors(*(abs(here / there - 1.0) for here, there in zip(figures, truth, strict=True))),
-                estimate,
-            )
-        )
-    progress(1.0, "done")
     size = finest.mesh_size(modules, space=space)
     layers = f" in {size.face} layers" if size.face else ""
     words = (
-        f"{size.elements} elements a pitch{layers}, {reference.unknowns} dofs, {counted(reference.slices, 'slices')}"
+        f"{size.elements} elements a pitch{layers}, {reference.unknowns} dofs, {counted(reference.slices, 'slices')}; the same "
+        "elements and contact, only finer"
     )
-    return MeshConvergenceStudy(model.title, request.mesh.name, reference.body, request.base_force, words, tuple(rungs))
+    rungs: list[MeshRung] = []
+
+    def study(status: str = "success") -> MeshConvergenceStudy:
+        given = (request.mesh.name, reference.body, request.base_force)
+        return MeshConvergenceStudy(model.title, *given, words, tuple(rungs), status=status)
+
+    with kept(rungs, len(runs), study):
+        for number, (name, pair) in enumerate(runs):
+            told = part_of(progress, (number + 4) / steps, (number + 5) / steps)
+            problem, cycle, fe_seconds, contact_seconds = solved(pair, told)
+            figures = _figures(cycle)
+            estimate = None
+            if name.startswith("preset"):
+                # What an analysis with this preset states of one helix; its compliances may come from the disk.
+                one = replace(request, senses=(1,))
+                helices = solve_helices(one, pair, POSITIONS, judged=True)
+                parts = error_parts(one, pair, helices)
+                estimate = parts.total if parts else None
+            rungs.append(
+                MeshRung(
+                    name,
+                    size_of(pair).elements,
+                    size_of(pair).face,
+                    problem.unknowns,
+                    fe_seconds,
+                    contact_seconds,
+                    *figures,
+                    MeshErrors(*(abs(here / there - 1.0) for here, there in zip(figures, truth, strict=True))),
+                    estimate,
+                )
+            )
+    progress(1.0, "done")
+    return study()
 
 
 def _figures(cycle: MeshCycle) -> tuple[float, float, float]:
