@@ -12,6 +12,7 @@ from rotorgear.analysis.studies.meshes import (
     critical_convergence_study,
     frf_convergence_study,
     response_convergence_study,
+    state_space_convergence_study,
     static_convergence_study,
 )
 from rotorgear.analysis.studies.motions import (
@@ -34,6 +35,7 @@ STUDIES: dict[str, Callable[..., AnyStudy]] = {
     "static": static_convergence_study,
     "response": response_convergence_study,
     "frf": frf_convergence_study,
+    "state-space": state_space_convergence_study,
     "mesh": mesh_convergence_study,
     "bearing": bearing_convergence_study,
     "transient": transient_convergence_study,
@@ -80,19 +82,20 @@ def accuracy(
 
     Args:
         model: a checked model.
-        analysis: what is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), bearing (film or
-            rolling elements), transient, sweep, orbits (one periodic motion) or casing (its mesh and its reduction).
+        analysis: what is run: modal, campbell, critical, static, response, frf, state-space, mesh (teeth in contact),
+            bearing (film or rolling elements), transient, sweep, orbits (one periodic motion) or casing (its mesh
+            and its reduction).
         speed: speed of the input shaft in rad/s or with its unit, as in that analysis; not for a mesh.
         stop: for campbell and critical: the highest speed of the range.
         modes: for modal, campbell and casing: number of modes that are compared (default: 24, of a casing 8).
-        fmax: for response and frf: highest frequency in Hz.
-        at: for frf: where force and response are (default: the first disk, gear or bearing).
+        fmax: for response, frf and state-space: highest frequency in Hz.
+        at: for frf and state-space: where force and response are (default: the first disk, gear or bearing).
         reference: for modal: natural frequencies in Hz to compare with (default: the model's own finest).
         mesh: for mesh: its name; it may be left out where there is only one.
         torque: for mesh: torque on the pinion in N m or with its unit (default: that of the model).
         bearing: for bearing: its name; it may be left out where only one has a law.
         time: for transient: time that is evaluated (default: 8 periods of the slowest mesh).
-        modal_damping: for response, frf and transient: damping ratio of every elastic mode.
+        modal_damping: for response, frf, state-space and transient: damping ratio of every elastic mode.
         casing: for casing: its name; it may be left out where there is only one.
         coupled: for casing: modes of the gearbox with it, not its own.
         finest: for casing: largest number of unknowns of the mesh to compare with (default: 300 000).

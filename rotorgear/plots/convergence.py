@@ -23,8 +23,7 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     """Draw a convergence study: error against CPU seconds and, where meshes differ, against degrees of freedom.
 
     Every point is labelled with what was asked for: elements, an accuracy, or steps; its bar goes from the fastest run
-    to the slowest, and a point that was
-    timed once is hollow.
+    to the slowest, and a point that was timed once is hollow.
 
     Args:
         result: a convergence study of any analysis but teeth.

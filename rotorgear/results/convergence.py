@@ -177,7 +177,27 @@ class SweepRung(Record):
     dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")
     motion: tuple[str, ...] = of("response type", "", "kind", note=": those that occurred")
     error: float = of(
-        "largest relative error of p-p and K_dyn", default=float("nan"), kw_only=True, form=".0e", column="error"
+        "largest relative error of the statistics of a run",
+        default=float("nan"),
+        kw_only=True,
+        form=".1e",
+        column="error",
+    )
+    estimate: float = of(
+        "largest relative error that a run states of them",
+        note=", the median over the states",
+        default=float("nan"),
+        kw_only=True,
+        form=".1e",
+        column="estimate",
+    )
+    effectivity: float | None = of(
+        "estimate over error",
+        note="; `null` where the error is rounding",
+        default=None,
+        kw_only=True,
+        form=".2f",
+        column="ratio",
     )
 
 
@@ -197,11 +217,12 @@ class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy
         at = "" if self.speed is None else f" at {self.speed * RPM_PER_RAD_S:.6g} rpm"
         yield from (Line(f"{self.title}: one point{at} from {self.runs} states ({kinds})"), "")
         time = Column("CPU s", "seconds", ".3f")
-        values = ("exponent", "scatter", "stated", "peak_to_peak", "peak_to_peak_scatter", "dynamic_factor", "error")
-        yield from (table_of(self, "rungs", "steps", "count", time, *values), "")
+        values = ("exponent", "scatter", "stated", "peak_to_peak")
+        judged = ("error", "estimate", Column("", "effectivity", without=""))
+        yield from (table_of(self, "rungs", "steps", "count", time, *values, *judged), "")
         yield (
             "LE: largest Lyapunov exponent per period of the fastest mesh; scatter: standard deviation over the states; stated: "
-            "standard error that one run states; CPU s: of one run; error: of p-p and K_dyn, against "
-            f"{self.reference}"
+            "standard error that one run states; CPU s: of one run; error: the largest relative one of forces, shares and "
+            f"motions of that contact, against {self.reference}; estimate: what a run states of it; ratio: estimate over error"
         )
         yield from (*self.remarks(), "")

@@ -122,11 +122,12 @@ def state_space(
         progress(0.4, "matrices")
         with single_thread(system.n):
             kept_modes, kept = damped_modes(system, _KEPT * limit, turns, reached)
-            # Static shapes under forces at inputs and outputs, beside the modes.
-            symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
-            factor = factor_general(sp.csc_array(symmetric + (_SHIFT * limit) ** 2 * dynamics.M, dtype=complex))
-            shapes = np.real(factor.solve(ends[reached].astype(complex)))
-            basis = _joined(kept_modes[reached], shapes, dynamics.M)
+            basis = kept_modes[reached]
+            if not full:
+                # Static shapes under forces at inputs and outputs, beside the modes. Peaks alone show without them.
+                symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
+                factor = factor_general(sp.csc_array(symmetric + (_SHIFT * limit) ** 2 * dynamics.M, dtype=complex))
+                basis = _joined(basis, np.real(factor.solve(ends[reached].astype(complex))), dynamics.M)
             progress(0.6, "error of the reduction")
             cut = B[reached], C[:, reached]
             made = _Matrices.of(dynamics, *cut, basis)
@@ -304,7 +305,7 @@ def _judging(made: _Matrices, limit: float, damped: bool) -> tuple[np.ndarray, n
     even = limit * np.arange(1, _BETWEEN + 1) / _BETWEEN
     # Golden parts of the steps: no even grid, and half-way between the others.
     judged = limit * (np.arange(_BETWEEN) + 0.381966) / _BETWEEN
-    peaks = _peaks(made, limit) if damped else np.zeros((0, 2))
+    peaks = _peaks(made, limit) if damped and len(made.M) else np.zeros((0, 2))
     flanks = np.array([w + k * half for w, half in peaks for k in (-1.5, -0.7, 0.3, 0.7, 1.5)])
     flanks = flanks[(flanks > _LOWEST * limit) & (flanks <= limit)]
     return np.unique([*even, *peaks[:, 0]]), np.unique([*judged, *flanks])

@@ -43,6 +43,11 @@ _FOUND = 1e-12
 _NEAR = 1e-8
 # Relative step of the difference that stands for the derivative: it sets how fast the root is found, not where.
 _STEP = 1e-6
+# Shares by which the search starts beside a known eigenvalue, which it must not take for the answer; one after the other until
+# the root that is found is that eigenvalue's.
+_ASIDES = (1e-6, -1e-6, 1e-8)
+# Below this share two roots are one.
+_SAME = 1e-12
 
 
 class Continuum:
@@ -75,7 +80,8 @@ class Continuum:
         C = summed(lambda g: g.matrices.damping) + self._given.rayleigh_alpha * self._M + self._given.rayleigh_beta * K
         turning = summed(lambda g: None if g.matrices.gyroscopic is None else g.spin * g.matrices.gyroscopic)
         self._C = C + speed * turning if self.damped else 0.0 * C
-        self._K = K + summed(lambda g: g.circulatory_at(speed)) if self.damped else K
+        # Cross-coupling of bearings is there at standstill, too, where nothing else takes energy out or brings it in.
+        self._K = K + summed(lambda g: g.circulatory_at(speed))
 
     @property
     def _lowest(self) -> float:
@@ -144,6 +150,31 @@ class Continuum:
             s = s - step
             before = size
         raise ConvergenceError(f"no eigenvalue of the dynamic stiffness was found next to {s:.6g}")
+
+    def roots(self, near: np.ndarray) -> np.ndarray:
+        """The eigenvalues next to those of a fine mesh (m,), each to one of them.
+
+        Raises:
+            ConvergenceError: there is none that is nearer to it than to another.
+        """
+        return np.array([self._root_of(k, near) for k in range(len(near))])
+
+    def _root_of(self, k: int, near: np.ndarray) -> complex:
+        why = ""
+        for aside in _ASIDES:
+            try:
+                root = self.root(complex(near[k]) * (1.0 + aside))
+            except ConvergenceError as error:
+                why = str(error)
+                continue
+            away = np.abs(root - near)
+            # Of a pair that differs by rounding either will do.
+            if away[k] <= 2.0 * away.min() + _SAME * abs(near[k]):
+                return root
+            why = (
+                f"the eigenvalue of the dynamic stiffness that was found next to {near[k]:.6g} is that of another mode"
+            )
+        raise ConvergenceError(why)
 
     def count_below(self, w: float) -> int | None:
         """How many frequencies of an undamped model lie below w in rad/s; None where that can't be told."""

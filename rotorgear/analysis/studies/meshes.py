@@ -5,7 +5,7 @@ Each is a row of the table: the analysis that runs, the quantity that is compare
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,7 @@ from rotorgear.analysis.campbell.critical import critical
 from rotorgear.analysis.common.casings import with_casing_modes
 from rotorgear.analysis.common.points import moving_rows
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import speed_or_operating
+from rotorgear.analysis.common.request import speed_in_si, speed_or_operating
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.frequency_response import frf, relative_change
@@ -25,6 +25,7 @@ from rotorgear.analysis.response.mesh import meshed, strongest_orders
 from rotorgear.analysis.response.orders import orders_of
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.response.run_up import direct_sweep
+from rotorgear.analysis.response.state_space import state_space
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.analysis.static.static import forces_of, solved, static
@@ -38,6 +39,7 @@ from rotorgear.results.critical import CriticalResult, CriticalSpeed
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.response import ResponseResult
+from rotorgear.results.state_space import StateSpace
 from rotorgear.results.static import StaticResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import flow_system
@@ -82,21 +84,40 @@ def _elastic(result: ModalResult) -> np.ndarray:
 SHARED = "all other parts, and the assembly, are those of the model"
 
 
+def _exact_eigenvalues(model: Model, s: np.ndarray, speed: float | None) -> tuple[Continuum, np.ndarray]:
+    """Continuous shafts at a speed in rad/s, and their eigenvalues next to those of the finest mesh (m,).
+
+    Raises:
+        ConvergenceError: one of them is not found.
+    """
+    highest = float(np.abs(s).max())
+    served, _ = with_casing_modes(_as_continuum(model), highest / (2.0 * np.pi))
+    # Up to above the highest mode.
+    exact = Continuum(linear_system(served, [speed]), speed, highest * (1.0 + _ABOVE_ALL))
+    return exact, exact.roots(s)
+
+
+def _apart(roots: np.ndarray, s: np.ndarray) -> str:
+    """How far two methods are apart, in words."""
+    return f"{float(np.max(np.abs(np.abs(roots) / np.abs(s) - 1.0))):.0e} from the finest mesh"
+
+
 def _exact_modes(model: Model, finest: ModalResult) -> tuple[np.ndarray, str, float]:
     """Frequencies in Hz of the elastic modes from the dynamic stiffness of continuous shafts, in words what they are, and their
     rounding."""
     s = finest.eigenvalues[_elastic(finest)]
-    served, _ = with_casing_modes(_as_continuum(model), float(np.abs(s).max()) / (2.0 * np.pi))
-    # Up to above the highest mode.
-    limit = float(np.abs(s).max()) * (1.0 + _ABOVE_ALL)
-    exact = Continuum(linear_system(served, [finest.speed]), finest.speed, limit)
     try:
-        truth = np.abs([exact.root(value * (1.0 + _ASIDE)) for value in s]) / (2.0 * np.pi)
+        exact, roots = _exact_eigenvalues(model, s, finest.speed)
     except ConvergenceError as error:
         words = f"the same elements, refined to {REFERENCE:g}, {finest.dofs} dofs: {error}"
         return np.abs(s) / (2.0 * np.pi), words, 0.0
-    words = f"the exact dynamic stiffness of Timoshenko's shafts, {exact.system.n} dofs, by Newton's method; {SHARED}"
+    truth = np.abs(roots) / (2.0 * np.pi)
+    words = (
+        f"the exact dynamic stiffness of Timoshenko's shafts, {exact.system.n} dofs, by Newton's method, {_apart(roots, s)}; "
+        f"{SHARED}"
+    )
     # The highest mode may be one of a pair.
+    limit = float(np.abs(s).max()) * (1.0 + _ABOVE_ALL)
     below, count = (exact.count_below(share * limit) for share in (1.0 - 2.0 * _ABOVE_ALL, 1.0))
     if finest.speed is not None or below is None or count is None:
         return truth, f"{words}; how many modes there are is the finest mesh's word", exact.rounding
@@ -193,8 +214,8 @@ def campbell_convergence_study(
 ) -> ConvergenceStudy:
     """Run a Campbell diagram of three speeds over a series of discretisations.
 
-    The errors are those of |s| of the lowest branches at every speed, against the modes at that speed by `modal`: solved for
-    themselves, without the reduced basis and without following branches.
+    The errors are those of |s| of the lowest branches at every speed, against the eigenvalues of continuous shafts at that speed,
+    next to those by `modal`: each solved for itself, without the reduced basis and without following branches.
 
     Args:
         model, stop: as for `campbell`.
@@ -206,11 +227,22 @@ def campbell_convergence_study(
         return campbell(model, stop=stop, points=_DIAGRAM, modes=modes, **options)
 
     truth = []
+    rounding = 0.0
+    words = f"eigenvalues of the exact dynamic stiffness of Timoshenko's shafts at each of {_DIAGRAM} speeds; {SHARED}"
     for k, speed in enumerate(run({"accuracy": 1e-2}).speeds):
         progress(0.4 * k / _DIAGRAM, f"reference, speed {k + 1} of {_DIAGRAM}")
         finest = modal(_as_continuum(model), speed=float(speed), modes=modes + 12, accuracy=REFERENCE)
         s = finest.eigenvalues
-        truth.append(np.sort(np.abs(s[~finest.rigid & (s.imag > _OSCILLATES * np.abs(s))]))[:modes])
+        s = s[~finest.rigid & (s.imag > _OSCILLATES * np.abs(s))]
+        s = s[np.argsort(np.abs(s), kind="stable")][:modes]
+        try:
+            exact, s = _exact_eigenvalues(model, s, float(speed))
+            rounding = max(rounding, exact.rounding)
+        except ConvergenceError as error:
+            words = (
+                f"modes solved for themselves at each of {_DIAGRAM} speeds, meshes refined to {REFERENCE:g}: {error}"
+            )
+        truth.append(np.abs(s))
     count = min(len(found) for found in truth)
 
     def judge(result: CampbellResult) -> Judged:
@@ -230,8 +262,8 @@ def campbell_convergence_study(
         judge=judge,
         compared="branches",
         count=count,
-        reference=f"modes solved for themselves at each of {_DIAGRAM} speeds, meshes refined to {REFERENCE:g}",
-        resolution=RESOLUTION,
+        reference=words,
+        resolution=max(RESOLUTION, 10.0 * rounding),
     ).result("campbell", model, repeat, part_of(progress, 0.4, 1.0))
 
 
@@ -474,6 +506,11 @@ def _forces(result: ResponseResult) -> np.ndarray:
 _ABOVE = 1.1
 _MODES = 6
 _FREQUENCIES = 200
+# Accuracy of the state space that tells where peaks are, damping ratio above which they have a width, and where they are looked
+# at, in half widths at half power.
+_PEAKS = 1e-5
+_WIDTH = 1e-9
+_ABOUT_PEAKS = np.array([-1.5, -0.7, 0.0, 0.7, 1.5])
 
 
 @recorded
@@ -501,6 +538,83 @@ def frf_convergence_study(
     Raises:
         AnalysisError: no place to take, or no elastic mode that says how far to go.
     """
+    at, fmax = _place_and_range(model, at, fmax)
+    asked: dict[str, Any] = {"inputs": [at], "outputs": [at], "modal_damping": modal_damping}
+    hz = np.linspace(fmax / _FREQUENCIES, fmax, _FREQUENCIES)
+    progress(0.0, "reference")
+    truth, words = _reference_receptance(model, asked, hz, 0.0)
+
+    def judge(result: FrequencyResponse) -> Judged:
+        error = relative_change(truth, result.receptance)
+        return Judged(result.dofs, np.array([error]), np.array([result.error_estimate]))
+
+    return Study(
+        _settings(elements, accuracies),
+        run=lambda options: frf(model, points=_FREQUENCIES, fmax=fmax, **asked, **options),
+        judge=judge,
+        compared="receptance",
+        count=1,
+        reference=f"{words}; force and response at {at}, {_FREQUENCIES} frequencies to {fmax:.5g} Hz",
+        resolution=AMPLITUDE_RESOLUTION,
+    ).result("frf", model, repeat, part_of(progress, 0.1, 1.0))
+
+
+@recorded
+def state_space_convergence_study(
+    model: Model,
+    *,
+    speed: float | str | None = None,
+    fmax: float | None = None,
+    modal_damping: float = 0.0,
+    at: str | None = None,
+    elements: Sequence[int] = ELEMENTS,
+    accuracies: Sequence[float] = AMPLITUDE_ACCURACIES,
+    repeat: int = REPEAT,
+    progress: Progress = silent,
+) -> ConvergenceStudy:
+    """Make a state space of one place over a series of meshes, each with its reduction.
+
+    The error is the largest difference of the receptance of the reduced system at any frequency, relative to the largest; the
+    estimate is that of the mesh and that of the reduction together.
+
+    Args:
+        model, speed, modal_damping: as for `state_space`.
+        fmax, at: as for `frf_convergence_study`.
+        elements, accuracies, repeat, progress: as for `convergence_study`.
+
+    Raises:
+        AnalysisError: no place to take, or no elastic mode that says how far to go.
+    """
+    at, fmax = _place_and_range(model, at, fmax)
+    asked: dict[str, Any] = {"inputs": [at], "outputs": [at], "modal_damping": modal_damping}
+    turns = speed_in_si(speed) or 0.0
+    progress(0.0, "reference")
+    # Errors are relative to the largest response of the range: tops and flanks of its peaks belong to it.
+    finest = state_space(model, fmax=fmax, speed=turns, accuracy=_PEAKS, **asked)
+    poles = np.linalg.eigvals(finest.first_order()[0]) / (2.0 * np.pi)
+    poles = poles[(poles.imag > 0.0) & (poles.real < -_WIDTH * poles.imag)]
+    about = (poles.imag[:, None] + np.abs(poles.real[:, None]) * _ABOUT_PEAKS).ravel()
+    even = np.linspace(fmax / _FREQUENCIES, fmax, _FREQUENCIES)
+    hz = np.unique([*even, *about[(about > even[0]) & (about < fmax)]])
+    truth, words = _reference_receptance(model, asked, hz, turns)
+
+    def judge(result: StateSpace) -> Judged:
+        error = relative_change(truth, result.receptance(hz))
+        return Judged(result.dofs, np.array([error]), np.array([result.error_estimate + result.reduction_error]))
+
+    return Study(
+        _settings(elements, accuracies),
+        run=lambda options: state_space(model, fmax=fmax, speed=turns, **asked, **options),
+        judge=judge,
+        compared="receptance of the reduced system",
+        count=1,
+        reference=f"{words}; input and output at {at}, {len(hz)} frequencies to {fmax:.5g} Hz",
+        resolution=AMPLITUDE_RESOLUTION,
+    ).result("state-space", model, repeat, part_of(progress, 0.1, 1.0))
+
+
+def _place_and_range(model: Model, at: str | None, fmax: float | None) -> tuple[str, float]:
+    """Where force and response are, and the highest frequency in Hz: as asked for, or chosen."""
     if at is None:
         parts = [f"{table}.{name}" for table in ("disks", "gears", "bearings") for name in getattr(model, table)]
         if not parts:
@@ -514,40 +628,26 @@ def frf_convergence_study(
         if not found.size:
             raise AnalysisError("the model has no elastic mode that says how far to go: give --fmax")
         fmax = _ABOVE * float(found[min(_MODES, found.size) - 1])
-    asked: dict[str, Any] = {"inputs": [at], "outputs": [at], "fmax": fmax, "modal_damping": modal_damping}
-
-    def run(options: dict[str, Any], of: Model = model) -> FrequencyResponse:
-        return frf(of, points=_FREQUENCIES, **asked, **options)
-
-    progress(0.0, "reference")
-    if modal_damping or model.damping.modal_ratio:
-        finest = run({"accuracy": AMPLITUDE_REFERENCE}, _as_continuum(model))
-        truth = finest.receptance
-        words = _finer(finest)
-    else:
-        truth, dofs = _exact_receptance(_as_continuum(model), at, np.linspace(fmax / _FREQUENCIES, fmax, _FREQUENCIES))
-        words = f"the exact dynamic stiffness of Timoshenko's shafts, {dofs} dofs; {SHARED}"
-
-    def judge(result: FrequencyResponse) -> Judged:
-        error = relative_change(truth, result.receptance)
-        return Judged(result.dofs, np.array([error]), np.array([result.error_estimate]))
-
-    return Study(
-        _settings(elements, accuracies),
-        run=run,
-        judge=judge,
-        compared="receptance",
-        count=1,
-        reference=f"{words}; force and response at {at}, {_FREQUENCIES} frequencies to {fmax:.5g} Hz",
-        resolution=AMPLITUDE_RESOLUTION,
-    ).result("frf", model, repeat, part_of(progress, 0.1, 1.0))
+    return at, fmax
 
 
-def _exact_receptance(model: Model, at: str, hz: np.ndarray) -> tuple[np.ndarray, int]:
-    """Driving-point receptance (f, 1, 1) with continuous shafts at standstill, and their number of unknowns."""
+def _reference_receptance(
+    model: Model, asked: Mapping[str, Any], hz: np.ndarray, speed: float
+) -> tuple[np.ndarray, str]:
+    """Receptance (f, 1, 1) at a speed in rad/s that is taken for the truth, and what it is in words."""
+    own = _as_continuum(model)
+    if asked["modal_damping"] or model.damping.modal_ratio:
+        finest = frf(own, hz, speed=speed, accuracy=AMPLITUDE_REFERENCE, **asked)
+        return finest.receptance, _finer(finest)
+    truth, dofs = _exact_receptance(own, asked["inputs"][0], hz, speed)
+    return truth, f"the exact dynamic stiffness of Timoshenko's shafts, {dofs} dofs; {SHARED}"
+
+
+def _exact_receptance(model: Model, at: str, hz: np.ndarray, speed: float) -> tuple[np.ndarray, int]:
+    """Driving-point receptance (f, 1, 1) with continuous shafts at a speed in rad/s, and their number of unknowns."""
     served, _ = with_casing_modes(model, float(hz[-1]))
-    about = about_mean(model, [None], 0.0)
-    exact = Continuum(linear_system(served, [0.0], state=about[1].with_tangents(about[0])), 0.0)
+    about = about_mean(model, [speed or None], speed)
+    exact = Continuum(linear_system(served, [speed], state=about[1].with_tangents(about[0])), speed)
     f = moving_rows(exact.system, [at]).T
     found = [f.T @ exact.solve(2.0 * np.pi * float(value), f) for value in hz]
     return np.array(found), exact.system.n

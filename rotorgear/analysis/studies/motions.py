@@ -13,13 +13,13 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import needed_speed
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, outputs_of, range_of
-from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of
-from rotorgear.analysis.orbits.verify import run_periods
+from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of, statistics_of
+from rotorgear.analysis.orbits.verify import run_periods, settled
 from rotorgear.analysis.sweep.classify import period_in
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.cpu import cpu_seconds
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.progress import Progress, part_of, silent
@@ -32,6 +32,7 @@ from rotorgear.solvers.periodic.balance import HarmonicGrid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 from rotorgear.solvers.periodic.shooting import ShootingOrbits
 from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.time.statistics import STATISTICS
 from rotorgear.system.system import flow_system
 
 _ROUNDING = 1e-9
@@ -155,8 +156,11 @@ def sweep_convergence_study(
 ) -> SweepConvergenceStudy:
     """Run one point with several steps and lengths, each from many states near the static one, side by side.
 
-    Only states that end on the same motion are compared, with one another and with the reference: that of most states there.
-    Their scatter is a check of the standard error that a single run states.
+    Only states that end on the same motion are compared, with one another and with the reference: that of most states there,
+    found by shooting, another method, where it repeats and the model is small; else with four times the steps.
+    The scatter of states is a check of the standard error that a single run states. Error and estimate are those of the
+    statistics of the worst contact in a run, each relative to its own size: the root mean square over the states, and the
+    median of what they state.
 
     Args:
         model: a small model.
@@ -182,17 +186,20 @@ def sweep_convergence_study(
         at = {"operation.speed": [given]}
         return sweep(model, at, initial_conditions=starts, throw=_SPREAD, steps=n, discard=_DISCARD, sample=count)
 
-    def sizes(runs: SweepResult) -> np.ndarray:
-        """Peak to peak and dynamic factor of the contact that moves most, (2, states)."""
-        worst = int(np.argmax(runs.peak_to_peak[0].mean(axis=0)))
-        return np.array([runs.peak_to_peak[0, :, worst], runs.dynamic_factor[0, :, worst]])
-
     plans = [(n, max(counts)) for n in steps] + [(max(steps) // 2, count) for count in counts[:-1]]
     progress(0.1, "reference")
     finest = run(_FINER_STEPS * max(steps), max(counts))
-    kept = on_same_motion(finest.motion, sizes(finest)[0])
+    worst = int(np.argmax(finest.peak_to_peak[0].mean(axis=0)))
+    kept = on_same_motion(finest.motion, finest.peak_to_peak[0, :, worst])
     kind = finest.motion[int(np.argmax(kept))]
-    truth = sizes(finest)[:, kept].mean(axis=1)
+    like = kind, float(finest.peak_to_peak[0, kept, worst].mean())
+    truth = _statistics(finest, worst)[kept].mean(axis=0)
+    finer = f"{_FINER_STEPS * max(steps)} steps of the same method and {max(counts)} periods"
+    reference = f"{finer}, the mean over the states on that motion"
+    exact = _by_shooting(model, given, kind, finest.contact[worst])
+    if exact is not None and abs(exact[-1] - truth[-1]) <= _SAME * exact[-1]:
+        truth = exact
+        reference = "shooting, another method, whose steps end where flanks meet and part"
     if not kept.all():
         why = f"{kept.sum()} of {starts} states end on the one that is compared, {kind}"
         notes = [*notes, Note("", "several motions coexist at this point", why)]
@@ -202,36 +209,96 @@ def sweep_convergence_study(
         begun = cpu_seconds()
         runs = run(n, count)
         seconds = cpu_seconds() - begun
-        kept = on_same_motion(runs.motion, sizes(runs)[0], (kind, float(truth[0])))
-        many = int(kept.sum())
-        exponents = runs.lyapunov[0, kept, 0]
-        mean = sizes(runs)[:, kept].mean(axis=1) if many else np.full(2, np.nan)
-        scatter = sizes(runs)[:, kept].std(axis=1, ddof=1) if many > 1 else np.full(2, np.nan)
-        rungs.append(
-            SweepRung(
-                n,
-                count,
-                seconds / starts,
-                float(exponents.mean()) if many else float("nan"),
-                float(exponents.std(ddof=1)) if many > 1 else float("nan"),
-                float(np.median(runs.lyapunov_error[0, kept, 0])) if many else float("nan"),
-                float(mean[0]),
-                float(scatter[0]),
-                float(mean[1]),
-                float(scatter[1]),
-                tuple(sorted(set(runs.motion))),
-                error=float(np.max(np.abs(mean / truth - 1.0))),
-            )
-        )
+        kept = on_same_motion(runs.motion, runs.peak_to_peak[0, :, worst], like)
+        rungs.append(_rung_of(runs, worst, kept, (n, count, seconds / starts), truth))
     progress(1.0, "done")
     return SweepConvergenceStudy(
         model.title or "model",
         starts,
         tuple(rungs),
         speed=given,
-        reference=f"{_FINER_STEPS * max(steps)} steps and {max(counts)} periods, the mean over the states on that motion",
+        reference=reference,
         warnings=tuple(notes),
     )
+
+
+def _rung_of(
+    runs: SweepResult, worst: int, kept: np.ndarray, of: tuple[int, int, float], truth: np.ndarray
+) -> SweepRung:
+    """A row: of steps, periods and CPU seconds of a run, over the states (r,) that are kept of those on the worst contact."""
+    many = int(kept.sum())
+    peak = runs.peak_to_peak[0, kept, worst]
+    factor = runs.dynamic_factor[0, kept, worst]
+    exponents = runs.lyapunov[0, kept, 0]
+
+    def mean(values: np.ndarray) -> float:
+        return float(values.mean()) if many else float("nan")
+
+    def scatter(values: np.ndarray) -> float:
+        return float(values.std(ddof=1)) if many > 1 else float("nan")
+
+    error = estimate = float("nan")
+    if many:
+        size = np.hypot(truth[0], truth[1])
+        # A share is of one, a least value as large as the force.
+        scale = np.where(np.isin(STATISTICS, _SHARES_OF_TIME), 1.0, np.maximum(np.abs(truth), 1e-300))
+        scale[0] = size
+        off = (_statistics(runs, worst)[kept] - truth) / scale
+        error = float(np.nanmax(np.sqrt(np.mean(off**2, axis=0))))
+        estimate = float(np.nanmax(np.median(runs.statistics_error[0, kept, worst], axis=0) / scale))
+    return SweepRung(
+        *of,
+        mean(exponents),
+        scatter(exponents),
+        float(np.median(runs.lyapunov_error[0, kept, 0])) if many else float("nan"),
+        mean(peak),
+        scatter(peak),
+        mean(factor),
+        scatter(factor),
+        tuple(sorted(set(runs.motion))),
+        error=error,
+        estimate=estimate,
+        effectivity=estimate / error if error > _ROUNDING else None,
+    )
+
+
+_SHARES_OF_TIME = ("contact loss", "coast contact")
+
+
+def _statistics(runs: SweepResult, contact: int) -> np.ndarray:
+    """`STATISTICS` of the runs of a point, (r, 8); a sweep does not tell the smallest force."""
+    told = {
+        "mean force": runs.mean_force,
+        "rms force": runs.rms_force,
+        "largest force": runs.largest_force,
+        "contact loss": runs.apart,
+        "coast contact": runs.back,
+        "transmission error": runs.peak_to_peak_transmission_error,
+        "approach": runs.peak_to_peak_approach,
+    }
+    nothing = np.full(runs.mean_force.shape, np.nan)
+    return np.stack([told.get(name, nothing)[0, :, contact] for name in STATISTICS], axis=1)
+
+
+def _by_shooting(model: Model, speed: float, kind: str, contact: str) -> np.ndarray | None:
+    """`STATISTICS` (8,) of a contact on the motion that a transient settles on, by shooting; None where that does not serve."""
+    periods = period_in(kind)
+    if not periods:
+        return None
+    try:
+        family = SystemFamily(model, [range_of(model, SPEED, [speed, _RANGE * speed])], None, None)
+        outputs = outputs_of(family)
+        plant = family.plant(0.0)
+        grid = HarmonicGrid(HARMONICS, INSTANTS * HARMONICS, family.order)
+        equations, _ = equations_of("shooting", family, grid, scale_of(plant))
+        assert isinstance(equations, ShootingOrbits)
+        equations.periods = periods
+        node = at_value(equations, settled(equations, family, 0.0, silent), 0.0)
+    except RotorgearError:
+        return None
+    found = statistics_of(equations.cycle(node.y, 0.0), plant, outputs).values[outputs.contact.index(contact)]
+    found[STATISTICS.index("smallest force")] = np.nan
+    return np.asarray(found)
 
 
 def on_same_motion(kinds: Sequence[str], sizes: np.ndarray, like: tuple[str, float] | None = None) -> np.ndarray:

@@ -114,7 +114,7 @@ def test_amplitudes_are_held_to_those_of_a_mesh_of_high_order(analysis: str) -> 
 def test_a_model_in_torsion_alone_has_its_response_between_rotations() -> None:
     study = STUDIES["frf"](rg.load("models/backlash_pair.toml"), **SHORT)
     assert study.rungs[0].dofs == 2
-    assert study.rungs[0].error == 0.0
+    assert study.rungs[0].error < 1e-11
 
 
 def test_statics_of_the_basic_element_are_exact() -> None:

@@ -19,10 +19,11 @@ from rotorgear.analysis.studies.continuum import Continuum, piece_stiffness
 from rotorgear.cli.main import app
 from rotorgear.elements.shaft import shaft_elements
 from rotorgear.elements.shaft_section import ShaftElements
-from rotorgear.errors import Interrupted
+from rotorgear.errors import ConvergenceError, Interrupted
 from rotorgear.model.parts.operation import ModelDamping
 from rotorgear.system.system import flow_system
 from tests.models import overhung_disk
+from tests.unit.analysis.impact_oscillator import ImpactOscillator
 
 SHORT: dict[str, Any] = {"elements": (2, 4), "accuracies": (1e-3,), "repeat": 0}
 E, NU, RHO, KAPPA = 2.1e11, 0.3, 7850.0, 0.85
@@ -105,6 +106,38 @@ def test_modes_are_counted_by_the_signs_of_the_dynamic_stiffness() -> None:
         assert Continuum(flow_system(model), None, w[-1]).count_below(0.5 * (w[k] + w[k + 1])) == k + 1
 
 
+def test_a_cross_coupled_bearing_at_standstill_is_that_of_the_model() -> None:
+    cross = np.diag([4e7, 4e7, 1e7, 0.0, 0.0, 0.0])
+    cross[0, 1], cross[1, 0] = 2e7, -1e7
+    model = overhung_disk().with_("bearings.b.stiffness", {"matrix": cross.tolist()})
+    study = STUDIES["modal"](model, modes=8, **SHORT | {"elements": (4, 8)})
+    assert "exact dynamic stiffness" in study.reference
+    assert "finest mesh's word" in study.reference  # counts need a symmetric stiffness
+    assert np.any(np.abs(rg.modal(model, modes=8).eigenvalues.real) > 1.0)
+    assert all(rung.effectivity is not None and 0.9 < rung.effectivity < 1.1 for rung in study.rungs), study.text()
+
+
+def test_a_root_of_another_mode_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = overhung_disk()
+    s = rg.modal(model, modes=10, accuracy=1e-8).eigenvalues[-3:]
+    exact = Continuum(flow_system(model), None, abs(s[-1]))
+    assert exact.roots(s) == pytest.approx(s, rel=1e-6)
+    with pytest.raises(ConvergenceError, match="is that of another mode"):
+        exact.roots(np.array([s[0], 1.001 * s[0]]))
+    monkeypatch.setattr(Continuum, "root", lambda self, s: 1.5j)
+    study = STUDIES["modal"](model, modes=6, **SHORT)
+    assert study.reference.startswith("the same elements, refined to 1e-10")
+
+
+@pytest.mark.parametrize("analysis", ["state-space", "campbell"])
+def test_state_spaces_and_branches_are_compared_with_continuous_shafts(analysis: str) -> None:
+    more = {"modes": 5} if analysis == "campbell" else {"speed": 700.0}
+    study = STUDIES[analysis](overhung_disk(), **SHORT, **more)
+    assert "exact dynamic stiffness" in study.reference
+    ratios = [rung.effectivity for rung in study.rungs]
+    assert all(ratio is not None and 0.5 < ratio < 3.0 for ratio in ratios), study.text()
+
+
 @pytest.mark.parametrize("analysis", ["modal", "critical", "frf", "response"])
 def test_no_mesh_of_elements_is_the_reference(analysis: str) -> None:
     study = STUDIES[analysis](overhung_disk(), **SHORT)
@@ -124,6 +157,15 @@ def test_a_critical_speed_that_a_coarse_mesh_misses_has_an_infinite_error() -> N
     assert missed.error == float("inf")
     assert any(note.startswith("1 missed") for note in missed.notes)
     assert fine.error < 1e-4
+
+
+def test_a_point_of_a_sweep_is_compared_with_shooting_by_all_its_statistics() -> None:
+    case = ImpactOscillator(W=0.7, ripple=1.4, z=0.05)
+    study = rg.sweep_convergence_study(case.model(), speed=case.speed(case.W), steps=(50, 100), counts=(20,), starts=3)
+    assert study.reference.startswith("shooting")
+    ratios = [rung.effectivity for rung in study.rungs]
+    assert all(ratio is not None and 0.3 < ratio < 5.0 for ratio in ratios), study.text()
+    assert study.rungs[1].error < 0.5 * study.rungs[0].error
 
 
 def test_rows_that_were_done_outlive_an_interrupt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
