@@ -25,6 +25,8 @@ _LOADS = 1500
 # Inverted maps that are kept: those of four meshes with two helices each. One of many pitches is too large to be kept (bytes).
 _KEPT = 8
 _LARGE = 6e7
+# Positions that are inverted together: a map of many pitches has tens of thousands, each with thousands of loads between.
+_TOGETHER = 256
 
 
 def inverted(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tuple[float, np.ndarray]:
@@ -60,16 +62,34 @@ def _rows(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tuple[f
     share = np.linspace(0.0, 1.0, _LOADS)
     loads = load[-1] * np.concatenate([0.02 * share[:-1], 0.02 + 0.98 * share])
     tilts, positions, _ = approach.shape
-    curve = PchipInterpolator(load, approach, axis=2)
-    deflections = curve(loads) - touch[:, None]
-    # A flat end of a curve must not divide by zero.
-    softest = 1e-6 * spacing * steps / load[-1]
-    softness = np.maximum(curve(loads, 1), softest)
-    moments = PchipInterpolator(load, moment, axis=2)(loads) if moment.size else None
-    x = spacing * np.arange(steps + 1)
     found = np.zeros((positions, 1 + node * tilts * (steps + 1)))
     found[:, 0] = touch
     nodes = found[:, 1:].reshape(positions, tilts, steps + 1, node)
+    for first in range(0, positions, _TOGETHER):
+        some = slice(first, first + _TOGETHER)
+        lift = PchipInterpolator(load, moment[:, some], axis=2)(loads) if moment.size else None
+        _fill(nodes[some], load, loads, approach[:, some], touch[some], spacing, lift)
+    found.setflags(write=False)
+    return spacing, found
+
+
+def _fill(
+    nodes: np.ndarray,
+    load: np.ndarray,
+    loads: np.ndarray,
+    approach: np.ndarray,
+    touch: np.ndarray,
+    spacing: float,
+    moments: np.ndarray | None,
+) -> None:
+    """Fill the nodes (p, k, steps + 1, node) of some positions; moments (k, p, n) are at the n loads between."""
+    positions, tilts, count, _ = nodes.shape
+    curve = PchipInterpolator(load, approach, axis=2)
+    deflections = curve(loads) - touch[:, None]
+    # A flat end of a curve must not divide by zero.
+    softest = 1e-6 * spacing * (count - 1) / load[-1]
+    softness = np.maximum(curve(loads, 1), softest)
+    x = spacing * np.arange(count)
     for k in range(tilts):
         for i in range(positions):
             deflection = deflections[k, i]
@@ -85,5 +105,3 @@ def _rows(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tuple[f
     for rate, whole in ((FORCE, ENERGY), (LIFT, MOMENT))[: 1 if moments is None else 2]:
         means = 0.5 * (nodes[:, :, 1:, rate] + nodes[:, :, :-1, rate])
         nodes[:, :, 1:, whole] = spacing * np.cumsum(means, axis=2)
-    found.setflags(write=False)
-    return spacing, found

@@ -348,7 +348,7 @@ class _Problem:
         if u is None:
             mean = gap + approaches(contact_map.position).mean(axis=0)
             return _constant(len(position), partial(_straight, mean, forces))
-        rows = contact_map.approach_at(np.append(load, far), u[:, None])
+        rows = np.column_stack([contact_map.at_loads(u), contact_map.approach_at(far, u)])
         return rows, lambda some: [partial(_straight, gap + row, forces) for row in approaches(u[some])]
 
 

@@ -72,6 +72,10 @@ class ContactMap:
         u = np.asarray(u, float)
         return np.asarray(self._knots(u.ravel())[0][:, 0].reshape(u.shape))
 
+    def at_loads(self, u: np.ndarray) -> np.ndarray:
+        """Approach (r, l) in m at r positions u under the loads of the map."""
+        return self._knots(u)[0]
+
     def approach_at(self, force: Any, u: Any) -> np.ndarray:
         """Approach in m under a force in N at positions u, both of shapes that broadcast."""
         force, u = np.broadcast_arrays(np.asarray(force, float), np.asarray(u, float))

@@ -6,13 +6,16 @@ import errno
 import hashlib
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
@@ -149,3 +152,72 @@ def test_an_interrupted_run_returns_what_it_has_and_says_so() -> None:
     assert result.status.startswith("interrupted after")
     assert 0 < len(result.time) < 3000
     assert any("ended early" in note for note in result.warnings)
+
+
+# --- chunks know where they belong ---------------------------------------------------------------------------
+
+
+def three_chunks(path: Path, model: str = "a") -> Path:
+    stream = rg.stream(path)
+    stream.begin({"model": model})
+    for k in (1.0, 2.0, 3.0):
+        stream.write({"value": np.array([k])})
+    return stream.folder
+
+
+def swap(folder: Path, other: Path) -> None:
+    first, second = (folder / f"chunk_00000{k}.h5" for k in (1, 2))
+    first.rename(folder / "t")
+    second.rename(first)
+    (folder / "t").rename(second)
+
+
+def repeat(folder: Path, other: Path) -> None:
+    shutil.copy(folder / "chunk_000001.h5", folder / "chunk_000002.h5")
+
+
+def take_anothers(folder: Path, other: Path) -> None:
+    shutil.copy(other / "chunk_000002.h5", folder / "chunk_000002.h5")
+
+
+def renumber(folder: Path, other: Path) -> None:
+    with h5py.File(folder / "chunk_000002.h5", "r+") as file:
+        file.attrs["number"] = 1
+    swap(folder, other)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (swap, r"chunk_000001\.h5 is chunk 2 of the run under another name: remove it"),
+        (repeat, r"chunk_000002\.h5 is chunk 1 of the run under another name: remove it"),
+        (take_anothers, r"chunk_000002\.h5 is of another run: remove it"),
+        (renumber, r"chunk_000001\.h5 is damaged: remove it"),
+    ],
+)
+def test_a_chunk_in_the_place_of_another_is_not_read(
+    tmp_path: Path, change: Callable[[Path, Path], None], sentence: str
+) -> None:
+    folder = three_chunks(tmp_path / "x.h5")
+    found = rg.stream(tmp_path / "x.h5", resume=True).begin({"model": "a"})
+    assert [chunk["value"][0] for chunk in found] == [1.0, 2.0, 3.0]
+    change(folder, three_chunks(tmp_path / "y.h5", "b"))
+    with pytest.raises(RotorgearError, match=sentence):
+        rg.stream(tmp_path / "x.h5", resume=True).begin({"model": "a"})
+
+
+def test_only_files_of_a_run_are_removed_from_its_folder(tmp_path: Path) -> None:
+    folder = three_chunks(tmp_path / "x.h5")
+    (folder / f".chunk_000004.h5.{'0' * 32}").write_text("what a kill left")
+    for name in ("thesis.txt", "chunk_1.h5", "my settings.json"):
+        (folder / name).write_text("mine")
+    again = rg.stream(tmp_path / "x.h5")
+    again.begin({"model": "a"})
+    mine = ["chunk_1.h5", "my settings.json", "thesis.txt"]
+    assert sorted(path.name for path in folder.iterdir()) == [*mine[:2], "settings.json", mine[2]]
+    again.write({"value": np.array([9.0])})
+    again.close()
+    assert sorted(path.name for path in folder.iterdir()) == mine
+    three_chunks(tmp_path / "z.h5")
+    rg.stream(tmp_path / "z.h5").close()
+    assert not (tmp_path / "z.h5.parts").exists()

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
+import os
+import sys
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -9,6 +13,7 @@ from typing import Any
 import pytest
 
 from rotorgear.files.compiled_once import CompiledOnce
+from rotorgear.solvers.time import compiled
 
 
 class Kept:
@@ -58,3 +63,83 @@ def test_where_no_lock_can_be_kept_each_compiles(tmp_path: Path) -> None:
 
 def test_all_else_is_the_cache_itself(tmp_path: Path) -> None:
     assert CompiledOnce(Kept(), tmp_path / "function.lock").path == "kept"
+
+
+# --- damaged files -------------------------------------------------------------------------------------------
+
+SOURCE = """
+def doubled(x):
+    return 2.0 * x
+"""
+
+
+def cut(file: Path) -> None:
+    os.truncate(file, file.stat().st_size // 2)
+
+
+def emptied(file: Path) -> None:
+    os.truncate(file, 0)
+
+
+def zeroed(file: Path) -> None:
+    data = bytearray(file.read_bytes())
+    half = len(data) // 2
+    data[half : half + 512] = bytes(len(data[half : half + 512]))
+    file.write_bytes(data)
+
+
+def flipped(file: Path) -> None:
+    data = bytearray(file.read_bytes())
+    data[len(data) // 3] ^= 1
+    file.write_bytes(data)
+
+
+def without_its_sum(file: Path) -> None:
+    file.with_name(file.name + ".sha256").unlink()
+
+
+@pytest.fixture
+def kept_function(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], Any]:
+    """Compiles a function of a file, or takes it from the disk as another process would."""
+    module = tmp_path / "doubling.py"
+    module.write_text(SOURCE, encoding="utf-8")
+    folder = tmp_path / "compiled"
+    folder.mkdir()
+    monkeypatch.setattr(compiled, "cache_folder", lambda: folder)
+
+    def load() -> Any:
+        spec = importlib.util.spec_from_file_location("doubling", module)
+        assert spec is not None
+        assert spec.loader is not None
+        loaded = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, "doubling", loaded)
+        spec.loader.exec_module(loaded)
+        function = compiled.compiled(loaded.doubled)
+        assert function(3.0) == 6.0
+        return function
+
+    return load
+
+
+@pytest.mark.parametrize("ending", [".nbc", ".nbi"])
+def test_damaged_code_is_compiled_anew_and_its_folder_named(
+    kept_function: Callable[[], Any], tmp_path: Path, ending: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    kept_function()
+    for damage in (cut, emptied, zeroed, flipped, without_its_sum):
+        assert not kept_function().stats.cache_misses, "a whole file is read"
+        assert not caplog.records
+        (file,) = (tmp_path / "compiled").rglob(f"*{ending}")
+        damage(file)
+        assert kept_function().stats.cache_misses, damage.__name__
+        (told,) = caplog.messages
+        assert str(tmp_path / "compiled") in told
+        caplog.clear()
+
+
+def test_a_full_disk_costs_time_only(kept_function: Callable[[], Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "no space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    assert kept_function().stats.cache_misses
