@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
+from rotorgear.errors import AnalysisError
 from rotorgear.files.own import text_of
 
 
@@ -27,3 +28,21 @@ def free_memory() -> float | None:
         return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     except (OSError, ValueError, AttributeError):
         return None
+
+
+def require_memory(needed: float, what: str, remedy: str) -> None:
+    """Refuse what the machine can't hold, before it begins.
+
+    Args:
+        needed: bytes.
+        what: the subject of the sentence, such as "A map of 1360 base pitches".
+        remedy: what to do instead.
+
+    Raises:
+        AnalysisError: less memory is free.
+    """
+    free = free_memory()
+    if free is not None and needed > free:
+        raise AnalysisError(
+            f"{what} would take {1e-9 * needed:.2g} GB of memory, and {1e-9 * free:.2g} GB are free: {remedy}"
+        )

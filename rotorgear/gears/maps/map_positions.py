@@ -153,6 +153,11 @@ class MapPositions:
     event: np.ndarray | None = None
     cycle: MeshCycle | None = None
 
+    @property
+    def each(self) -> int:
+        """Positions that a map keeps of each base pitch."""
+        return len(self.position) if self.event is None else _KEPT
+
     def kept(
         self, approach: np.ndarray, compliance: np.ndarray, moment: np.ndarray, working: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

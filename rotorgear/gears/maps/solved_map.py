@@ -35,12 +35,16 @@ from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.maps.map_positions import MapPositions, errors_by_period, families, load_groups, map_positions
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.memory import require_memory
 from rotorgear.progress import Progress, listener, part_of
 
 # Maps that other sources kept are passed over.
 _MAKERS = ("gears",)
 # CPU seconds from which on a map is worth a file.
 _WORTH = 1.0
+# Numbers that are held for each position and load of a map, by an analysis that is made with it: approach, slope and moment, what
+# they are put together from, and what joint equilibria look them up in.
+_COPIES = 12.0
 # Positions that tell how far corners touch. Where they touch farther than was thought, they are followed a little farther still.
 _TELLING = 12
 _FARTHER = 1.05
@@ -291,6 +295,12 @@ def solved_map(
     """The map at some positions for groups of rising multiples of a working load (N)."""
     of_period = errors_by_period(problem)
     kinds = list(dict.fromkeys(of_period))
+    kept = len(of_period) * positions.each
+    require_memory(
+        8.0 * _COPIES * kept * (1 + sum(map(len, groups))),
+        f"A map of loaded teeth over {len(of_period)} base pitches",
+        "give pitch errors and topographies of single teeth to one gear only, or to fewer teeth",
+    )
     # Patches are those of the commonest period: where an odd tooth carries they are wider, and would move all the others.
     common = of_period.index(max(kinds, key=of_period.count))
     place = common + positions.position

@@ -140,6 +140,15 @@ def test_too_many_differing_periods_are_refused() -> None:
         contact_map(spur(first_flank=flanks[0], second_flank=flanks[1]), LOAD, POSITIONS)
 
 
+def test_a_map_that_no_machine_holds_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An odd tooth of each gear: 1360 base pitches, of which few differ."""
+    odd = FlankModification(pitch_error=((0, 5e-6),))
+    monkeypatch.setattr("rotorgear.memory.free_memory", lambda: 2e9)
+    sentence = r"over 1360 base pitches would take [\d.]+ GB of memory, and 2 GB are free: give pitch errors"
+    with pytest.raises(AnalysisError, match=sentence):
+        contact_map(spur(first_flank=odd, second_flank=odd), LOAD)
+
+
 def test_a_kept_map_is_read_again_and_another_key_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path))
     monkeypatch.setattr("rotorgear.gears.maps.solved_map._WORTH", 0.0)
