@@ -391,70 +391,142 @@ _PLACES = [
     "disks.disk:q",
     ",",
 ]
-OPTIONS: dict[str, dict[str, list[str]]] = {
-    "check": {"--elements": _COUNTS},
-    "modal": {
-        "--speed": _SPEEDS,
-        "--modes": _COUNTS,
-        "--fmax": _NUMBERS,
-        "--elements": _COUNTS,
-        "--accuracy": _NUMBERS,
-        "--only": ["bending", "torsion,axial", "", ",", "all"],
-    },
-    "campbell": {
-        "--from": _SPEEDS,
-        "--to": _SPEEDS,
-        "--points": _COUNTS,
-        "--modes": _COUNTS,
-        "--fmax": _NUMBERS,
-        "--elements": _COUNTS,
-    },
-    "critical": {"--to": _SPEEDS, "--elements": _COUNTS, "--accuracy": _NUMBERS},
-    "static": {"--speed": _SPEEDS, "--elements": _COUNTS, "--accuracy": _NUMBERS},
-    "bearing": {"--speed": _SPEEDS, "--speeds": ["1000 rpm:2000 rpm:3", "0:0:0", "", "nan", "1 rpm:2 rpm"]},
-    "scatter": {
-        "--free": ["bearings.*.stiffness", "meshes.*.stiffness", "*", "", "shafts.*.nothing", "operation.speed"],
-        "--sigma": ["10 %", "0", "-1", "nan", "5", "1 mm", ""],
-        "--samples": ["0", "1", "3", "2.5", "abc"],
-        "--modes": _COUNTS,
-        "--speed": _SPEEDS,
-    },
-    "sensors": {"--count": _COUNTS, "--modes": _COUNTS, "--fmax": _NUMBERS, "--directions": ["xyz", "q", "", "y"]},
-    "response": {
-        "--from": _SPEEDS,
-        "--to": _SPEEDS,
-        "--points": _COUNTS,
-        "--modal-damping": _NUMBERS,
-        "--elements": _COUNTS,
-    },
-    "frf": {
-        "--inputs": _PLACES,
-        "--outputs": _PLACES,
-        "--fmax": _NUMBERS,
-        "--fmin": _NUMBERS,
-        "--points": _COUNTS,
-        "--speed": _SPEEDS,
-        "--modal-damping": _NUMBERS,
-    },
-    "transient": {
-        "--time": ["0.01 s", "1e-9 s", "1e9 s", "0 s", "-1 s", "nan s", "1 m", ""],
-        "--speed": _SPEEDS,
-        "--steps": _COUNTS,
-        "--modes": _COUNTS,
-        "--method": ["newmark", "exponential", "hht", "explicit", "generalised-alpha", "", "euler"],
-        "--modal-damping": _NUMBERS,
-    },
+# Values of options by their name, where the kind does not tell what a hand may write.
+_WORDS = {
+    "only": ["bending", "torsion,axial", "", ",", "all"],
+    "free": ["bearings.*.stiffness", "meshes.*.stiffness", "*", "", "shafts.*.nothing", "operation.speed"],
+    "sigma": ["10 %", "0", "-1", "nan", "5", "1 mm", ""],
+    "samples": ["0", "1", "3", "2.5", "abc"],
+    "speeds": ["1000 rpm:2000 rpm:3", "0:0:0", "", "nan", "1 rpm:2 rpm", "1,2"],
+    "directions": ["xyz", "q", "", "y"],
+    "method": ["newmark", "exponential", "hht", "explicit", "modal", "direct", "", "euler"],
+    "time": ["0.01 s", "1e-9 s", "1e9 s", "0 s", "-1 s", "nan s", "1 m", ""],
+    "discard": ["0", "1", "1 ms", "-1", "abc", "3"],
+    "over": [
+        "operation.speed=1000 rpm:1500 rpm:2",
+        "operation.speed=1 rpm",
+        "nobody=1:2:3",
+        "torque=1 N m:2 N m:2",
+        "=",
+        "",
+    ],
+    "bounds": ["bearings.*.stiffness=0.5:2", "tip_relief=0 um:20 um", "a=b", "", "x=1:2:3"],
+    "variables": ["tip_relief", "crowning", "", "nobody"],
+    "preset": ["preview", "fine", "", "huge"],
+    "objective": ["change", "scatter", ""],
+    "shapes": ["1", "1,2", "2-1", "0", "²", "999999999999", ""],
+    "source": ["jeffcott", "nobody", ""],
+    "name": ["left", "nobody", "", "box"],
+    "analysis": ["modal", "campbell", "nobody", ""],
 }
+_OUTPUTS = ["out.json", "no/x.json", "model.toml", ".", "out.h5", "out.png", "folder", "old.json", "out.npz", "out.uff"]
+_INPUTS = ["rig.csv", "missing.csv", "model.toml", ".", "/dev/zero", "pipe", "shapes.uff"]
+_WRITTEN = ("json", "save", "plot", "waterfall", "vtk", "uff", "csv", "output", "state_space", "matrices")
+# What keeps a long command short where nothing else is drawn.
+_CHEAP = {
+    "sweep": {"over": "operation.speed=1000 rpm:1200 rpm:2", "discard": "2", "sample": "9"},
+    "orbits": {"over": "operation.speed=1000 rpm:1010 rpm", "harmonics": "4", "points": "4", "elements": "1"},
+    "transient": {"time": "0.01 s", "steps": "20", "elements": "1"},
+    "scatter": {"free": "bearings.*.stiffness", "sigma": "10 %", "samples": "3", "elements": "1", "modes": "4"},
+    "optimise": {"free": "bearings.*.stiffness", "searches": "1", "elements": "1"},
+    "campbell": {"points": "3", "modes": "4"},
+    "response": {"points": "5"},
+    "frf": {"inputs": "disks.disk:y", "outputs": "disks.disk:y", "fmax": "300", "points": "5"},
+    "mesh": {"positions": "8", "preset": "preview"},
+    "mesh-map": {"over": "torque=10 N m:20 N m:2", "positions": "8", "preset": "preview"},
+    "optimise-flanks": {
+        "variables": "tip_relief",
+        "over": "torque=10 N m",
+        "positions": "8",
+        "evaluations": "3",
+        "samples": "2",
+        "preset": "preview",
+    },
+    "root-stress": {"positions": "4", "preset": "preview"},
+    "accuracy": {"finest": "1", "modes": "3"},
+    "update": {"rig": "rig.csv", "elements": "1"},
+    "compare": {"rig": "rig.csv", "elements": "1"},
+    "export": {"matrices": "out.npz", "elements": "1"},
+    "import": {"output": "new.toml"},
+    "report": {},
+}
+# A window, and hours of validation.
+_LEFT_OUT = ("view", "validate")
+
+
+def _values(name: str, kind: str) -> list[str]:
+    """What a hand may write for an option of a name and kind."""
+    from rotorgear.cli.options import SPEEDS
+
+    if name in _WORDS:
+        return _WORDS[name]
+    if kind == "path":
+        return _OUTPUTS if name in _WRITTEN else _INPUTS
+    if kind == "paths":
+        return _INPUTS
+    if name in SPEEDS:
+        return _SPEEDS
+    if name in ("inputs", "outputs", "at", "excite", "candidates", "spectrum"):
+        return _PLACES
+    return {"int": _COUNTS, "float": _NUMBERS, "numbers": _NUMBERS, "wholes": _COUNTS, "flag": [""]}.get(
+        kind, [*_NUMBERS, "1 mm", "nobody", "1_0", "\u202e\x1b[2J"]
+    )
 
 
 def option_mutations(seed: int) -> list[str]:
     """A command with options, without its model."""
+    from rotorgear.cli.commands import COMMANDS
+    from rotorgear.cli.options import spelling
+
     draw = random.Random(seed)
-    command = draw.choice(sorted(OPTIONS))
-    known = OPTIONS[command]
-    chosen = draw.sample(sorted(known), min(len(known), draw.randint(1, 3)))
-    if command == "scatter":
-        chosen = sorted({*chosen, "--free", "--sigma", "--samples"})
-    if command == "frf":
-        chosen = sorted({*chosen, "--inputs", "--outputs"})
-    return [command, *[f"{option}={draw.choice(known[option])}" for option in chosen]]
+    command = draw.choice([one for one in COMMANDS if one.name not in _LEFT_OUT])
+    positional = (command.source, *command.positional)
+    known = {
+        name: option
+        for name, option in command.choices.items()
+        if name not in (*positional, "cluster", "workers", "resume")
+    }
+    asked = dict(_CHEAP.get(command.name, {}))
+    for name in draw.sample(sorted(known), min(len(known), draw.randint(1, 3))):
+        asked[name] = draw.choice(_values(name, known[name].kind))
+    written = []
+    for name, value in asked.items():
+        flag = (known[name].flags or (spelling(name),))[-1].partition("/")[0]
+        written.append(flag if known[name].kind == "flag" else f"{flag}={value}")
+    return [command.name, *written]
+
+
+def byte_mutations(data: bytes, seed: int) -> bytes:
+    """A file of any format with one to four places changed, cut, repeated or filled."""
+    draw = random.Random(seed)
+    out = bytearray(data)
+    for _ in range(draw.randint(1, 4)):
+        place = draw.randrange(max(1, len(out)))
+        length = draw.choice([1, 1, 2, 8, 64, 512])
+        match draw.randrange(8):
+            case 0:
+                out[place : place + 1] = bytes([draw.randrange(256)])
+            case 1:
+                del out[place : place + length]
+            case 2:
+                out[place:place] = out[place : place + length] * draw.choice([1, 2, 200])
+            case 3:
+                out[place : place + length] = bytes(length)
+            case 4:
+                del out[place:]
+            case 5:
+                out[place : place + 1] = draw.choice(
+                    [b"-1", b"1e300", b"nan", b"999999999999", b" " * 300, "٣²".encode()]
+                )
+            case 6:
+                digits = [k for k in range(place, min(place + 2000, len(out))) if 48 <= out[k] < 58]
+                if digits:
+                    k = draw.choice(digits)
+                    out[k : k + 1] = draw.choice([b"0", b"9", b"99999", b"-", b"1e9"])
+            case _:
+                other = draw.randrange(max(1, len(out)))
+                out[place : place + length], out[other : other + length] = (
+                    out[other : other + length],
+                    out[place : place + length],
+                )
+    return bytes(out)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 import math
 import random
+import tempfile
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -91,6 +93,34 @@ ALL: dict[str, Verb] = {
     "orbits": _orbits,
     "sweep": _sweep,
     "transient": lambda model: rg.transient(model, steps=20, error_estimate=False, time=0.01),
+}
+
+
+def _small_mesh(model: rg.Model) -> Any:
+    if not model.meshes:
+        return None
+    return rg.mesh(model, next(iter(model.meshes)), positions=8, stiffness="tooth_fe", preset="preview")
+
+
+def _report(model: rg.Model) -> Any:
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder, "page.html")
+        try:
+            return rg.report(model, page).to_dict() and None
+        finally:
+            left = [path.name for path in Path(folder).iterdir() if path != page]
+            assert not left, f"half-written: {left}"
+
+
+# Each on small models, as often as the counts of the whole say.
+LONG: dict[str, Verb] = {
+    "report": _report,
+    "sweep": _sweep,
+    "orbits": _orbits,
+    "scatter": _scatter,
+    "transient": lambda model: rg.transient(model, steps=20, error_estimate=False, time=0.01),
+    "response": lambda model: rg.response(model, points=5),
+    "mesh": _small_mesh,
 }
 # How often a verb is drawn beside the quick ones: those of seconds rarely, so that thousands of files are a matter of an hour.
 WEIGHTS: dict[str, float] = {
