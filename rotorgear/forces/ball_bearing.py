@@ -186,7 +186,7 @@ class BallBearing(RollingElements):
         return np.array([*cage, *own, *(value for row in rows for value in row)])
 
     def pressed_by(self, force: float) -> BallBearing:
-        """The bearing with the preload that a force in N along its contact angle gives."""
+        """The bearing with the preload that an axial force in N on a row gives."""
         A = self.distance
         radial = self.parameters()[RADIAL]
         axial = A * np.sin(self.contact_angle)

@@ -16,6 +16,9 @@ from rotorgear.results.table import Block, Column, Line, Table, error_words, gri
 
 _COMPONENTS = ("x", "y", "z", "tilt_x", "tilt_y")
 _NEGLIGIBLE = 1e-9
+# ISO 76: pressure in Pa that leaves a set of 1e-4 of the element's diameter, of balls and of rollers, and the power of the
+# pressure with which the load of a point or line contact grows.
+_PERMISSIBLE = {True: (4.2e9, 3), False: (4.0e9, 2)}
 
 
 class RollingElementRow(Record):
@@ -209,6 +212,13 @@ class BearingSheet(ModelResult, kind="bearing"):
         """Of all of them, with the cage at angle 0; None for a film."""
         return max((row.load for row in self.rolling_elements), default=None)
 
+    @derived("static safety")
+    def static_safety(self) -> float | None:
+        """Load at which ISO 76 ends over the present one, at the most pressed element; None of a film."""
+        pressed = max((max(row.inner_pressure, row.outer_pressure) for row in self.rolling_elements), default=0.0)
+        most, power = _PERMISSIBLE["balls" in self.geometry]
+        return (most / pressed) ** power if pressed else None
+
     def tables(self) -> Iterator[Block]:
         """Its state with stiffness and damping, what is inside, the same over speed, and notes."""
         own = f", its shaft at {self.shaft_speed * RPM_PER_RAD_S:.6g} rpm" if self.shaft_speed != self.speed else ""
@@ -218,6 +228,10 @@ class BearingSheet(ModelResult, kind="bearing"):
             yield from ("", grid(self._film(self.oil), "", "", left=2, caption="Film", headed=False))
         if self.rolling_elements:
             yield from ("", self._elements())
+            if self.static_safety is not None:
+                most, power = _PERMISSIBLE["balls" in self.geometry]
+                how = f"({1e-6 * most:.0f} MPa over the largest pressure)^{power}"
+                yield f"static safety by ISO 76: {self.static_safety:.3g} = {how}"
         if self.over_speed:
             yield from ("", self._speeds())
         mean = "means over a pitch of the rolling elements; " if self.averaged else ""

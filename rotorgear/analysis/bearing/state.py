@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.analysis.common.request import direction_of
+from rotorgear.analysis.static.about_equilibrium import along_faces
+from rotorgear.analysis.static.along_faces import decided_by_loads
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.film_heat import in_heat_balance
 from rotorgear.analysis.static.solve import LawState, equilibrate
@@ -62,11 +64,18 @@ def by_its_law(model: Model, address: str) -> Model:
 def laws_of(model: Model, speed: float, near: Sequence[LawState] = ()) -> tuple[LawState, ...]:
     """The laws in the equilibrium of the whole gearbox at a speed of the input shaft in rad/s, looked for from a known one.
 
+    Loads along faces and loaded teeth are those of `static`: both move the force of a mesh along its face.
+
     Raises:
         AnalysisError: there is no equilibrium.
     """
-    system = flow_system(model, direction=direction_of(speed), kind="static")
-    return over_cycle(equilibrate(system, speed, near=near), speed)[0].laws
+    sense = direction_of(speed)
+    faced = along_faces(model, [speed], model.torque_flow(sense))
+    system = flow_system(model, direction=sense).with_state(faced.of_kind("static"))
+    found = equilibrate(system, speed, near=near)
+    if not (faced.faces and decided_by_loads(found)):
+        found, _ = over_cycle(found, speed)
+    return found.laws
 
 
 def law_at(laws: Sequence[LawState], address: str) -> LawState:

@@ -17,7 +17,7 @@ import numpy as np
 
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError, Interrupted, RotorgearError
-from rotorgear.model.checks.names import estimated
+from rotorgear.model.checks.bearings import estimated, one_sided
 from rotorgear.model.checks.plausibility import implausible, implausible_speed
 from rotorgear.model.model import Model, model_hash
 from rotorgear.results.result import Result
@@ -71,7 +71,7 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         clock.lap("analysis")
         seconds = result.seconds or clock.total()
-        doubts = (*_doubts(subject, dict(given)), *estimated(subject.layout)) if isinstance(subject, Model) else ()
+        doubts = tuple(_doubts(subject, dict(given))) if isinstance(subject, Model) else ()
         warnings = tuple(dict.fromkeys((*result.warnings, *doubts)))
         result = replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
         if stopped:
@@ -117,6 +117,8 @@ def _doubts(model: Model, given: Mapping[str, Any]) -> Iterator[str]:
     A text carries its unit; a bare number is in SI, where 12000 is no rpm.
     """
     yield from implausible(model.layout)
+    yield from one_sided(model.layout)
+    yield from estimated(model.layout)
     for name in _SPEEDS:
         if bare := [abs(value) for value in _numbers(given.get(name))]:
             yield from implausible_speed(model.layout, name, max(bare))

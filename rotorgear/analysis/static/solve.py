@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from rotorgear.analysis.static.film_heat import in_heat_balance
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
+from rotorgear.model.checks.bearings import one_sided
 from rotorgear.model.layout.state import OperatingPoint
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.note import Note
@@ -258,9 +259,10 @@ def _laws_at_rest(
         )
         if not found.converged:
             names = ", ".join(part.part for part in parts)
+            usual = "look for a law that can't carry the load, such as a journal bearing at standstill"
+            seen = "; ".join(one_sided(system.layout)) or usual
             raise AnalysisError(
-                f"no equilibrium was found with {names} under these loads at {speed * RPM_PER_RAD_S:.6g} rpm: look for a law "
-                "that can't carry the load, such as a journal bearing at standstill"
+                f"no equilibrium was found with {names} under these loads at {speed * RPM_PER_RAD_S:.6g} rpm: {seen}"
             )
         near[0] = found.d
         return found.d, [found.d[a:b] for a, b in pairwise(ends)]

@@ -234,6 +234,8 @@ def massless_gears(layout: Layout) -> Iterator[Problem]:
 
 # Less clearance between tip and root than this share of the module is worth a word (ISO 53 has 0.25).
 _LEAST_CLEARANCE = 0.1
+# Teeth that jam by less, in m along the normal, do so by the digits of a drawing: positions are rounded to a micrometre.
+_ROUNDED = 1e-6
 
 
 def mesh_findings(mesh: MeshLayout) -> Iterator[str]:
@@ -263,6 +265,6 @@ def mesh_findings(mesh: MeshLayout) -> Iterator[str]:
             yield f"between the tip of '{mate}' and the root of '{own}' are only {1e3 * clearance:.3g} mm"
     if pair.total_contact_ratio < 1.0:
         yield f"total contact ratio {pair.total_contact_ratio:.3g} is below 1, the teeth lose contact"
-    if mesh.backlash.least < -1e-9:
+    if mesh.backlash.least < -_ROUNDED:
         jam = f"{-1e6 * mesh.backlash.least:.3g} um along the flank normal"
         yield f"the axes are too close: the teeth would jam by {jam}; give allowances, or move the axes apart"

@@ -6,12 +6,10 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Any, get_origin
 
 from rotorgear.errors import Problem
-from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.problems import address as address_of
 from rotorgear.model.parts.problems import shown, told
 from rotorgear.model.parts.shaft import LIBRARY
 from rotorgear.model.parts.tables import Tables
-from rotorgear.note import Note
 from rotorgear.quantity import nearest
 
 PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
@@ -186,12 +184,3 @@ def unknown_materials(model: Tables, broken: Broken) -> Iterator[Problem]:
     for address, part in named:
         if part.material is not None and part.material not in valid and ("materials", "") not in broken:
             yield unknown(f"{address}.material", part.material, valid, "a material")
-
-
-def estimated(layout: Layout) -> Iterator[Note]:
-    """Yield a fact on every bearing whose rolling elements follow from its boundary dimensions."""
-    for name, bearing in layout.model.bearings.items():
-        for kind, geometry in bearing.geometries.items():
-            what, why, value = geometry.estimate
-            if what:
-                yield Note(f"bearings.{name}.{kind}", what, why, value)

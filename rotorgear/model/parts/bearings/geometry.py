@@ -83,6 +83,11 @@ class BearingGeometry(Part):
         return None
 
     @property
+    def takes(self) -> tuple[str, ...]:
+        """Pushes of the shaft along its axis that it takes: of "+z" and "-z"; none of a bearing that holds across only."""
+        return ()
+
+    @property
     def estimate(self) -> tuple[str, str, str]:
         """What of it is an estimate, why, and the size; texts that are empty where nothing is."""
         return "", "", ""

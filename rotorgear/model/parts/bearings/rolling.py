@@ -58,7 +58,8 @@ class RollingElements(BearingGeometry):
     )
     preload_displacement: NonNegativeLength = Field(
         0.0,
-        description="how far an angular contact bearing is pressed together along its contact angle at assembly",
+        description="axial displacement by which the rings of an angular contact bearing are pressed together at assembly; two "
+        "bearings that are set against each other by 20 um have 10 um each",
     )
     preload_force: Force = Field(0.0, description="axial force that presses it together, in place of that displacement")
     contact_angle: Angle = Field(
@@ -115,6 +116,14 @@ class RollingElements(BearingGeometry):
     def play(self) -> float | None:
         """The clearance, where it has one."""
         return self.clearance or None
+
+    @property
+    def takes(self) -> tuple[str, ...]:
+        """That of its side where its rows press to one; both of a ball bearing without an angle, whose balls find theirs."""
+        if self.kind == "roller":
+            return ()
+        one_sided = self.contact_angle and self.kind != "four-point" and self.arrangement in ("single", "tandem")
+        return ("+z" if self.contact_angle > 0.0 else "-z",) if one_sided else ("+z", "-z")
 
     @property
     def estimate(self) -> tuple[str, str, str]:
@@ -267,7 +276,7 @@ class RollingElements(BearingGeometry):
         differs = None not in (self.bore, printed) and not math.isclose(self.bore or 0.0, printed or 0.0)
         as_printed = f"{millimetres(printed or 0.0)} as {self.designation} has it, or no designation"
         yield "bore", differs, f"{bore} beside designation = '{self.designation}'", as_printed
-        yield "", pressed, "a preload without a contact angle", "a contact_angle, along which it presses"
+        yield "", pressed, "a preload without a contact angle", "a contact_angle, at which it presses"
         both = self.preload_displacement and self.preload_force
         yield "", both, "preload_displacement and preload_force", "one of the two"
 

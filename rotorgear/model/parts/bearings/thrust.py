@@ -48,6 +48,11 @@ class ThrustGeometry(Oil):
     around: Whole = Field(40, description="cells of the grid along a pad")
     across: Whole = Field(10, description="cells of the grid from the inner to the outer diameter")
 
+    @property
+    def takes(self) -> tuple[str, ...]:
+        """The pushes that it acts against."""
+        return ("+z", "-z") if self.acts == "both" else (self.acts,)
+
     def law(self, ratio: float, sense: float, linear: Sequence[float]) -> ThrustFilm:
         """Its films."""
         from rotorgear.forces.thrust_film import ThrustFilm

@@ -17,6 +17,20 @@ from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
 PULL = '["1 kN", "0 N", "0 N"]'
 FILM = 'journal = {{ diameter = "60 mm", length = "30 mm", clearance = "60 um", viscosity = "20 mPa s", around = {}, along = 4 }}'
 
+# A spindle on two tapered bearings, both of which take a push towards +z.
+SET_AGAINST = """
+operation = { input_shaft = "spindle", speed = "900 rpm" }
+[shafts.spindle]
+sections = [{ length = "140 mm", outer_diameter = "50 mm" }]
+[bearings]
+left = { shaft = "spindle", at = "start", rolling = { designation = "32010", preload_displacement = "7 um" } }
+right = { shaft = "spindle", at = "end", rolling = { designation = "32010", preload_displacement = "7 um" } }
+[loads.pull]
+shaft = "spindle"
+at = "40 mm"
+force = ["600 N", "0 N", "0 N"]
+"""
+
 
 def journal_rotor(around: int = 60) -> rg.Model:
     """A rigid disk on one film, pulled across."""
@@ -42,6 +56,43 @@ def test_the_loads_of_the_rolling_elements_add_up_to_that_of_the_bearing(rolling
     assert sheet.largest_element_load == loads.max()
     assert all((row.inner_pressure > row.outer_pressure > 0.0) is (row.load > 0.0) for row in sheet.rolling_elements)
     assert sheet.consistency < 1e-9
+
+
+@pytest.mark.parametrize(("rolling", "limit"), [(BALLS, 4.2e9), (ROLLERS, 4.0e9)])
+def test_the_static_safety_brings_the_most_pressed_element_to_its_limit(rolling: str, limit: float) -> None:
+    # Without clearance loads of elements grow as the load of the bearing.
+    model = rotor(rolling, PULL)
+    safety = rg.bearing(model, stability=False).static_safety
+    assert safety is not None
+    more = rg.bearing(model.with_("loads.pull.force", [f"{safety} kN", "0 N", "0 N"]), stability=False)
+    pressed = max(row.inner_pressure for row in more.rolling_elements)
+    assert pressed == pytest.approx(limit, rel=1e-6)
+    assert more.static_safety == pytest.approx(1.0, rel=1e-6)
+
+
+def test_the_load_of_a_sheet_is_that_of_statics_where_teeth_feel_the_tilt() -> None:
+    model = rg.load(ROOT / "models" / "helical_pair.toml")
+    ball = {"shaft": "input", "at": "-47 mm", "rolling": {"designation": "6310"}}
+    model = model.with_("bearings.input_left", ball).with_("meshes.stage.tilt", True)
+    sheet = rg.bearing(model, "input_left", stability=False)
+    force = rg.static(model).bearing_force["input_left"]
+    assert sheet.bearing_load[:3] == pytest.approx(-force[:3], rel=1e-6)
+    alone = rg.static(model.with_("meshes.stage.tilt", False)).bearing_force["input_left"]
+    assert np.abs(alone - force).max() > 1e-3 * np.abs(force).max()
+
+
+def test_bearings_that_take_one_push_only_are_named_with_the_angle_that_turns_one_round() -> None:
+    model = rg.loads(SET_AGAINST)
+    with pytest.raises(AnalysisError, match=r"nothing takes its push towards -z; .*contact_angle = '-[\d.]+ deg'$"):
+        rg.static(model)
+    assert any("nothing takes its push towards -z" in text for text in rg.check(model).warnings)
+    angle = model.bearings["right"].rolling.contact_angle
+    for held in (
+        model.with_("bearings.right.rolling.contact_angle", -angle),
+        model.with_("supports.thrust", {"shaft": "spindle", "at": "start", "stiffness": {"axial": "1e7 N/m"}}),
+        model.with_("bearings.middle", {"shaft": "spindle", "at": "70 mm", "rolling": {"designation": "6010"}}),
+    ):
+        assert not any("push towards" in text for text in rg.check(held).warnings)
 
 
 @pytest.mark.parametrize(
