@@ -58,7 +58,7 @@ def test_a_file_that_is_not_there_is_named_with_its_nearest_neighbour(monkeypatc
 
 
 def test_a_folder_and_a_name_that_no_file_can_have_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="can't be read: Is a directory"):
+    with pytest.raises(ModelError, match="can't be read: it is a folder"):
         load(tmp_path)
     with pytest.raises(ModelError, match="can't be read: embedded null byte"):
         load("a\0b.toml")
