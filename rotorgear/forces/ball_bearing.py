@@ -154,6 +154,12 @@ class BallBearing(RollingElements):
         return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
 
     @property
+    def extents(self) -> np.ndarray:
+        """A along x, y, z, and what moves a ball as far by tilting: a deflection is the difference of two lengths A."""
+        tilt = 2.0 * self.distance / self.pitch_diameter
+        return np.array([self.distance] * 3 + [tilt] * 2)
+
+    @property
     def contact_constant(self) -> float:
         """c_p in N/m^1.5, as given or by Hertz."""
         return self.contact or point_contact(self._ellipses, self._modulus)

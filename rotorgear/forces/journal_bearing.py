@@ -107,6 +107,16 @@ class JournalBearing(ForceLaw):
         """Speed of the journal."""
         return 1
 
+    def beyond(self, d: Any, speed: float) -> str:
+        """A journal that turns deeper in its shell than its clearance: no film is left, and the wall stands for nothing real."""
+        eccentricity = float(np.hypot(*d)) / self.clearance
+        if not speed or eccentricity <= 1.0:
+            return ""
+        return (
+            f"the journal turns {eccentricity:.3g} clearances from the middle, pressed into its shell, where no film carries it; "
+            "check load, viscosity, clearance and speed"
+        )
+
     @classmethod
     def examples(cls) -> tuple[JournalBearing, ...]:
         """A bearing of a fan."""

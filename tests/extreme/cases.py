@@ -3,13 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import mpmath as mp
 import numpy as np
 
 import rotorgear as rg
+from tests.extreme.bearing_errors import (
+    ANGULAR,
+    BALLS,
+    FILM,
+    LOBES,
+    PADS,
+    ROLLERS,
+    axial_angle,
+    loaded,
+    moved,
+    ocvirk,
+    power_law,
+    scaled,
+    sheet_stiffness,
+    thick_and_slow,
+)
+from tests.extreme.body_errors import (
+    block_modes,
+    rod,
+    scaled_block,
+    scatter_of_spring,
+    state_space_of_mass,
+    stiff_bar,
+    updated_spring,
+)
 from tests.extreme.damped_errors import (
     backwards,
     cross_coupled,
@@ -32,6 +57,7 @@ from tests.extreme.forced_errors import (
     unbalance_response,
 )
 from tests.extreme.models import points, rotor_model
+from tests.extreme.orbit_errors import orbit_of_pair, orbit_of_rattle, sweep_of_rattle, transient_of_rattle
 from tests.extreme.references import DIGITS, Body, Rotor, Segment, Spring
 from tests.extreme.rotors import even, on
 from tests.extreme.speed_errors import (
@@ -42,7 +68,7 @@ from tests.extreme.speed_errors import (
     tilting,
     whirls_of_tilting,
 )
-from tests.extreme.time_errors import stepped_torque, sweep_of_pair, whirl_in_time
+from tests.extreme.time_errors import linear_pair, resonance, stepped_torque, sweep_of_pair, whirl_in_time
 from tests.extreme.tooth_errors import broken_contact, contact_ratio, iso_stiffness, pair_of, undercut
 from tests.extreme.undamped_errors import (
     bar,
@@ -63,6 +89,7 @@ from tests.extreme.undamped_errors import (
     zero_gap,
     zero_inertia_gear,
 )
+from tests.unit.analysis.impact_oscillator import ImpactOscillator
 
 
 @dataclass(frozen=True)
@@ -365,7 +392,89 @@ CASES += [
 ]
 
 
+_STRIKES = ImpactOscillator(W=0.7, ripple=1.4, z=0.05)
+
+
+CASES += [
+    Case(
+        "sweep: a damping ratio of 1e-6 beside the resonance",
+        "closed form",
+        1e-4,
+        lambda: sweep_of_pair(1.6e8, 1e-6, 0.98),
+    ),
+    Case("sweep: flanks that strike 1 nm apart", "closed form", 1e-3, lambda: sweep_of_rattle(_tight(1e-9))),
+    Case("sweep: flanks that strike on 1e13 N/m", "closed form", 1e-2, lambda: sweep_of_rattle(_stiff(1e13))),
+    Case("transient: flanks that strike 1 nm apart", "closed form", 3e-3, lambda: transient_of_rattle(_tight(1e-9))),
+    Case("transient: flanks that strike on 1e13 N/m", "closed form", 1e-2, lambda: transient_of_rattle(_stiff(1e13))),
+    Case("orbits: a damping ratio of 1e-6 at resonance", "closed form", 1e-4, lambda: orbit_of_pair(1.6e8, 1e-6, 1.0)),
+    Case(
+        "orbits: the same by harmonic balance",
+        "closed form",
+        1e-4,
+        lambda: orbit_of_pair(1.6e8, 1e-6, 1.0, "harmonic balance"),
+    ),
+    Case("orbits: a stiff mesh of 1e13 N/m", "closed form", 1e-7, lambda: orbit_of_pair(1e13, 0.03, 0.5)),
+    Case("orbits: a mesh of 1e-3 N/m", "closed form", 1e-4, lambda: orbit_of_pair(1e-3, 0.03, 0.5)),
+    Case("orbits: 100 times above the resonance", "closed form", 1e-7, lambda: orbit_of_pair(1.6e8, 0.9, 100.0)),
+    Case("orbits: a hundredth of the resonance", "closed form", 1e-6, lambda: orbit_of_pair(1.6e8, 0.03, 0.01)),
+    Case("orbits: flanks that strike 1 nm apart", "closed form", 1e-6, lambda: orbit_of_rattle(_tight(1e-9))),
+    Case("orbits: flanks that strike on 1e13 N/m", "closed form", 1e-6, lambda: orbit_of_rattle(_stiff(1e13))),
+    Case("static: rollers under 1e-6 N", "closed form", 1e-6, lambda: power_law(ROLLERS, 1e-6, 0.9)),
+    Case("static: rollers under 1e9 N", "closed form", 1e-6, lambda: power_law(ROLLERS, 1e9, 0.9)),
+    Case("static: balls under 1e-6 N", "closed form", 1e-6, lambda: power_law(BALLS, 1e-6, 2.0 / 3.0)),
+    Case("static: angular contact balls under a push of 1e-6 N", "closed form", 1e-6, lambda: axial_angle(1e-6)),
+    Case("static: the same under 1 MN", "closed form", 1e-6, lambda: axial_angle(1e6)),
+    Case("static: a ball bearing in um", "similarity", 1e-6, lambda: scaled(ANGULAR, 1e-6)),
+    Case("static: a ball bearing in km", "similarity", 1e-6, lambda: scaled(ANGULAR, 1e3)),
+    Case("static: a short film that is hardly loaded", "closed form", 1e-6, lambda: ocvirk(1e-3, 1e3)),
+    Case("static: a short film of a twelfth of its clearance", "closed form", 1e-6, lambda: ocvirk(5e4, 1e3)),
+    Case("static: a journal film of 60 um", "similarity", 1e-6, lambda: scaled(FILM, 1e-3)),
+    Case("static: oil of 2e7 Pa s that creeps", "similarity", 1e-6, lambda: thick_and_slow(FILM, 1e9)),
+    Case("static: three lobes in pitch that creeps", "similarity", 1e-6, lambda: thick_and_slow(LOBES, 1e9)),
+    Case("static: tilting pads of 60 um", "similarity", 1e-6, lambda: scaled(PADS, 1e-3)),
+    Case("bearing: stiffness of rollers under 1e-6 N", "closed form", 1e-5, lambda: sheet_stiffness(1e-6)),
+    Case("bearing: stiffness of rollers under 1 GN", "closed form", 1e-5, lambda: sheet_stiffness(1e9)),
+    Case("casing: a block of 10 mm", "similarity", 1e-9, lambda: scaled_block(0.05)),
+    Case("casing: a block of 20 m", "similarity", 1e-9, lambda: scaled_block(1e2)),
+    Case("casing: rubber of 1 Pa, 1e9 times as dense", "similarity", 1e-9, lambda: scaled_block(1.0, 5e-12, 1e9)),
+    Case("casing: axial motion without lateral contraction", "closed form", 1e-4, rod),
+    Case("casing: the same over its estimate", "estimate", 3.0, lambda: rod(estimated=True)),
+    Case("a casing 1e9 times as stiff as steel: the ground", "closed form", 1e-7, lambda: stiff_bar(1e9)),
+    Case(
+        "state space: Q of 4e7 on 1e-3 N/m",
+        "closed form",
+        1e-6,
+        lambda: state_space_of_mass(1e-3, 1e-9, [1e-3, 0.5, 1.0, 1.9]),
+    ),
+    Case(
+        "state space: a damping ratio of 3.5e5",
+        "closed form",
+        1e-9,
+        lambda: state_space_of_mass(1e6, 1e9, [1e-3, 0.5, 1.0, 1.9]),
+    ),
+    Case("scatter: a spread of 1e-9", "closed form", 1e-4, lambda: scatter_of_spring(1e8, 1e-9)),
+    Case("scatter: a spring of 1e-3 N/m", "closed form", 1e-6, lambda: scatter_of_spring(1e-3, 0.01)),
+    Case("update: a spring of 1e-3 N/m by its frequency", "closed form", 1e-6, lambda: updated_spring(1e-3)),
+    Case("update: a spring of 1e13 N/m by its frequency", "closed form", 1e-6, lambda: updated_spring(1e13)),
+]
+
+
+def _tight(half_backlash: float) -> ImpactOscillator:
+    """Flanks so near each other that the pair never feels free, under a load as much smaller."""
+    return replace(_STRIKES, half_backlash=half_backlash)
+
+
+def _stiff(stiffness: float) -> ImpactOscillator:
+    """The same pair on a stiffer mesh, its gap as much less deep."""
+    return replace(_STRIKES, stiffness=stiffness, half_backlash=_STRIKES.half_backlash * 9e7 / stiffness)
+
+
 FLAGGED: list[Flagged] = [
+    Flagged(
+        "transient: a damping ratio of 1e-6, too short to settle",
+        "not settled",
+        lambda: rg.transient(linear_pair(1.6e8, 1e-6), speed=float(resonance(linear_pair(1.6e8, 1e-6), 1.6e8)) / 41.0),
+    ),
     Flagged(
         "frf: no damping at resonance",
         "nothing damps the model",
@@ -419,6 +528,17 @@ REFUSED += [
     Refused(
         "transient: at standstill, for no time", "nothing turns", lambda: rg.transient(pair_of((24, 36)), speed=0.0)
     ),
+    Refused("static: a film of 60 m at 955 rpm", "turbulent", lambda: scaled(FILM, 1e3)),
+    Refused("static: tilting pads in air at 1e9 rpm", "turbulent", lambda: thick_and_slow(PADS, 1e-6)),
+    Refused("static: a short film under 1e8 N", "pressed into its shell", lambda: ocvirk(1e8, 1e3)),
+    Refused("static: a film at standstill", "too thin", lambda: moved(loaded(FILM, (0.0, -800.0, 0.0), 0.0))),
+    Refused("casing: a block of 200 nm", "Files of meshes carry no unit", lambda: block_modes(1e-6)),
+    Refused("casing: a block of 200 m in a mesh of metres", "Files of meshes carry no unit", lambda: block_modes(1e3)),
+    Refused(
+        "orbits: at standstill", "standstill", lambda: rg.orbits(_STRIKES.model(), {"operation.speed": [0.0, 1.0]})
+    ),
+    Refused("state space: no range of frequencies", "must be positive", lambda: state_space_of_mass(1e6, 1.0, [0.0])),
+    Refused("scatter: a spread below nothing", "not negative", lambda: scatter_of_spring(1e8, -0.1)),
     Refused("sweep: over nothing", "at least one value", lambda: rg.sweep(pair_of((24, 36)), {"operation.speed": []})),
 ]
 

@@ -32,8 +32,10 @@ def test_a_doubtful_case_is_told(case):
 
 def test_there_are_cases_of_every_analysis():
     names = [case.name for case in (*CASES, *REFUSED, *FLAGGED)]
-    assert len(set(names)) == len(names) >= 80
-    for analysis in ("static", "frf", "response", "campbell", "critical", "gear", "mesh", "transient", "sweep"):
+    assert len(set(names)) == len(names) >= 150
+    motions = ("transient", "sweep", "orbits")
+    linear = ("static", "frf", "response", "campbell", "critical", "state space")
+    for analysis in (*linear, *motions, "gear", "mesh", "bearing", "casing", "scatter", "update"):
         assert any(name.startswith(f"{analysis}: ") for name in names), analysis
 
 
