@@ -133,6 +133,8 @@ def parameter(name: str, option: Option, panel: str, positional: bool = False) -
     }
     if option.kind in ("int", "float"):
         settings["parser"] = _reader(option)
+        if option.least is not None:
+            settings["help"] = f"{option.help}  [x>={option.least}]"
     if positional:
         info: Any = typer.Argument(
             **settings, metavar=option.shown or ("MODEL" if option.help.startswith("Model") else None)

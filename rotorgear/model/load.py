@@ -107,7 +107,7 @@ def _refused(path: Path, text: str, hint: str = "") -> ModelError:
 def _syntax_problem(source: str, message: str, text: str) -> Problem:
     """What the TOML reader says, with the line that it stumbled over and the likeliest remedy."""
     found = re.search(r"\(at line ([0-9]+), column [0-9]+\)", message)
-    line = text.splitlines()[int(found[1]) - 1].strip() if found else ""
+    line = text.split("\n")[int(found[1]) - 1][:LONGEST_TEXT].strip() if found else ""
     quoted = f": {shown(line)}" if line else ""
     if re.search("overwrite|twice|mutate|redefine|immutable|extend", message):
         hint = "a table or a key stands once only"

@@ -96,10 +96,6 @@ def report(
     check_grade(grade)
     check_modal_damping(modal_damping)
     check_request(fmax=fmax)
-    # All analyses, which take a second to load.
-    from rotorgear.page.contents import computed, error_of
-    from rotorgear.page.sections import RESULTS, sections
-
     source = "" if isinstance(model, Model) else Path(model).name
     built = model if isinstance(model, Model) else load(model)
     lines = read_rig_lines(rig) if isinstance(rig, str | Path) else tuple(rig)
@@ -110,6 +106,10 @@ def report(
             expected = "a convergence study was expected (rotorgear accuracy --save)"
             raise AnalysisError(f"{path}: {expected}, this is a {stored.kind} result")
         studies.append(stored)
+    # All analyses, which take a second to load.
+    from rotorgear.page.contents import computed, error_of
+    from rotorgear.page.sections import RESULTS, sections
+
     start = cpu_seconds()
     found = computed(built, lines, grade, {"modal_damping": modal_damping, "fmax": fmax}, progress)
     found.seconds_of_all = cpu_seconds() - start

@@ -35,7 +35,7 @@ def new_figure(size: tuple[float, float], title: str = "") -> Any:
 
     figure = Figure(figsize=size, layout="constrained")
     if title:
-        figure.suptitle(title, fontsize=11)
+        figure.suptitle(title, fontsize=11, parse_math=False)  # of a model: a dollar is a dollar
     return figure
 
 
@@ -65,7 +65,7 @@ def name_axes(axis: Any, x: str = "", y: str = "", *, title: str = "", grid: boo
     if y:
         axis.set_ylabel(y)
     if title:
-        axis.set_title(title, fontsize=10)
+        axis.set_title(title, fontsize=10, parse_math=False)
     if grid:
         axis.grid(True, alpha=0.25)
     if legend:
@@ -90,7 +90,7 @@ def legend_below(axis: Any, columns: int, below: float = 0.12, **look: Any) -> N
 
 def beside(axis: Any, text: str, at: tuple[float, float], offset: tuple[float, float], **look: Any) -> None:
     """Write small words beside a point, so many points of type away from it."""
-    axis.annotate(text, at, xytext=offset, textcoords="offset points", **{"fontsize": 7} | look)
+    axis.annotate(text, at, xytext=offset, textcoords="offset points", parse_math=False, **{"fontsize": 7} | look)
 
 
 def plain_axis(axis: Any) -> None:

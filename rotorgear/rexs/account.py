@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from rotorgear.errors import Problem
+from rotorgear.files.numbers import number_of
 from rotorgear.results.rexs_import import Assumption
 from rotorgear.rexs.document import FACTORS, LARGEST, Component, factor_of
 
@@ -100,6 +101,6 @@ def _as_number(raw: object) -> float | None:
     if isinstance(raw, bool):
         return None
     try:
-        return float(raw)  # type: ignore[arg-type]
+        return number_of(raw) if isinstance(raw, str) else float(raw)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         return None

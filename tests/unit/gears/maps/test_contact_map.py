@@ -40,3 +40,10 @@ def test_stiffness_is_the_slope_of_the_force(hertz: ContactMap) -> None:
 
 def test_it_repeats_after_its_periods(hertz: ContactMap) -> None:
     assert hertz.approach_at(5e3, 0.4) == pytest.approx(hertz.approach_at(5e3, 7.4), rel=1e-12)
+
+
+def test_approaches_under_the_loads_of_the_map_are_its_rows_between_positions(hertz: ContactMap) -> None:
+    u = np.linspace(-0.7, 1.9, 23)
+    found = hertz.at_loads(u)
+    assert found == pytest.approx(hertz.approach_at(hertz.load, u[:, None]), rel=1e-14)
+    assert hertz.at_loads(hertz.position) == pytest.approx(hertz.approach, rel=1e-15)
