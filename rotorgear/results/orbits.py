@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.quantity import counted
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Line, Table, grid, written
+from rotorgear.results.table import Block, Line, Table, error_words, grid, written
 
 # Points of a branch that are listed; all are in the files.
 _SHOWN = 12
@@ -146,6 +146,15 @@ class OrbitsResult(ModelResult, kind="orbits"):
         default_factory=lambda: np.zeros((0, 0, 0)),
     )
 
+    place_error: np.ndarray = of(
+        "estimated error of the displacement at a place, peak to peak",
+        "",
+        "point",
+        "place",
+        note="; `null` beside a fold",
+        default_factory=partial(np.zeros, (0, 0)),
+    )
+
     @derived("real part of the Floquet multipliers", "", "point", "multiplier", note=", largest first")
     def multiplier_real(self) -> np.ndarray:
         """Of each point."""
@@ -203,7 +212,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
             yield from ("", "Transients started on orbits", self._started())
         shown = f"p-p: largest peak to peak of {', '.join(self.shown)}"
         if self.contact:
-            shown = "p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact"
+            shown = "p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact; error: relative"
         yield from ("", f"|mu|: largest Floquet multiplier; {shown}", f"{self.dofs} dofs; {self.method}")
         yield f"{self.cpu_per_point:.3g} CPU s a point, {self.cost} in all"
         if self.error_estimate == self.error_estimate:
@@ -235,14 +244,24 @@ class OrbitsResult(ModelResult, kind="orbits"):
             worst = int(np.argmax(sizes[i]))
             size = float(np.nanmax(np.abs(self.multipliers[i])))
             cells = [self._value(float(self.value[i])), written(bool(self.stable[i])), f"{size:.4f}"]
-            cells.append(f"{1e6 * sizes[i, worst]:.4g}")
+            cells += [f"{1e6 * sizes[i, worst]:.4g}", self._error(i, worst, "approach", sizes[i, worst])]
             if self.contact:
-                cells += [f"{self.mean_force[i, worst]:.4g}", f"{self.largest_force[i, worst]:.4g}"]
-                cells.append(f"{100.0 * self.apart[i, worst]:.1f}")
+                mean, largest, loss = (float(x[i, worst]) for x in (self.mean_force, self.largest_force, self.apart))
+                cells += [f"{mean:.4g}", self._error(i, worst, "mean force", mean)]
+                cells += [f"{largest:.4g}", self._error(i, worst, "largest force", largest)]
+                cells += [f"{100.0 * loss:.1f}", self._error(i, worst, "contact loss", 1.0)]
             rows.append(cells)
-        forces = ("F mean\nN", "F max\nN", "loss\n%") if self.contact else ()
-        heads = (self._head(), "stable", "|mu|", f"p-p\nu{self.shown_unit}", *forces)
-        yield grid(rows, *heads, left=0, caption=f"Branch {branch.name}")
+        forces = ("F mean\nN", "error", "F max\nN", "error", "loss\n%", "error") if self.contact else ()
+        heads = (self._head(), "stable", "|mu|", f"p-p\nu{self.shown_unit}", "error", *forces)
+        yield grid(rows, *heads, left=0, caption=f"Branch {branch.name}", tight=True)
+
+    def _error(self, point: int, number: int, what: str, size: float) -> str:
+        """Estimated error of a statistic of the contact of that number, or of the place shown, relative to a size, in words."""
+        errors = self.statistics_error if self.contact else self.place_error[:, self._shown_places]
+        if not errors.size or not size:
+            return "-"
+        at = errors[point, number]
+        return written(float(at[self.statistic.index(what)] if self.contact else at) / abs(size), error_words)
 
     def _curve(self, curve: SpecialCurve) -> Iterator[Block]:
         name = self.branches[curve.branch].name

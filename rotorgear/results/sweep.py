@@ -11,7 +11,7 @@ from rotorgear.quantity import counted
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of, rows
-from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, grid, written
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, error_words, grid, written
 from rotorgear.results.transient import ContactRow
 
 # Lines of a spectrum in a row, with the columns before them.
@@ -145,7 +145,7 @@ class SweepResult(ModelResult, kind="sweep"):
         "run",
         "contact",
         "statistic",
-        note=", each in its unit, by a run with half or twice the steps",
+        note=", each in its unit: by a run with half or twice the steps; where nothing repeats, by how much runs as long differ",
         default_factory=lambda: np.zeros((0, 0, 0, 0)),
     )
 
@@ -218,6 +218,12 @@ class SweepResult(ModelResult, kind="sweep"):
         yield self._points(runs[:_MOST])
         if len(runs) > _MOST:
             yield f"... {counted(len(runs) - _MOST, 'more lines')}: see --json, --save and --plot"
+        if np.any(np.isfinite(self.statistics_error)):
+            yield from (
+                "",
+                "Estimated errors, relative; of contact loss and coast flank in %",
+                self._errors(runs[:_MOST]),
+            )
         if self.portraits is not None:
             yield from self._strongest_lines(self.portraits)
         columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: each the largest of all contacts"
@@ -277,6 +283,29 @@ class SweepResult(ModelResult, kind="sweep"):
             rows.append(cells)
         heads = [*self._heads(), "response", *(["LE", "+-"] if exponents else []), *(head for head, *_ in worst)]
         return grid(rows, *heads, left=0, caption="Points", tight=True)
+
+    def _errors(self, runs: list[tuple[int, int]]) -> Table:
+        """Errors of what the table of the points shows, relative to it."""
+        shown = (
+            ("p-p", "penetration", self.peak_to_peak),
+            ("TE", "transmission error", self.peak_to_peak_transmission_error),
+            ("appr.", "approach", self.peak_to_peak_approach),
+            ("K_dyn", "largest force", self.largest_force),
+            ("loss", "contact loss", self.apart),
+            ("coast", "coast contact", self.back),
+        )
+        rows = []
+        for p, r in runs:
+            cells = self._cells(p, r)
+            for _, what, values in shown:
+                own = values[p, r]
+                worst = int(np.nanargmax(own)) if np.any(own == own) else 0
+                error = float(self.statistics_error[p, r, worst, self.statistic.index(what)])
+                size = 0.01 if values is self.apart or values is self.back else abs(float(own[worst]))
+                cells.append(written(error / size if size else error, error_words))
+            rows.append(cells)
+        heads = [*self._heads(), "response", *(head for head, *_ in shown)]
+        return grid(rows, *heads, left=0, caption="Estimated errors of the points", tight=True)
 
     def _strongest_lines(self, kept: Portraits) -> Iterator[Block]:
         """The strongest lines in the spectra of the points that keep their trajectory."""

@@ -12,7 +12,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Row, Written, derived, of, part_of, rows
-from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, grid, short, table_of
+from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, error_words, grid, short, table_of, written
 
 
 class ContactRow(Row):
@@ -40,8 +40,29 @@ _OF_CONTACTS = {
 }
 
 
-# Channels that are kept, saved and drawn, but not listed.
-_UNSHOWN = "gears."
+def is_listed(channel: str) -> bool:
+    """Whether a table lists a channel; the others are only kept, saved and drawn."""
+    return not channel.startswith("gears.") and not (channel.startswith("bearings.") and " displacement " in channel)
+
+
+def is_shown(statistic: str) -> bool:
+    """Whether a table shows a statistic, such as "rms force pair" or "mean bearings.front force x".
+
+    None shows the smallest force of a contact: where a damper lets go it jumps, and is known to first order only.
+    """
+    return not statistic.startswith("smallest force ") and is_listed(statistic.partition(" ")[2])
+
+
+# Statistics of a contact that its table shows, and their heads in the table of errors.
+_SHOWN = {
+    "mean force": "mean",
+    "rms force": "rms",
+    "largest force": "largest",
+    "transmission error": "TE",
+    "approach": "appr.",
+    "contact loss": "loss",
+    "coast contact": "coast",
+}
 # Below this share of the largest component of its vector a component is what rounding and iterations leave of a zero.
 _ROUNDING = 1e-9
 
@@ -213,8 +234,9 @@ class TransientResult(ModelResult, kind="transient"):
         "sizes that the errors of the statistics are taken relative to", "", "quantity", json=None
     )
     error_estimate: float = of(
-        "largest relative error of the statistics", note=", each relative to the size of its kind", form=".1e"
+        "largest relative error of the statistics that are shown", note=", each relative to its own size", form=".1e"
     )
+    error_source: str = of("where the errors of the statistics are from", note=", in words")
     energy: EnergyLedger = of("energies", record=EnergyLedger)
     reason: str = of("why the method was chosen")
     start: str = of(
@@ -273,8 +295,11 @@ class TransientResult(ModelResult, kind="transient"):
                 f"ended at {self.time[-1]:.4g} s, before the {self.settle:.4g} s that are discarded: nothing counts"
             )
         yield Line(f"{self.model.title or 'Transient'}: {self.model.reference_shaft} at {turns} rpm, {counted}")
+        known = self.error_estimate == self.error_estimate
         if self.contact:
             yield from (table_of(self, "contacts", tight=True), "")
+            if known:
+                yield from ("Estimated errors, relative", self._errors(), "")
         channels = self._channels()
         if channels.rows:
             yield from (channels, "")
@@ -282,27 +307,48 @@ class TransientResult(ModelResult, kind="transient"):
             yield f"TE: {TRANSMISSION_WORDS}; both peak to peak"
         cost = f"{self.dofs} dofs, {self.steps} steps of {self.step:.4g} s, {self.cost}"
         yield f"{cost}; {self.method} ({self.reason})"
-        if self.error_estimate == self.error_estimate:
-            more_modes = ", and one of more modes" if "modes with" in self.method else ""
-            yield f"error: statistics within {self.error_estimate:.1e}, from a run of twice the step{more_modes}"
+        if known:
+            within = f"error: statistics within {self.error_estimate:.1e}, each of its own size"
+            yield f"{within}; {self.seconds.get('error estimate', 0.0):.2f} CPU s, from {self.error_source}"
         yield f"energy error: {self.energy.share:.1e} of the largest term"
         yield from (*self.remarks(), "")
 
+    def error_of(self, statistic: str) -> float:
+        """Estimated error of a statistic such as "rms force pair", relative to its own size; of shares absolute.
+
+        Raises:
+            KeyError: no such statistic.
+        """
+        if statistic not in self.quantity:
+            raise KeyError(statistic)
+        number = self.quantity.index(statistic)
+        size = float(self.quantity_scale[number])
+        error = float(self.quantity_error[number])
+        return error / size if size > 0.0 else error
+
+    def _errors(self) -> Table:
+        """Errors of what the table of the contacts shows, relative to it."""
+        rows = [
+            [name, *(written(self.error_of(f"{what} {name}"), error_words) for what in _SHOWN)] for name in self.contact
+        ]
+        return grid(rows, "contact", *_SHOWN.values(), caption="Estimated errors of the contacts, relative")
+
     def _channels(self) -> Table:
-        """Statistics of the channels, but of those that are only kept."""
-        shown = [row for row in self.channels if not row.name.startswith(_UNSHOWN)]
+        """Statistics of the channels, but of those that are only kept, and the largest of their relative errors."""
+        shown = [row for row in self.channels if not row.name.startswith("gears.")]
         scale: dict[str, float] = {}
         for row in shown:
             vector = row.name.rpartition(" ")[0] or row.name
             sizes = [abs(value) for value in (row.largest, row.smallest) if math.isfinite(value)]
             scale[vector] = max([scale.get(vector, 0.0), *sizes])
+        heads = ("channel", "mean", "rms", "largest", "smallest", "error", "unit")
         rows = []
         for row in shown:
-            if row.name.startswith("bearings.") and " displacement " in row.name:
+            if not is_listed(row.name):
                 continue
             least = _ROUNDING * scale[row.name.rpartition(" ")[0] or row.name]
             values = (row.mean, row.rms, row.largest, row.smallest)
             cells = ("0" if abs(value) < least else short(value) for value in values)
-            rows.append((row.name.partition(".")[2], *cells, row.unit))
-        heads = ("channel", "mean", "rms", "largest", "smallest", "unit")
+            errors = [self.error_of(f"{what} {row.name}") for what in heads[1:5]]
+            rows.append((row.name.partition(".")[2], *cells, written(max(errors), error_words), row.unit))
         return grid(rows, *heads, last=True, caption="Channels in the time that counts")

@@ -333,12 +333,14 @@ def gathered(branches: list[Branch], outputs: Outputs, family: SystemFamily, har
             plant = family.plant(node.p)
             cycle = orbits.cycle(node.y, node.p)
             found = statistics_of(cycle, plant, outputs)
-            better = refined(orbits, finer, node) if outputs.contact else None
-            error = np.full(found.values.shape, np.nan)
-            if better is not None:
-                exact = statistics_of(finer.cycle(better, node.p), plant, outputs)
-                error = compared(found.values, exact.values, found.scales, 1.0, _LUCK)
             approach, moved = outputs.extremes(cycle)
+            better = refined(orbits, finer, node)
+            error = np.full(found.values.shape, np.nan)
+            place_error = np.full(len(moved), np.nan)
+            if better is not None:
+                fine = finer.cycle(better, node.p)
+                error = compared(found.values, statistics_of(fine, plant, outputs).values, found.scales, 1.0, _LUCK)
+                place_error = np.abs(np.ptp(moved, axis=1) - np.ptp(outputs.extremes(fine)[1], axis=1))
             # Harmonics of the base period: of a motion of k periods every k-th.
             force = cycle.force[:: branch.periods][: harmonics + 1]
             displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
@@ -361,6 +363,7 @@ def gathered(branches: list[Branch], outputs: Outputs, family: SystemFamily, har
                     "force_harmonics": force[:, outputs.contact_column],
                     "displacement_harmonics": displacement[:, outputs.contact_column],
                     "place_extremes": moved,
+                    "place_error": place_error,
                     "place_harmonics": displacement[:, outputs.place_column],
                 }
             )

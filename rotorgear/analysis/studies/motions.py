@@ -26,7 +26,7 @@ from rotorgear.progress import Progress, part_of, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.convergence import ConvergenceStudy, SweepConvergenceStudy, SweepRung
 from rotorgear.results.sweep import SweepResult
-from rotorgear.results.transient import TransientResult
+from rotorgear.results.transient import TransientResult, is_shown
 from rotorgear.solvers.periodic.arclength import at_value
 from rotorgear.solvers.periodic.balance import HarmonicGrid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
@@ -59,9 +59,9 @@ def transient_convergence_study(
 ) -> ConvergenceStudy:
     """Run a transient from its equilibrium over a series of steps, methods and numbers of modes, and to accuracies.
 
-    Error and estimate are those of the statistics that a transient states an error for: mean, rms, largest and smallest of every
-    contact force, loss and coast, transmission error and approach peak to peak, each relative to its own size, and rms of every
-    channel, relative to the largest of its kind. The reference is the exponential method with all modes
+    Error and estimate are those of the statistics that a transient shows: mean, rms and largest of every contact force, loss and
+    coast, transmission error and approach peak to peak, and mean, rms, largest and smallest of channels, each relative to its own
+    size. The reference is the exponential method with all modes
     and 5120 steps in a period of the fastest mesh, another method than Newmark's family; it is compared with Newmark's method at
     as many steps, and errors below their difference are not judged.
 
@@ -94,7 +94,8 @@ def transient_convergence_study(
     truth = transient(system, method="exponential", **fine)
     if truth.mesh_force.std(axis=0).max() <= 1e-9 * np.abs(truth.mesh_force).max():
         raise AnalysisError("nothing moves: give a transmission error, a stiffness variation or an unbalance")
-    known = np.isfinite(truth.quantity_scale) & (truth.quantity_scale > 0.0)
+    shown = np.array([is_shown(name) for name in truth.quantity])
+    known = shown & np.isfinite(truth.quantity_scale) & (truth.quantity_scale > 0.0)
 
     def errors(found: TransientResult) -> np.ndarray:
         difference = np.abs(found.quantity_value[known] - truth.quantity_value[known])

@@ -38,8 +38,12 @@ from rotorgear.analysis.sweep.multipliers import ARRIVED, SURE
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.solvers.batch.run_block import Orbit, Start
-from rotorgear.solvers.time.statistics import MotionStatistics, Statistics
+from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, Statistics
 
+# Statistics of a contact whose errors a sweep states: `STATISTICS`, and the penetration of the flanks, peak to peak.
+STATED = (*STATISTICS, "penetration")
+# What moves by less than this share of its size does not move.
+_STILL = 1e-6
 # Exponents per period of the fastest mesh that count as zero whatever their error.
 _ZERO = 2e-4
 _CHANGE = 0.02
@@ -198,6 +202,19 @@ def indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.nd
         "back": motion.shares[:, 2],
         "losses": sums[k.LOSSES] / total * steps,
     }
+
+
+def judged_statistics(orbit: Orbit, counted: np.ndarray) -> np.ndarray:
+    """Values of `STATED` of each contact, their sizes, and what counting by steps leaves of them, (3, c, 9)."""
+    from rotorgear.solvers.batch import kernel_parts as k
+
+    motion = motion_statistics(orbit, counted)
+    sums = orbit.sums[counted].T
+    ends = np.abs(sums[[k.X_MIN, k.X_MAX]])
+    moved = sums[k.X_MAX] - sums[k.X_MIN]
+    penetration = (moved, np.where(moved > _STILL * ends.max(axis=0), moved, ends.max(axis=0)), np.zeros(moved.size))
+    of_motion = (motion.values, motion.scales, motion.counted)
+    return np.array([np.column_stack(both) for both in zip(of_motion, penetration, strict=True)])
 
 
 def motion_statistics(orbit: Orbit, counted: np.ndarray) -> MotionStatistics:

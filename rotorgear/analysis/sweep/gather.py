@@ -11,7 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.sweep.axes import Axis, points_of
-from rotorgear.analysis.sweep.certify import bounded, indicators, judged, needed
+from rotorgear.analysis.sweep.certify import STATED, bounded, indicators, judged, needed
 from rotorgear.analysis.sweep.classify import CHAOTIC, FAILED, NOT_SETTLED, exponents, period_in
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
@@ -19,7 +19,6 @@ from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.results.sweep import Reduction, SweepResult
 from rotorgear.solvers.batch.run_block import Orbit
-from rotorgear.solvers.time.statistics import STATISTICS
 
 # Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
 _FORGOTTEN = 3.0
@@ -66,7 +65,7 @@ def gathered(
     exponent = np.full((p, r, t), np.nan)
     error = np.full((p, r, t), np.nan)
     tables: dict[str, Any] = {name: np.full((p, r, c), np.nan) for name in _TABLES}
-    statistics_error = np.full((p, r, c, len(STATISTICS)), np.nan)
+    statistics_error = np.full((p, r, c, len(STATED)), np.nan)
     motion = [FAILED] * (p * r)
     failed = list(failure)
     for (i, run), orbit in orbits.items():
@@ -134,7 +133,7 @@ def gathered(
         warnings=tuple(warnings),
         left_out=left_out_of(left_out),
         portraits=None,
-        statistic=STATISTICS,
+        statistic=STATED,
         statistics_error=statistics_error,
         reduction=reduction,
         **tables,

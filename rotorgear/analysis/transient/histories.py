@@ -154,7 +154,7 @@ def run_task(
         task: the model made ready. integrator: the method. progress: is told fraction and step.
         grid: steps and records; contact events and statistics are counted anew from the first record that counts.
         stream: keeps chunks while the run goes on. key: settings of the method, which tell another run from this one.
-        text: names a run that only serves another one: it does not go on after an interruption, and keeps no histories.
+        text: names a run that only serves another one: it does not go on after an interruption, and keeps the records that count.
         frames: number of records at the end that keep all displacements.
     """
     local = task.local.local
@@ -185,9 +185,10 @@ def run_task(
             "F": records.F,
             "values": task.channels.values(records),
         }
-        if text and records.t.size:
-            found.parts.clear()
-        elif grid.kept > 1:
+        if text and found.parts and found.state.step <= boundary:
+            # Of what does not count nobody asks.
+            del found.parts[:]
+        if grid.kept > 1:
             # Counted from the end, so that the last record is one of those that are kept.
             kept = (grid.records - np.rint(records.t / grid.spacing).astype(int)) % grid.kept == 0
             part = {name: x[kept] for name, x in part.items()}

@@ -131,7 +131,7 @@ def transient_warnings(result: TransientResult, task: Task, *, estimated: bool, 
         )
         yield Note("", "nothing damps", why)
     if estimated and result.status == "success" and not np.isfinite(result.error_estimate):
-        why = "the run with twice the step, or with more modes, did not end well"
+        why = "a run of another step, or with more modes, did not end well"
         yield Note("", "there is no error estimate", why)
     if not keeps_energy and result.contact_losses.any():
         what = f"teeth part, and '{result.method}' may gain energy where they meet again"

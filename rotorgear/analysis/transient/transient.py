@@ -8,8 +8,6 @@ give in the mean over a time T
     R^T B mean(F) = R^T f - R^T M [q'(T) - q'(0)]/T
 
 and the last term goes to zero as the run settles or T grows. So the part of the mean forces that R sees is that of statics.
-
-The step of a transient that reaches an accuracy, and what is said where none within reach does.
 """
 
 from __future__ import annotations
@@ -23,20 +21,20 @@ import scipy.sparse as sp
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.transient.errors import FALLS, Stated, fine_enough, stated
 from rotorgear.analysis.transient.histories import Histories, Stream, run_task
 from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, thinned, transient_warnings
 from rotorgear.analysis.transient.request import (
     STARTS,
     Grid,
     Task,
-    coarser,
     damped,
     grid_of,
     integrator_of,
     prepare,
     run_up,
 )
-from rotorgear.analysis.transient.statistics import Quantities, of_channels, of_meshes, quantities_of
+from rotorgear.analysis.transient.statistics import of_channels, of_meshes, quantities_of
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
@@ -46,9 +44,8 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.explicit import Explicit, check_length
-from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator
-from rotorgear.solvers.time.statistics import STATISTICS, Statistics, gain
+from rotorgear.solvers.time.statistics import STATISTICS, Statistics
 from rotorgear.system.system import System
 
 DEFAULT_ACCURACY = 0.01
@@ -103,7 +100,8 @@ def transient(
         start: equilibrium (under all forces of t = 0, unbalances and harmonic forces among them), mean (equilibrium under the
             mean forces) or rest (nothing deformed, the working flanks just touch where no error parts them). In all of them the
             shafts turn at the prescribed speed, and nothing moves beside it.
-        error_estimate: compare with a run of twice the step; False leaves it out.
+        error_estimate: compare with runs of a third of the step and of twice the step, which take 3.5 times as long as the run
+            itself; False leaves it out.
         frames: number of records at the end that keep the motion of all nodes, for an animation.
         stream: keeps chunks while the run goes on (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.
@@ -128,26 +126,27 @@ def transient(
     integrator, reason = integrator_of(task, grid, method, modes, rho_inf, beta, gamma)
     clock.lap("model")
     wanted = accuracy or DEFAULT_ACCURACY
-    left = _SECOND_ORDER
+    left = 1.0
     if isinstance(integrator, Explicit):
         check_length(task.local.local, grid.records * grid.spacing)
     elif steps is None:
         grid, left = fine_enough(task, integrator, grid, wanted, progress)
     clock.lap("choice of step")
-    others = _comparisons(task, integrator, grid, progress) if error_estimate else []
-    clock.lap("error estimate")
     key = f"{method} {modes} {rho_inf} {beta} {gamma}" + f" {start}" * (start != STARTS[0])
     found = run_task(task, integrator, grid, progress, stream=stream, frames=frames, key=key)
     clock.lap("integration")
+    told = stated(found, task, integrator, grid, progress) if error_estimate else None
+    clock.lap("error estimate")
     progress(1.0, "done")
-    result = _result(task, grid, integrator, reason, found, others, estimated=error_estimate)
-    result = replace(result, seconds=clock.total())
+    result = replace(_result(task, grid, integrator, reason, found, told), seconds=clock.total())
     # A run without an estimate, or one that ended early, has said so already.
     if steps is not None or result.status != "success" or not np.isfinite(result.error_estimate):
         return result
     # What would reach the accuracy, by what a halving of the step left of the error.
-    remedy = "smaller steps do not lower it: the motion is chaotic, or the time too short for its statistics"
-    if left <= _FALLS:
+    remedy = "smaller steps do not lower it"
+    if told and told.parted:
+        remedy += ": motions of two steps part, as in chaos; a longer time lowers the scatter of its statistics"
+    elif left <= FALLS:
         remedy = "take more steps in a period of the fastest motion (--steps)"
         if fastest:
             count = (result.error_estimate / wanted) ** (-1.0 / np.log2(left)) / (result.step * fastest)
@@ -163,20 +162,13 @@ def _result(
     integrator: Integrator,
     reason: str,
     found: Histories,
-    others: list[tuple[Histories, float]],
-    *,
-    estimated: bool,
+    told: Stated | None,
 ) -> TransientResult:
     system = task.local.system
     local = task.local.local
     of_run = quantities_of(found, task)
-    errors = np.full(of_run.value.size, np.nan)
-    largest = float("nan")
-    if others and all(run.status == "success" for run in (found, *(run for run, _ in others))):
-        # Each comparison tells errors of its own kind: of the step, or of the modes that are missing. They add up.
-        pairs = [of_run.errors(quantities_of(run, task), factor) for run, factor in others]
-        errors = np.sum([error for error, _ in pairs], axis=0)
-        largest = float(sum(worst for _, worst in pairs))
+    estimated = told is not None
+    told = told or Stated(np.full(of_run.value.size, np.nan), float("nan"), "")
     contacts = of_meshes(found, task)
     force = contacts.force
     seen = of_channels(found, task)
@@ -207,7 +199,7 @@ def _result(
         force_range=np.column_stack([force.least, force.largest]),
         impulse=np.column_stack([force.mean - negative, -negative]) * (steps * found.h),
         contact_time=contacts.shares,
-        contact_losses=found.state.events[meshes, 3],
+        contact_losses=found.state.events[meshes, 3].astype(int),
         channel=task.channels.names,
         unit=task.channels.units,
         values=found.table("values"),
@@ -216,14 +208,15 @@ def _result(
         value_range=np.column_stack([seen.least, seen.largest]),
         quantity=of_run.name,
         quantity_value=of_run.value,
-        quantity_error=errors,
+        quantity_error=told.errors,
         quantity_scale=of_run.scale,
         energy=found.ledger,
         start=task.start,
         step=grid.spacing / grid.every,
         steps=found.state.step,
         every=grid.every * grid.kept,
-        error_estimate=largest,
+        error_estimate=told.largest,
+        error_source=told.source,
         dofs=local.n,
         method=integrator.name,
         reason=reason,
@@ -236,29 +229,8 @@ def _result(
     )
     notes = [*transient_warnings(result, task, estimated=estimated, keeps_energy=integrator.keeps_energy)]
     if result.status == "success":
-        notes += off_statics(found, task, errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
+        notes += off_statics(found, task, told.errors[: len(STATISTICS) * len(meshes) : len(STATISTICS)])
     return replace(result, left_out=(*result.left_out, *intact(result, task.local)), warnings=tuple(notes))
-
-
-def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
-    """Worse or better runs, each with the factor by which the run that counts is nearer to the truth, less 1.
-
-    Twice the step is four times worse, less a margin. An explicit method chooses its own steps: there a hundred times the
-    tolerance takes their place, looked at half as often, for means and extremes hang on that. Where modes are cut, a run has half
-    as many more.
-    """
-    double, ratio = coarser(grid)
-    if isinstance(integrator, Explicit):
-        loose = Explicit(100.0 * integrator.relative)
-        return [(run_task(task, loose, double, progress, text="looser tolerance"), 1.0)]
-    try:
-        found = [(run_task(task, integrator, double, progress, text="twice the step"), gain(ratio))]
-    except ConvergenceError:
-        return []
-    if isinstance(integrator, Exponential) and integrator.modes is not None:
-        fuller = Exponential(int(1.5 * integrator.modes), integrator.modal_ratio)
-        found.append((run_task(task, fuller, grid, progress, text="more modes"), 1.0))
-    return found
 
 
 # Share of the static force that a mean may be off beside its error: what is left of a start, and incomplete periods.
@@ -299,72 +271,3 @@ def off_statics(found: Histories, task: Task, error: np.ndarray) -> Iterator[Not
             what = f"the mean contact force is {force.mean[j]:.4g} N, the loads need {force.mean[j] - off[j]:.4g} N by statics"
             why = "not settled, no whole number of periods, or too large a step"
             yield Note(task.local.parts[i].label, f"{what}: {why}")
-
-
-_HALVINGS = 6
-# The search gives up after this many halvings in a row that leave more than this share of the error.
-_FRUITLESS = 2
-_FALLS = 0.5
-# What a halving leaves of the error with second order.
-_SECOND_ORDER = 0.25
-# Most steps of a run that helps to choose the step.
-_PROBE = 60_000
-
-
-def fine_enough(
-    task: Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress
-) -> tuple[Grid, float]:
-    """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step.
-
-    The search ends early where what halvings leave of the error says that those to come won't reach the accuracy.
-
-    Returns:
-        The grid with the step that was chosen, and the share of the error that a halving left.
-    """
-    records = min(grid.records, max(_PROBE // grid.every, 8))
-    probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
-    last = _probed(task, integrator, probe, progress)
-    errors: list[float] = []
-    for number in range(1, _HALVINGS + 1):
-        finer = replace(probe, every=2 * probe.every)
-        now = _probed(task, integrator, finer, progress)
-        errors.append(now.errors(last, gain(2.0))[1] if now and last else np.inf)
-        # What the finer of the two was found to be good for.
-        if errors[-1] <= accuracy:
-            # The coarser one is four times worse, and no better than its own comparison with twice its step, which is stated.
-            enough = False
-            if len(errors) == 1 and errors[-1] <= _SECOND_ORDER * accuracy:
-                double, ratio = coarser(probe)
-                other = _probed(task, integrator, double, progress)
-                enough = bool(last and other and last.errors(other, gain(ratio))[1] <= accuracy)
-            return replace(grid, every=probe.every if enough else finer.every), _left(errors)
-        if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
-            # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
-            return grid, 1.0
-        probe = finer
-        last = now
-        # Each further halving may leave as much as the better one of the last two, or what second order leaves.
-        recent = np.array(errors[-3:])
-        hoped = _SECOND_ORDER
-        if not np.isfinite(errors[-1]):
-            hoped = 0.0
-        elif recent.size == 3 and np.all(np.isfinite(recent)):
-            hoped = float(min((recent[1:] / recent[:-1]).min(), _FALLS))
-        if number >= _FRUITLESS and errors[-1] * hoped ** (_HALVINGS - number) > accuracy:
-            break
-    return replace(grid, every=probe.every), _left(errors)
-
-
-def _left(errors: list[float]) -> float:
-    """Share of the error that a halving left in the mean over the last two."""
-    known = [error for error in errors[-3:] if np.isfinite(error)]
-    return float((known[-1] / known[0]) ** (1.0 / (len(known) - 1))) if len(known) > 1 else _SECOND_ORDER
-
-
-def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Quantities | None:
-    """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
-    try:
-        found = run_task(task, integrator, grid, progress, text="choosing the step")
-    except ConvergenceError:
-        return None
-    return quantities_of(found, task) if found.status == "success" else None

@@ -12,7 +12,6 @@ from rotorgear.solvers.batch.arguments import ActingLaws, BatchMotion, BatchSyst
 from rotorgear.solvers.batch.columns import ERROR, FORCE, NEVER
 from rotorgear.solvers.batch.small_system import SmallSystem
 from rotorgear.solvers.time.arguments import SparseRows
-from rotorgear.solvers.time.statistics import STATISTICS
 
 # Steps between two questions whether to go on: a fraction of a second.
 _SLICE = 50_000
@@ -74,7 +73,7 @@ class Orbit:
         away: what is left of the start over the periods that count, over the size of the motion; nan where it is not known.
         before: range of the section of each counted displacement (c,) in the round before; nan in the first.
         jumped: whether the run was set on the orbit that it goes to.
-        error: (c, s) errors of the statistics of each contact, by a run with other steps; nan where that was not done.
+        error: (c, s) errors of statistics of each contact, by a run with other steps; nan where that was not done.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -91,7 +90,7 @@ class Orbit:
     away: float = np.nan
     jumped: bool = False
     before: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    error: np.ndarray = field(default_factory=lambda: np.zeros((0, len(STATISTICS))))
+    error: np.ndarray = field(default_factory=lambda: np.array(np.nan))
 
 
 def run_block(
@@ -193,10 +192,9 @@ def _orbit(system: SmallSystem, number: int, motion: BatchMotion, plan: BatchPla
     growth = motion.growth[..., number].copy()
     extremes = motion.extremes[:, :, number].T.copy()
     # Two displacements are watched of each contact.
-    unknown = np.full((len(extremes) // 2, len(STATISTICS)), np.nan)
     doubt = np.zeros(growth.shape[1])
-    before = np.full(len(unknown), np.nan)
-    return Orbit(moved, growth, sums, extremes, end, finite, doubt, plan.settle, before=before, error=unknown)
+    before = np.full(len(extremes) // 2, np.nan)
+    return Orbit(moved, growth, sums, extremes, end, finite, doubt, plan.settle, before=before)
 
 
 def trajectory(

@@ -79,6 +79,7 @@ class ExplicitStepper(Stepper):
         self._relative = relative
         self._rotation = system.rotation.table
         self._Bt = system.B.T.tocsr()
+        self._laws = system.forces.arguments()
         factor = factor_general(system.M)
         dense = (system.K.toarray(), system.velocity_terms(speed).toarray(), system.B.toarray(), system.load[:, None])
         self._inverse = tuple(np.ascontiguousarray(factor.solve(A)) if A.size else A for A in dense)
@@ -131,7 +132,8 @@ class ExplicitStepper(Stepper):
 
     def _look(self, state: MotionState, kept: Kept, number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
-        from rotorgear.solvers.time.kernel_time import gather, record_forces, take_account
+        from rotorgear.solvers.time.kernel_events import take_account
+        from rotorgear.solvers.time.kernel_time import gather, record_forces
 
         n = self.system.n
         t = (state.step + number) * self.h
@@ -141,8 +143,8 @@ class ExplicitStepper(Stepper):
         F, energy = self._local_forces(state.q, state.v, t)
         state.before[:] = state.F
         state.F[:] = F
-        take_account(energy, self.h, state.carried)
         state.d[:] = self.system.B.T @ state.q
+        take_account(self._laws, self._rotation, t, self.h, energy, state.d, state.carried)
         values = self.system.gathered_values(state.q, state.v, state.a, state.d, F)
         gather(state.gathered, values, F.size, False)
         if number % every == 0:

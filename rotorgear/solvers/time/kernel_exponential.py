@@ -14,7 +14,8 @@ import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import blank_answer, contact_step, contact_work, force_all, schedule_all
-from rotorgear.solvers.time.kernel_time import gather, record_forces, rotation_at, take_account
+from rotorgear.solvers.time.kernel_events import take_account
+from rotorgear.solvers.time.kernel_time import gather, record_forces, rotation_at
 
 _BLOCK = 256
 
@@ -186,7 +187,7 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
                 total += B[k, j] * u[j]
             r0[k] += 0.5 * h * h * total
             r1[k] += h * total
-        take_account(work.answer.energy, h, carried)
+        take_account(laws, step.rotation, t, h, work.answer.energy, d, carried)
         for i in range(m):
             begin[i] = d[i]
             seen[i] = F[i]

@@ -22,6 +22,7 @@ import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import blank_answer, contact_step, contact_work, force_all, schedule_all
+from rotorgear.solvers.time.kernel_events import take_account
 from rotorgear.solvers.time.kernel_time import (
     add_rows,
     gather,
@@ -31,7 +32,6 @@ from rotorgear.solvers.time.kernel_time import (
     rotation_at,
     set_row,
     subtract_products,
-    take_account,
 )
 
 
@@ -158,7 +158,7 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
                 v[i] = vp[i] + gamma * h * total
                 a_end[i] = total
             a[i] = total
-        take_account(work.answer.energy, h, carried)
+        take_account(laws, step.rotation, t, h, work.answer.energy, work.d, carried)
         for j in range(m):
             begin[j] = work.d[j]
             F_end[j] = 1.5 * F[j] - 0.5 * before[j] if whole else F[j]

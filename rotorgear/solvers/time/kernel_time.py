@@ -1,6 +1,6 @@
-"""Compiled: what all time loops share: the prescribed angle, sparse products, triangular solutions, and what every step counts.
+"""Compiled: what all time loops share: the prescribed angle, sparse products, triangular solutions, and statistics.
 
-Every step adds to energies, contact events, and statistics of forces, displacements and channels. Means are by the trapezoidal
+Every step adds to statistics of forces, displacements and channels. Means are by the trapezoidal
 rule over values at steps, or plain over forces that are means of steps themselves. Between steps a cubic through four values
 gives the extremes, where the values bend one way only: a force that jumps or sets in has none there.
 """
@@ -106,27 +106,6 @@ def lu_solve(factors, b, y, x):
                 y[Ui[p]] -= Ux[p] * value
     for i in range(n):
         x[i] = y[column_place[i]]
-
-
-@compiled
-def take_account(energy, h, carried):
-    """Sum up energies put in and dissipated; count steps on the front side, apart and on the back, and contact losses."""
-    sums = carried.sums
-    last = carried.last
-    events = carried.events
-    for law in range(last.size):
-        sums[law, 0] += h * energy[ENERGIES * law + POWER_IN]
-        sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
-        now = int(energy[ENERGIES * law + SIDE])
-        if now > 0:
-            events[law, 0] += 1
-        elif now < 0:
-            events[law, 2] += 1
-        else:
-            events[law, 1] += 1
-            if last[law] != 0:
-                events[law, 3] += 1
-        last[law] = now
 
 
 @compiled

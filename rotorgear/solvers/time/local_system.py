@@ -158,9 +158,9 @@ class MotionState:
     """MotionState of a run after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
     `before` are the forces a step earlier; `d` (m,) the local displacements; `sums` (l, 2): energy put in and dissipated by
-    each law, with half a step before the first for those that follow the trapezoidal rule; `events` (l, 4): steps on the front
-    side, without contact, on the back side, and contact losses; `gathered`: statistics of local forces and displacements,
-    watched displacements and channels at all steps so far; `inner`: what else an integrator carries on.
+    each law, with half a step before the first for those that follow the trapezoidal rule; `events` (l, 4): steps, and parts of
+    them, on the front side, without contact, on the back side, and contact losses; `gathered`: statistics of local forces and
+    displacements, watched displacements and channels at all steps so far; `inner`: what else an integrator carries on.
     """
 
     step: int
@@ -313,7 +313,7 @@ def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | 
     d = np.asarray(system.B.T @ q, dtype=float)
     sums = 0.5 * h * powers[:, 1:3]
     last = powers[:, 3].astype(np.int64)
-    events = np.zeros((len(powers), 4), dtype=np.int64)
+    events = np.zeros((len(powers), 4))
     gathered = blank_gathered(system.gathered_values(q, v, a, d, F))
     return MotionState(0, q, v, a, F, F.copy(), d, sums, last, events, gathered)
 

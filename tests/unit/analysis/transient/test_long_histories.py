@@ -9,7 +9,8 @@ import rotorgear as rg
 from rotorgear.analysis.transient import histories, request
 from tests.paths import ROOT
 
-PAIR = rg.load(ROOT / "models" / "backlash_pair.toml")
+# Under a torque at which its teeth stay together: what chaos scatters by is told by the records that are kept.
+PAIR = rg.load(ROOT / "models" / "backlash_pair.toml").with_("operation.torque", 500.0)
 RUN = {"time": 0.02, "steps": 80}
 
 
@@ -40,13 +41,14 @@ def test_records_that_the_machine_cannot_hold_are_refused_before_the_run(monkeyp
     assert rg.transient(PAIR, time=0.001, steps=80, records=40).status == "success"
 
 
-def test_a_run_that_only_serves_another_one_keeps_no_histories(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_only_serves_another_one_keeps_the_records_that_count(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rotorgear.solvers.time.run.CHUNK", 50)
     task = request.prepare(PAIR, None, None)
-    grid, _ = request.grid_of(task, 0.02, 0.0, 80, None)
+    grid, _ = request.grid_of(task, 0.01, 0.01, 80, None)
     integrator, _ = request.integrator_of(task, grid, "newmark", None, None, None, None)
     serving = histories.run_task(task, integrator, grid, lambda *_: None, text="twice the step")
     whole = histories.run_task(task, integrator, grid, lambda *_: None)
     assert len(whole.parts) > 3
-    assert len(serving.parts) == 1
-    assert np.array_equal(serving.table("F")[-1], whole.table("F")[-1])
+    counted = whole.table("t") > 0.01
+    assert counted.sum() < len(serving.table("t")) <= counted.sum() + 50
+    assert np.array_equal(serving.table("F")[-counted.sum() :], whole.table("F")[counted])

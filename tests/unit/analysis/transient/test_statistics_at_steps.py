@@ -70,7 +70,7 @@ def test_a_pair_ten_thousand_times_stiffer_carries_its_load_in_steps_that_its_ac
 def test_an_accuracy_out_of_reach_ends_the_search_and_names_the_steps_that_reach_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("rotorgear.analysis.transient.transient._HALVINGS", 2)
+    monkeypatch.setattr("rotorgear.analysis.transient.errors._HALVINGS", 2)
     how = {"time": 0.005, "discard": 0.0, "method": "newmark"}
     missed = rg.transient(spur_pair(), accuracy=1e-5, **how)
     assert missed.error_estimate > 1e-4
@@ -93,7 +93,7 @@ def test_a_run_that_ends_while_it_settles_says_so_and_has_no_statistics() -> Non
 
 
 def test_an_estimate_falls_with_the_square_of_the_step_also_where_three_steps_lie_between_records() -> None:
-    # The run of 120 steps is compared with one of 40, three times its step; the others with twice theirs.
+    # The run of 120 steps is compared with one of 40, three times its step, too; the others with twice theirs.
     model = rg.load(MODELS / "flexible_pair.toml")
     weighed = [
         steps**2
