@@ -294,6 +294,8 @@ def _value(kind: dict[str, Any]) -> str:
     options = {option.get("type") for option in kind.get("anyOf", [])} - {"null"}
     if options == {"string", "object"}:
         return "text or table"
+    if options == {"string", "array"}:
+        return "text or list of numbers"
     if options == {"string", "number"}:
         return "share or size"
     if "enum" in kind or "const" in kind:
@@ -361,7 +363,7 @@ def _default(value: Any, kind: dict[str, Any]) -> str:
     if kind.get("x-unit") == "rad" and value:
         return f'`"{math.degrees(value):.6g} deg"`'
     if isinstance(value, tuple):
-        return "`[" + ", ".join(f'"{item}"' for item in value) + "]`"
+        return "`[" + ", ".join(f'"{item}"' if isinstance(item, str) else f"{item:g}" for item in value) + "]`"
     return f'`"{value}"`' if isinstance(value, str) else f"`{value:g}`"
 
 

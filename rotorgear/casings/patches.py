@@ -27,10 +27,10 @@ _LISTED = 12
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A bore: its axis 0 1 2 for x y z, where that is (two coordinates in m), its range along it and its radius."""
+    """A bore: a point on its axis (m), the direction of that (a unit vector), its range from the point on and its radius."""
 
-    axis: int
-    center: tuple[float, float]
+    center: tuple[float, float, float]
+    direction: tuple[float, float, float]
     begin: float
     end: float
     radius: float
@@ -102,11 +102,12 @@ def cylinder_faces(mesh: SolidMesh, cylinder: Cylinder, address: str) -> np.ndar
     Raises:
         AnalysisError: nothing there; the text says what is near.
     """
-    across = [axis for axis in range(3) if axis != cylinder.axis]
     boundary = mesh.boundary
-    corners = mesh.points[boundary[:, : len(mesh.element.faces[0])]]
-    radius = np.linalg.norm(corners[:, :, across] - np.array(cylinder.center), axis=2)
-    middle = corners[:, :, cylinder.axis].mean(axis=1)
+    corners = mesh.points[boundary[:, : len(mesh.element.faces[0])]] - np.array(cylinder.center)
+    direction = np.array(cylinder.direction)
+    along = corners @ direction
+    radius = np.linalg.norm(corners - along[:, :, None] * direction, axis=2)
+    middle = along.mean(axis=1)
     within = (middle >= cylinder.begin) & (middle <= cylinder.end)
     chosen = within & (np.abs(radius - cylinder.radius) <= _OFF_CYLINDER * cylinder.radius).all(axis=1)
     if not chosen.any():
@@ -134,7 +135,7 @@ def by_cylinder(mesh: SolidMesh, cylinder: Cylinder, address: str) -> Patch:
     else:
         faces = cylinder_faces(mesh, cylinder, address)
         patch = patch_of(mesh, faces, np.unique(faces), address)
-    point = np.insert(cylinder.center, cylinder.axis, 0.5 * (cylinder.begin + cylinder.end))
+    point = np.array(cylinder.center) + 0.5 * (cylinder.begin + cylinder.end) * np.array(cylinder.direction)
     return replace(patch, name=address, point=point)
 
 

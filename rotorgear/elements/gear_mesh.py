@@ -20,6 +20,11 @@ part of v_t is then the difference of v at the nodes of both ends of the face ov
 One contact point serves both bodies: that makes all six rigid motions of the pair free of strain. (The widespread form with
 each gear's arm to its own base tangent point fails a rigid tilt by up to a_w sin a sin b per rad.) Conventions:
 docs/conventions.md.
+
+All this is told in the frame of the pinion's shaft. Where the gear's shaft has other directions, its entries are turned into
+them by Q = R_g' R_p, with the axes of both shafts in the columns of R:
+
+    v = [ n ; (P - O_p) x n ; -Q n ; -Q ((P - O_g) x n) ].
 """
 
 from __future__ import annotations
@@ -47,6 +52,8 @@ class ContactGeometry:
         pinion_offset: z of the contact's plane minus z of the pinion's node.
         gear_offset: z of the contact's plane minus z of the gear's node.
         contact_position: xi, from the pitch point along the line of action.
+        turn: Q, rows of (3, 3), directions of the pinion's shaft in those of the gear's; None where both are the same.
+        gear_node: (x, y, z) of the gear's node from that of the pinion, beside a turn and where both are known.
     """
 
     psi: float
@@ -59,6 +66,8 @@ class ContactGeometry:
     pinion_offset: float = 0.0
     gear_offset: float = 0.0
     contact_position: float = 0.0
+    turn: tuple[tuple[float, ...], ...] | None = None
+    gear_node: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -81,35 +90,20 @@ class Face:
 def flank_normal(geometry: ContactGeometry) -> np.ndarray:
     """Direction of the force on the gear, a unit vector (3,)."""
     g = geometry
-    e, t = _frame(g.psi)
-    n_t = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
     axial = np.array([0.0, 0.0, -g.torque_sense * g.hand * sin(g.base_helix_angle)])
-    return cos(g.base_helix_angle) * n_t + axial
+    return cos(g.base_helix_angle) * _transverse_normal(g) + axial
 
 
 def contact_vector(geometry: ContactGeometry) -> np.ndarray:
     """The 12 entries (v_p, v_g) that give the approach of the flanks from the dofs of pinion and gear, shape (12,)."""
-    g = geometry
-    e, t = _frame(g.psi)
-    n = flank_normal(g)
-    n_t = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
-    k = np.array([0.0, 0.0, 1.0])
-
-    # Arms from both nodes to the same contact point: working radius r_w = r_b / cos a, then xi along the line of action.
-    along = g.contact_position * n_t
-    pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + along + g.pinion_offset * k
-    gear = -g.gear_base_radius / cos(g.pressure_angle) * e + along + g.gear_offset * k
-    return np.concatenate([n, np.cross(pinion, n), -n, -np.cross(gear, n)])
+    return _relative(geometry, flank_normal(geometry), geometry.contact_position * _transverse_normal(geometry))
 
 
 def tilt_vector(geometry: ContactGeometry) -> np.ndarray:
     """The 12 entries v_t that give the tilt of the flanks along the face, approach per metre of z, from the dofs, shape (12,)."""
-    g = geometry
-    e, t = _frame(g.psi)
-    n_t = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
     # n . (theta x z k) = z theta . (k x n); the axial part of n drops out.
-    turned = cos(g.base_helix_angle) * np.cross([0.0, 0.0, 1.0], n_t)
-    return np.concatenate([np.zeros(3), turned, np.zeros(3), -turned])
+    turned = cos(geometry.base_helix_angle) * np.cross([0.0, 0.0, 1.0], _transverse_normal(geometry))
+    return _turned(geometry, np.concatenate([np.zeros(3), turned, np.zeros(3), -turned]))
 
 
 def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
@@ -119,15 +113,40 @@ def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
         Shape (2, 12). First row: displacement across the line of action (along k x n_t) of the pinion relative to the gear,
         at the pitch point. Second row: what a contact at xi adds to it for each metre of xi.
     """
-    g = geometry
-    e, t = _frame(g.psi)
     k = np.array([0.0, 0.0, 1.0])
-    across = np.cross(k, g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e)
-    pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + g.pinion_offset * k
-    gear = -g.gear_base_radius / cos(g.pressure_angle) * e + g.gear_offset * k
+    across = np.cross(k, _transverse_normal(geometry))
     # A rotation theta_z carries a point that lies xi along n_t by xi theta_z across it; theta_x and theta_y do not.
-    turned = np.concatenate([np.zeros(3), k, np.zeros(3), -k])
-    return np.array([np.concatenate([across, np.cross(pinion, across), -across, -np.cross(gear, across)]), turned])
+    turned = _turned(geometry, np.concatenate([np.zeros(3), k, np.zeros(3), -k]))
+    return np.array([_relative(geometry, across, np.zeros(3)), turned])
+
+
+def _transverse_normal(geometry: ContactGeometry) -> np.ndarray:
+    """n_t, the flank normal of the transverse plane, (3,)."""
+    e, t = _frame(geometry.psi)
+    return geometry.torque_sense * cos(geometry.pressure_angle) * t + sin(geometry.pressure_angle) * e
+
+
+def _relative(geometry: ContactGeometry, direction: np.ndarray, beside: np.ndarray) -> np.ndarray:
+    """Displacement of the pinion relative to the gear along a direction (3,), from their dofs, (12,).
+
+    It is that of one point of both bodies, which lies `beside` (3,) the pitch point in the plane of the contact.
+    """
+    g = geometry
+    e = _frame(g.psi)[0]
+    k = np.array([0.0, 0.0, 1.0])
+    # Arms from both nodes to the same point: working radius r_w = r_b / cos a, then along the line of action.
+    pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + beside + g.pinion_offset * k
+    gear = -g.gear_base_radius / cos(g.pressure_angle) * e + beside + g.gear_offset * k
+    if g.gear_node is not None:
+        gear = pinion - np.array(g.gear_node)
+    return _turned(g, np.concatenate([direction, np.cross(pinion, direction), -direction, -np.cross(gear, direction)]))
+
+
+def _turned(geometry: ContactGeometry, vector: np.ndarray) -> np.ndarray:
+    """Entries (12,) in the directions of the pinion's shaft, those of the gear in the directions of its own."""
+    if geometry.turn is not None:
+        vector[6:] = (vector[6:].reshape(2, 3) @ np.transpose(geometry.turn)).ravel()
+    return vector
 
 
 def face_strains(geometry: ContactGeometry, face: Face) -> np.ndarray:
@@ -138,7 +157,8 @@ def face_strains(geometry: ContactGeometry, face: Face) -> np.ndarray:
     """
     sides = (slice(0, 6), slice(6, 12))
     tilt = tilt_vector(geometry)
-    at_ends = contact_vector(replace(geometry, pinion_offset=0.0, gear_offset=0.0))
+    # At the ends of a face the node stands in the plane of the contact.
+    at_ends = contact_vector(replace(geometry, pinion_offset=0.0, gear_offset=0.0, gear_node=None))
     ends = []
     for side, integral in zip(sides, face.integral, strict=True):
         if integral:

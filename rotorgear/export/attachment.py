@@ -10,18 +10,21 @@ of a uniform Timoshenko element (Przemieniecki, Theory of Matrix Structural Anal
     w(xi) = w1 + L [ (xi - xi^2/2) theta1 + xi^2/2 theta2 + (3 xi^2 - 2 xi^3) d + Phi xi d ]
 
 and with w = y, theta = -theta_x in the other plane; z and theta_z are linear. Cones are interpolated with their mean section.
+All this is in the frame of the shaft that carries the points.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from rotorgear.elements.shaft_section import cowper
+from rotorgear.export.surface import Surface
 from rotorgear.model.model import Model
+from rotorgear.model.parts.frame import Frame
 from rotorgear.results.modal import NodeTable, body_name
 
 
@@ -36,6 +39,7 @@ class Attachment:
         length: (P,) distance of the nodes in m.
         shear: (P,) Phi.
         arm: (P, 3) from the centre of the carrying cross-section to the point, in m.
+        frame: (P,) numbers of the shafts in whose frame that is; -1 for the axes of the model.
     """
 
     left: np.ndarray
@@ -44,9 +48,10 @@ class Attachment:
     length: np.ndarray
     shear: np.ndarray
     arm: np.ndarray
+    frame: np.ndarray
 
     def displacement(self, shape: np.ndarray) -> np.ndarray:
-        """Displacements (P, 3) of the points from those of the nodes (p, 6), real or complex, in m and rad."""
+        """Displacements (P, 3) of the points, each in its frame, from those of the nodes (p, 6), real or complex; m and rad."""
         standing = (self.left < 0)[:, None]
         first = np.where(standing, 0.0, shape[self.left])
         second = np.where(standing, 0.0, shape[self.right])
@@ -82,8 +87,18 @@ def join_attachments(parts: Sequence[Attachment]) -> Attachment:
 def nodes_in_order(nodes: NodeTable, shaft: str) -> np.ndarray:
     """Numbers of a shaft's nodes from left to right, one for each place."""
     numbers = nodes.on_shaft(shaft)
-    _, first = np.unique(nodes.position[numbers, 2], return_index=True)
+    _, first = np.unique(nodes.along[numbers], return_index=True)
     return numbers[first]
+
+
+def in_space(model: Model, nodes: NodeTable, shapes: np.ndarray) -> np.ndarray:
+    """Displacements and rotations (p, 6, ...) of the nodes along the axes of the model, from those in the frames of shafts."""
+    turned = {name: shaft.frame.six for name, shaft in model.shafts.items() if shaft.frame.is_turned}
+    found = shapes.copy() if turned else shapes
+    for name, six in turned.items():
+        own = np.array(nodes.shaft) == name
+        found[own] = np.einsum("ij,pj...->pi...", six, shapes[own])
+    return found
 
 
 class Skeleton:
@@ -92,47 +107,58 @@ class Skeleton:
     Args:
         model: the model.
         nodes: its nodes; only their z counts.
-        axes: shaft -> (x, y) in m.
+        frames: of all shafts, as they are shown.
     """
 
-    def __init__(self, model: Model, nodes: NodeTable, axes: dict[str, tuple[float, float]]) -> None:
+    def __init__(self, model: Model, nodes: NodeTable, frames: dict[str, Frame]) -> None:
         self.model = model
         self.nodes = nodes
-        self.axes = axes
+        self.frames = frames
+        self._frame = {name: number for number, name in enumerate(frames)}
         self._numbers = {name: nodes_in_order(nodes, name) for name in model.shafts}
         self._shear = {name: self._shear_numbers(name) for name in model.shafts}
 
     def positions(self) -> np.ndarray:
         """Where the nodes are shown, (p, 3) in m; casings, which have no axis, where they are; gear bodies on their shaft."""
         shown = self.nodes.position.copy()
-        for shaft, axis in self.axes.items():
-            shown[np.array(self.nodes.shaft) == shaft, :2] = axis
+        for shaft, frame in self.frames.items():
+            own = np.array(self.nodes.shaft) == shaft
+            shown[own] = frame.at(self.nodes.along[own])
         for gear in self.model.layout.elastic_bodies:
             numbers = self.nodes.of_casing(body_name(gear))
             shaft = self.model.layout.gear(gear).shaft
-            shown[numbers, :2] += np.array(self.axes[shaft]) - np.array(self.model.shafts[shaft].position or (0.0, 0.0))
+            shown[numbers] += self.frames[shaft].origin - self.model.shafts[shaft].frame.origin
         return shown
+
+    def placed(self, shaft: str, surface: Surface, z: float = 0.0) -> Surface:
+        """A surface about the axis x = y = 0, with its middle at z, on a shaft."""
+        return replace(surface, points=self.frames[shaft].outside(surface.points + np.array([0.0, 0.0, z])))
 
     def along(self, shaft: str, points: np.ndarray) -> Attachment:
         """Each point rides on the cross-section at its own z; beyond the ends on that of the end."""
-        return self.rigid(shaft, points[:, 2], points)
+        return self.rigid(shaft, self.frames[shaft].inside(points)[:, 2], points)
 
     def rigid(self, shaft: str, z: float | np.ndarray, points: np.ndarray) -> Attachment:
         """All points ride on the cross-section at z, or each on that at its value of z."""
         numbers = self._numbers[shaft]
-        places = self.nodes.position[numbers, 2]
+        places = self.nodes.along[numbers]
         at = np.clip(np.broadcast_to(z, len(points)), places[0], places[-1])
-        arm = points - np.column_stack([np.tile(self.axes[shaft], (len(at), 1)), at])
+        arm = self.frames[shaft].inside(points) - at[:, None] * np.array([0.0, 0.0, 1.0])
         if len(numbers) == 1:
-            return self._fixed_to(np.full(len(at), numbers[0]), arm)
+            return self._fixed_to(np.full(len(at), numbers[0]), arm, shaft)
         k = np.clip(np.searchsorted(places, at, side="right") - 1, 0, len(places) - 2)
         length = places[k + 1] - places[k]
-        return Attachment(numbers[k], numbers[k + 1], (at - places[k]) / length, length, self._shear[shaft][k], arm)
+        frame = np.full(len(at), self._frame[shaft])
+        return Attachment(
+            numbers[k], numbers[k + 1], (at - places[k]) / length, length, self._shear[shaft][k], arm, frame
+        )
 
     def on_pedestal(self, bearing: str, points: np.ndarray) -> Attachment:
         """All points move with the node of a bearing's pedestal."""
         node = self.nodes.pedestal.index(bearing)
-        return self._fixed_to(np.full(len(points), node), points - self.positions()[node])
+        shaft = self.nodes.shaft[node]
+        arm = (points - self.positions()[node]) @ self.frames[shaft].axes
+        return self._fixed_to(np.full(len(points), node), arm, shaft)
 
     def on_casing(self, casing: str, points: np.ndarray) -> Attachment:
         """Each point moves with the nearest one of a casing's surface; all stand still where that is not known."""
@@ -146,14 +172,15 @@ class Skeleton:
         """All points stand still."""
         return self._fixed_to(np.full(len(points), -1), np.zeros_like(points))
 
-    def _fixed_to(self, nodes: np.ndarray, arm: np.ndarray) -> Attachment:
+    def _fixed_to(self, nodes: np.ndarray, arm: np.ndarray, shaft: str = "") -> Attachment:
+        """Points that move rigidly with one node each, arms in the frame of a shaft, or along the axes of the model."""
         zeros = np.zeros(len(nodes))
-        return Attachment(nodes, nodes, zeros, zeros, zeros, arm)
+        return Attachment(nodes, nodes, zeros, zeros, zeros, arm, np.full(len(nodes), self._frame.get(shaft, -1)))
 
     def _shear_numbers(self, shaft: str) -> np.ndarray:
         """Phi between each two neighbouring nodes of a shaft."""
         part = self.model.shafts[shaft]
-        places = self.nodes.position[self._numbers[shaft], 2]
+        places = self.nodes.along[self._numbers[shaft]]
         if not part.sections or not part.shear_deformation:
             return np.zeros(max(len(places) - 1, 0))
         ends = part.start + np.cumsum([section.length for section in part.sections])

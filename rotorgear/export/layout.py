@@ -14,6 +14,7 @@ from itertools import permutations
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.model.parts.frame import Frame, frame_along
 
 # A shaft without sections has no diameter: parts that need one take this share of its largest body, or this many m.
 NOMINAL_SHARE = 0.2
@@ -128,11 +129,25 @@ _DIRECTIONS = tuple(math.radians(angle) for angle in (0, 60, -60, 90, -90, 120, 
 _OVERLAP = 0.85
 
 
-def display_axes(model: Model) -> dict[str, Axis]:
+def display_frames(model: Model) -> dict[str, Frame]:
+    """Frames of all shafts as they are shown, in the order of the file: their own, or beside their mates."""
+    given = {name: shaft.position for name, shaft in model.shafts.items()}
+    if all(given.values()):
+        return {name: shaft.frame for name, shaft in model.shafts.items()}
+    # Axes that are not parallel to z have positions, and so have all others beside them.
+    axes = _display_axes(model)
+    return {name: frame_along(given[name] or axes[name], (0.0, 0.0, 1.0), None) for name in model.shafts}
+
+
+def _display_axes(model: Model) -> dict[str, Axis]:
     """Axis (x, y) in m of every shaft for display, shaft -> (x, y)."""
     # Given positions are kept. Their neighbours are placed one by one; a shaft that no neighbour leads to begins a group of its
     # own, to the right of all others.
-    axes: dict[str, Axis] = {name: shaft.position for name, shaft in model.shafts.items() if shaft.position is not None}
+    axes: dict[str, Axis] = {
+        name: (shaft.position[0], shaft.position[1])
+        for name, shaft in model.shafts.items()
+        if shaft.position is not None
+    }
     envelopes = {}
     for name, part in model.shafts.items():
         # Cylinders that a shaft and its bodies fill.

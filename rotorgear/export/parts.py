@@ -74,14 +74,13 @@ def shaft_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
     for name, shaft in model.shafts.items():
         if not shaft.sections:
             continue
-        x, y = skeleton.axes[name]
         outer = _outline(shaft, shaft.length / detail.slices, bore=False)
         contour = np.vstack([outer, _outline(shaft, shaft.length / detail.slices, bore=True)[::-1]])
         for kind, surface in (
             ("shaft", revolve(contour, detail.segments, closed=True)),
             ("stripe", join([_stripe(outer, 2.0 * math.pi * k / _STRIPES) for k in range(_STRIPES)])),
         ):
-            placed = surface.moved((x, y, 0.0))
+            placed = skeleton.placed(name, surface)
             yield PartSurface(f"shafts.{name}", kind, name, placed, skeleton.along(name, placed.points))
 
 
@@ -115,11 +114,11 @@ def _stripe(outer: np.ndarray, angle: float) -> Surface:
 
 def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[PartSurface]:
     """Yield the helices of each gear with their teeth, and the web and hub of one that has them."""
-    phases = tooth_phases(model, skeleton.axes)
+    phases = tooth_phases(model, skeleton.frames)
     for gear in model.layout.gears:
         for number, (plane, rate) in enumerate(zip(gear.planes, twist_rates(gear), strict=True)):
             surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
-            placed = surface.moved((*skeleton.axes[gear.shaft], 0.0))
+            placed = skeleton.placed(gear.shaft, surface)
             place = gear.places[number if len(gear.places) == 2 else 0]
             wheel = gear.wheel
             if wheel is None or wheel.surface is None:
@@ -129,7 +128,7 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
                 body = body_name(gear.name)
                 attachment = skeleton.on_casing(body, placed.points)
                 shown = make_surface(wheel.surface.points, [], [wheel.surface.triangles])
-                shown = shown.moved((*skeleton.axes[gear.shaft], place.z))
+                shown = skeleton.placed(gear.shaft, shown, place.z)
                 yield PartSurface(
                     f"gears.{gear.name}", "gear", gear.shaft, shown, skeleton.on_casing(body, shown.points)
                 )
@@ -178,7 +177,7 @@ def disk_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
         angles, radii = grooved_contour(0.5 * size.diameter, DISK_GROOVES, 3 * detail.arc_points)
         hole = _hole(model, disk.shaft, size.low, size.high, disk.bore, float(radii.min()))
         surface = twisted_prism(angles, radii, np.array([size.low, size.high]), np.zeros(2), hole)
-        placed = surface.moved((*skeleton.axes[disk.shaft], 0.0))
+        placed = skeleton.placed(disk.shaft, surface)
         attachment = skeleton.rigid(*model.layout.place(f"disks.{name}"), placed.points)
         yield PartSurface(f"disks.{name}", "disk", disk.shaft, placed, attachment)
 
@@ -187,7 +186,7 @@ def point_mass_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Ite
     """Yield each point mass as a ball."""
     for name, point in model.point_masses.items():
         z = model.layout.place(f"point_masses.{name}").z
-        placed = ball(ball_radius(model, name), detail.segments).moved((*skeleton.axes[point.shaft], z))
+        placed = skeleton.placed(point.shaft, ball(ball_radius(model, name), detail.segments), z)
         attachment = skeleton.rigid(point.shaft, z, placed.points)
         yield PartSurface(f"point_masses.{name}", "point mass", point.shaft, placed, attachment)
 
@@ -214,10 +213,10 @@ def bearing_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterat
         radius = 0.5 * shaft_diameter(model, bearing.shaft, bearing.at)
         half = _RING_HALF * radius
         housing = _RING * radius
-        axis = (*skeleton.axes[bearing.shaft], 0.0)
-        ring = hollow_cylinder(housing, radius, z - half, z + half, detail.segments).moved(axis)
-        foot = wedge(-housing, -housing - _FOOT_HEIGHT * radius, _FOOT_HALF * radius, z - half, z + half).moved(axis)
-        beside_axis = np.hypot(*(ring.points - np.array(axis))[:, :2].T)
+        ring = hollow_cylinder(housing, radius, z - half, z + half, detail.segments)
+        foot = wedge(-housing, -housing - _FOOT_HEIGHT * radius, _FOOT_HALF * radius, z - half, z + half)
+        beside_axis = np.hypot(*ring.points[:, :2].T)
+        ring, foot = (skeleton.placed(bearing.shaft, surface) for surface in (ring, foot))
         if bearing.casing is not None:
             # Inside the shaft carries the ring, outside the casing, which is nearest there.
             surface = ring
@@ -250,7 +249,7 @@ def support_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterat
         bottom = -(1.0 + _SIGN_HEIGHT) * radius
         thickness = _SIGN_THICKNESS * radius
         surface = wedge(-radius, bottom, _SIGN_HALF * radius, z - thickness, z + thickness)
-        surface = surface.moved((*skeleton.axes[support.shaft], 0.0))
+        surface = skeleton.placed(support.shaft, surface)
         carried = skeleton.rigid(support.shaft, z, surface.points)
         attachment = _select([carried, skeleton.on_ground(surface.points)], np.array([0, 1, 1] * 2))
         yield PartSurface(f"supports.{name}", "support", support.shaft, surface, attachment)
@@ -268,21 +267,22 @@ def coupling_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Itera
             low, high = sorted((z, z + side * _FLANGE_WIDTH * radius))
             hole = 0.45 * model.shafts[shaft].diameter_at(z)
             flange = hollow_cylinder(_FLANGE * radius, hole, low, high, detail.segments)
-            flange = flange.moved((*skeleton.axes[shaft], 0.0))
+            flange = skeleton.placed(shaft, flange)
             carried = skeleton.rigid(shaft, z, flange.points)
             yield PartSurface(f"couplings.{name}", "coupling", shaft, flange, carried)
         # Between them a sleeve where they face each other, or a bar to a shaft that is shown beside the first.
         shafts = coupling.from_shaft, coupling.to_shaft
         z1, z2 = (place.z for place in model.layout.places(f"couplings.{name}"))
-        start = np.array([*skeleton.axes[shafts[0]], z1])
-        end = np.array([*skeleton.axes[shafts[1]], z2])
+        start = skeleton.frames[shafts[0]].at(z1)
+        end = skeleton.frames[shafts[1]].at(z2)
         if np.allclose(start, end, rtol=0.0, atol=1e-6 * radius):
             continue
-        if np.allclose(start[:2], end[:2], rtol=0.0, atol=1e-6 * radius):
-            low, high = sorted((z1, z2))
+        beside = skeleton.frames[shafts[0]].inside(end)
+        if np.allclose(beside[:2], 0.0, rtol=0.0, atol=1e-6 * radius):
+            low, high = sorted((z1, float(beside[2])))
             sleeve = hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, low, high, detail.segments)
-            surface = sleeve.moved((*start[:2], 0.0))
-            to_second = np.abs(surface.points[:, 2] - z2) < np.abs(surface.points[:, 2] - z1)
+            to_second = np.abs(sleeve.points[:, 2] - beside[2]) < np.abs(sleeve.points[:, 2] - z1)
+            surface = skeleton.placed(shafts[0], sleeve)
         else:
             surface = beam(start, end, 0.3 * radius)
             to_second = np.arange(8) >= 4

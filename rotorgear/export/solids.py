@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.export.attachment import Attachment, Skeleton, join_attachments
-from rotorgear.export.layout import display_axes
+from rotorgear.export.layout import display_frames
 from rotorgear.export.parts import FINE, LIGHT, Detail, part_surfaces
 from rotorgear.export.surface import join
 from rotorgear.model.model import Model
@@ -35,6 +35,7 @@ class Solids:
         shaft_names: names of the shafts.
         attachment: what carries each point.
         node_positions: (p, 3) where the nodes are shown.
+        axes: (s, 3, 3) directions of the shafts in space, in columns; None where all are those of the model.
     """
 
     points: np.ndarray
@@ -48,6 +49,7 @@ class Solids:
     shaft_names: tuple[str, ...]
     attachment: Attachment
     node_positions: np.ndarray
+    axes: np.ndarray | None = None
 
     @property
     def size(self) -> float:
@@ -55,8 +57,13 @@ class Solids:
         return float(np.linalg.norm(np.ptp(self.points, axis=0)))
 
     def displacement(self, shape: np.ndarray) -> np.ndarray:
-        """Displacements (P, 3) of all points from those of the nodes (p, 6), real or complex, in m and rad."""
-        return self.attachment.displacement(shape)
+        """Displacements (P, 3) of all points in space from those of the nodes (p, 6), real or complex, in m and rad."""
+        moved = self.attachment.displacement(shape)
+        if self.axes is None:
+            return moved
+        turned = self.attachment.frame >= 0
+        moved[turned] = np.einsum("pij,pj->pi", self.axes[self.attachment.frame[turned]], moved[turned])
+        return moved
 
     def scaled(self, shape: np.ndarray, amplitude: float | None = None) -> tuple[np.ndarray, float]:
         """Displacements (P, 3) large enough to be seen, and the factor on those of the nodes (p, 6); 1 if nothing moves.
@@ -82,7 +89,8 @@ def _largest(vectors: np.ndarray) -> float:
 
 def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Solids:
     """Return the surfaces of all parts of a model with the nodes of one of its results."""
-    skeleton = Skeleton(model, nodes, display_axes(model))
+    frames = display_frames(model)
+    skeleton = Skeleton(model, nodes, frames)
     parts = list(part_surfaces(model, skeleton, detail))
     surface = join([part.surface for part in parts])
     part_names = tuple(dict.fromkeys(part.part for part in parts))
@@ -105,6 +113,9 @@ def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Soli
         shaft_names=shaft_names,
         attachment=join_attachments([part.attachment for part in parts]),
         node_positions=skeleton.positions(),
+        axes=np.array([frame.axes for frame in frames.values()])
+        if any(frame.is_turned for frame in frames.values())
+        else None,
     )
 
 

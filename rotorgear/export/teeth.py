@@ -13,6 +13,7 @@ import numpy as np
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
+from rotorgear.model.parts.frame import Frame
 
 # Grooves of a plain cylinder, and their width in rad and depth relative to the radius, by which its rotation is seen.
 GEAR_GROOVES = 12
@@ -59,10 +60,10 @@ def twist_rates(gear: GearLayout) -> tuple[float, ...]:
     return (rate, -rate)[: gear.helices]
 
 
-def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str, float]:
+def tooth_phases(model: Model, frames: dict[str, Frame]) -> dict[str, float]:
     """Angle in rad of the middle of a tooth in the middle plane of each gear's first helix, so that teeth stand in gaps.
 
-    `axes` says where the shafts are shown, shaft -> (x, y). Where meshes close a loop of gears, its last mesh is left as it is.
+    `frames` says where the shafts are shown. Where meshes close a loop of gears, its last mesh is left as it is.
     """
     phases: dict[str, float] = {}
     first = [mesh.contacts[0] for mesh in model.layout.meshes if mesh.pinion.part.teeth]
@@ -71,16 +72,22 @@ def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str
         while contact := next((c for c in first if (c.pinion in phases) != (c.gear in phases)), None):
             names = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
             known, new = (model.layout.gear(name) for name in names)
-            here = axes[known.shaft]
-            there = axes[new.shaft]
-            out = math.atan2(there[1] - here[1], there[0] - here[0])
+            places = {contact.pinion: contact.contact_z, contact.gear: contact.gear_contact_z}
+            out = _direction(frames[known.shaft], frames[new.shaft].at(new.z))
+            back = _direction(frames[new.shaft], frames[known.shaft].at(known.z))
             pitch, mate_pitch = (2.0 * math.pi / (gear.part.teeth or 1) for gear in (known, new))
-            ahead = (out - phases[known.name] - _turn(known, contact.contact_z)) / pitch
+            ahead = (out - phases[known.name] - _turn(known, places[known.name])) / pitch
 
             # The mate turns the other way: what lies a share of the pitch back here lies the same share ahead there.
-            gap = out + math.pi + ahead * mate_pitch
-            phases[new.name] = gap + 0.5 * mate_pitch - _turn(new, contact.contact_z)
+            gap = back + ahead * mate_pitch
+            phases[new.name] = gap + 0.5 * mate_pitch - _turn(new, places[new.name])
     return phases
+
+
+def _direction(frame: Frame, point: np.ndarray) -> float:
+    """Angle in rad about a shaft's axis at which a point (3,) of the model lies."""
+    x, y, _ = frame.inside(point).tolist()
+    return math.atan2(y, x)
 
 
 def _turn(gear: GearLayout, z: float) -> float:

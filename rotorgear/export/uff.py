@@ -10,9 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.analysis.common.points import coordinates, point_node
+from rotorgear.analysis.common.points import coordinates, located, point_node
 from rotorgear.errors import AnalysisError
+from rotorgear.export.attachment import in_space
 from rotorgear.files.write import written
+from rotorgear.model.model import Model
+from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult, NodeTable
@@ -73,7 +76,7 @@ def _modes(result: ModalResult, modes: Sequence[int] | None, rotations: bool | N
         s = complex(result.eigenvalues[k])
         hz = abs(s) / (2.0 * np.pi)
         damping = -s.real / abs(s) if abs(s) else 0.0
-        values = result.shapes[:, : 6 if six else _TRANSLATIONS, k]
+        values = in_space(result.model, result.nodes, result.shapes[:, :, k])[:, : 6 if six else _TRANSLATIONS]
         title = f"mode {k + 1}, {hz:.6g} Hz, damping ratio {damping:.6g}"
         names = (result.model.title or "rotorgear", title, result.description[k], "rotorgear")
         shape = values if is_complex else np.real(values)
@@ -96,6 +99,7 @@ def _geometry(nodes: NodeTable) -> list[bytes]:
 
 def _responses(result: FrequencyResponse, binary: bool) -> list[bytes]:
     texts = list(dict.fromkeys((*result.inputs, *result.outputs)))
+    _require_plain_axes(result.model, texts)
     places = [(tuple(place.tolist()), dof) for place, dof in (coordinates(result.model, text) for text in texts)]
     # Several directions of one place are one node.
     spots = list(dict.fromkeys(place for place, _ in places))
@@ -118,6 +122,7 @@ def _responses(result: FrequencyResponse, binary: bool) -> list[bytes]:
 def _order_functions(result: ResponseResult, binary: bool) -> list[bytes]:
     if not result.points:
         raise AnalysisError("order functions are those of named points, and the model has none: give it [points]")
+    _require_plain_axes(result.model, result.points)
     sets = _geometry(result.nodes)
     x = result.speeds * RPM_PER_RAD_S
     for k, name in enumerate(result.points):
@@ -130,3 +135,14 @@ def _order_functions(result: ResponseResult, binary: bool) -> list[bytes]:
             function = datasets.Function(datasets.ORDER_FUNCTION, (node + 1, direction + 1), (0, 0), x, y, *axes)
             sets.append(function_set(function, binary=binary))
     return sets
+
+
+def _require_plain_axes(model: Model, places: Sequence[str]) -> None:
+    """AnalysisError where the direction of a place is not along an axis of the model, as those of a universal file are."""
+    for text in places:
+        _, where, _ = located(model, text)
+        if isinstance(where, Place) and model.shafts[where.shaft].frame.is_turned:
+            raise AnalysisError(
+                f"'{text}' looks along the axes of shaft '{where.shaft}', and functions of a universal file along those of the "
+                "model: leave that place out, or save the result as CSV or HDF5"
+            )

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.attachment import nodes_in_order
+from rotorgear.export.attachment import in_space, nodes_in_order
 from rotorgear.export.paraview import add_texts, save_mesh, save_shape, undeformed, write_collection
 from rotorgear.export.solids import Solids
 from rotorgear.files.write import filling, publish
@@ -167,11 +167,11 @@ def beam_mesh(pv: ModuleType, result: ModalResult, solids: Solids) -> Any:
     mesh.point_data["shaft_id"] = np.array([names.index(shaft) for shaft in nodes.shaft[:count]], dtype=np.int16)
     mesh.point_data["pedestal"] = np.array(nodes.pedestal[:count], dtype=bool).astype(np.uint8)
     mesh.point_data["outer_diameter"] = np.array(
-        [model.shafts[s].diameter_at(z) for s, z in zip(nodes.shaft[:count], nodes.position[:count, 2], strict=True)]
+        [model.shafts[s].diameter_at(z) for s, z in zip(nodes.shaft[:count], nodes.along[:count], strict=True)]
     )
     for mode in range(len(result)):
         for what, dofs in (("translation", slice(0, 3)), ("rotation", slice(3, 6))):
-            values = result.shapes[:count, dofs, mode]
+            values = in_space(model, nodes, result.shapes[:, :, mode])[:count, dofs]
             for part in ("real", "imag"):
                 name = f"mode_{mode + 1:02d}_{what}_{part}"
                 mesh.point_data[name] = np.ascontiguousarray(getattr(values, part), float)

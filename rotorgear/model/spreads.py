@@ -109,7 +109,7 @@ def _spreads(model: Model, given: Mapping[str, Scatter]) -> Spreads:
     through &= (numbers.start > 0.0) & (size * spreads.reach >= numbers.start)
     for j in np.flatnonzero(through).tolist():
         address = numbers.addresses[j]
-        if not address.endswith((".at", ".start", "position[0]", "position[1]", _INDEX_ERROR)):
+        if not address.endswith((".at", ".start", "position[0]", "position[1]", "position[2]", _INDEX_ERROR)):
             hint = "take distribution 'lognormal', or a smaller size"
             got = f"{100.0 * size[j] / numbers.start[j]:.3g} % {kinds[j]}"
             raise _refused(address, got, "a spread that keeps the number above 0", hint)

@@ -85,7 +85,7 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[A
     axes = np.atleast_1d(figure.subplots(len(shafts), 1, sharex=True))
     for axis, name in zip(axes, shafts, strict=True):
         nodes = result.nodes.on_shaft(name)
-        z = 1e3 * result.nodes.position[nodes, 2]
+        z = 1e3 * result.nodes.along[nodes]
         for dof, direction in enumerate("xy"):
             axis.plot(z, 1e6 * result.displacement[nodes, dof], color=COLOURS[dof], label=direction, lw=1.6)
         layout = result.model.layout

@@ -134,8 +134,8 @@ def _nodes(model: Model) -> NodeTable:
     for gear, wheel in model.layout.elastic_bodies.items():
         if wheel.surface is not None:
             place = model.layout.gear(gear).places[0]
-            x, y = model.shafts[place.shaft].position or (0.0, 0.0)
-            points[body_name(gear)] = wheel.surface.points + np.array([x, y, place.z])
+            frame = model.shafts[place.shaft].frame
+            points[body_name(gear)] = wheel.surface.points @ frame.axes.T + frame.at(place.z)
     casings = [name for name, those in points.items() for _ in those]
     nothing = ("",) * len(casings)
     return NodeTable(

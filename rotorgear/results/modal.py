@@ -29,11 +29,19 @@ class NodeTable(Record):
     """
 
     shaft: tuple[str, ...] = of("shaft", "", "node")
-    position: np.ndarray = of("position", "m", "node", "xyz", json="position")
+    position: np.ndarray = of("position in the model", "m", "node", "xyz", json="position")
     pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
     casing: tuple[str, ...] = of(
         "surface that the node is on", "", "node", note=': a casing, `"gears.NAME.body"`, or `""`', default=()
     )
+    on_axis: np.ndarray | None = of(
+        "z on its own shaft", "m", "node", note="; `null`: z of the position, where no axis is inclined", default=None
+    )
+
+    @property
+    def along(self) -> np.ndarray:
+        """z of the nodes on their shaft in m, (p,)."""
+        return self.position[:, 2] if self.on_axis is None else self.on_axis
 
     def of_casing(self, casing: str) -> np.ndarray:
         """Numbers of the points of a casing's surface, in its order."""
@@ -42,12 +50,12 @@ class NodeTable(Record):
     def on_shaft(self, shaft: str) -> np.ndarray:
         """Numbers of a shaft's nodes from left to right, without pedestals."""
         on_it = np.array([i for i, name in enumerate(self.shaft) if name == shaft and not self.pedestal[i]], dtype=int)
-        return on_it[np.argsort(self.position[on_it, 2], kind="stable")] if on_it.size else on_it
+        return on_it[np.argsort(self.along[on_it], kind="stable")] if on_it.size else on_it
 
     def nearest(self, shaft: str, z: float) -> int:
         """Number of the node of a shaft nearest to z."""
         numbers = self.on_shaft(shaft)
-        return int(numbers[np.argmin(np.abs(self.position[numbers, 2] - z))])
+        return int(numbers[np.argmin(np.abs(self.along[numbers] - z))])
 
 
 class Piece(Record):

@@ -105,7 +105,9 @@ class StaticResult(AboutEquilibrium, kind="static"):
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
     mesh_force: np.ndarray = of("force along the flank normal", "N", "contact", note=" of each contact", form=".1f")
-    mesh_force_on_gear: np.ndarray = of("force of the pinion on the gear", "N", "contact", "xyz", form=".0f")
+    mesh_force_on_gear: np.ndarray = of(
+        "force of the pinion on the gear", "N", "contact", "xyz", note=", in the frame of the gear's shaft", form=".0f"
+    )
     mesh_stiffness: np.ndarray = of(
         "stiffness along the flank normal", "N/m", "contact", note="; of loaded teeth the mean tangent of a mesh cycle"
     )
@@ -213,6 +215,11 @@ class StaticResult(AboutEquilibrium, kind="static"):
         """Forces of meshes, faces and supports, load sharing, loops, displacements and notes; sensitivities where asked for."""
         at = "" if self.speed is None else f", {self.model.reference_shaft} at {self.speed * RPM_PER_RAD_S:.6g} rpm"
         yield Line(f"{self.model.title or 'Model'}: statics{at}")
+        if self.model.has_turned_axes:
+            yield (
+                "x y z: forces and displacements on shafts in the frame of their shaft, forces on a gear in that of its shaft, "
+                "forces on casings along the axes of the model"
+            )
         if self.torque:
             yield f"torques about z: {'; '.join(f'{name} {value:.2f} N m' for name, value in self.torque.items())}"
         for name, load in self.load_force.items():

@@ -176,9 +176,9 @@ def _with_feet(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:
         pinion = name == contact.pinion
         assert gear.wheel is not None, "feet are those of gears with an elastic body"
         foot = gear.wheel.foot(
-            angle=contact.psi if pinion else contact.psi + np.pi,
+            angle=contact.psi if pinion else contact.gear_psi,
             radius=gear.base_radius / np.cos(contact.pressure_angle),
-            z=contact.contact_z - (contact.pinion_place if pinion else contact.gear_place).z,
+            z=contact.contact_z - contact.pinion_place.z if pinion else contact.gear_contact_z - contact.gear_place.z,
         )
         node = 6 * nodes.at(*layout.place(f"gears.{name}")) + np.arange(6)
         rows = 6 * len(nodes) + first + np.arange(6)

@@ -177,24 +177,32 @@ def _spring_group(
 def relative_motion(layout: Layout, nodes: Nodes, address: str) -> tuple[np.ndarray, np.ndarray]:
     """Dofs (d,) that a bearing, support, coupling or nonlinear element joins, and its six relative displacements, (6, d).
 
-    They are those of its shaft against what it stands on: the ground, a seat in a casing, a pedestal or another shaft.
+    They are those of its shaft against what it stands on, in the frame of its shaft (of the first one of a coupling): the
+    ground, a seat in a casing, a pedestal or another shaft.
     """
     table, _, name = address.partition(".")
     first, *other = layout.places(address)
+    frame = layout.model.shafts[first.shaft].frame
     dofs = node_dofs(nodes.at(*first))[0]
     if table == "couplings":
-        points = [np.array([0.0, 0.0, place.z]) for place in (first, *other)]
-        return np.concatenate([dofs, node_dofs(nodes.at(*other[0]))[0]]), between(*points)
+        mate = frame.sees(layout.model.shafts[other[0].shaft].frame)
+        points = [np.array([0.0, 0.0, first.z]), np.array([0.0, 0.0, other[0].z + mate.origin[2]])]
+        relative = between(*points)
+        relative[:, 6:] = relative[:, 6:] @ mate.six
+        return np.concatenate([dofs, node_dofs(nodes.at(*other[0]))[0]]), relative
     seat = layout.seat(address) if table in ("bearings", "nonlinear_elements") else None
     if seat is not None:
         casing, number, arm = seat
-        return np.concatenate([nodes.of_seat(casing, number), dofs]), np.hstack([-rigid_transfer(arm), np.eye(6)])
+        # A casing moves along the axes of the model.
+        carried = frame.six.T @ rigid_transfer(arm)
+        return np.concatenate([nodes.of_seat(casing, number), dofs]), np.hstack([-carried, np.eye(6)])
     pedestal = layout.model.bearings[name].pedestal if table == "bearings" else None
     if pedestal is None and not other:
         return dofs, np.eye(6)
     # A law knows relative displacements of two nodes, whatever lies between them.
     ground = node_dofs(nodes.of_pedestal(name) if pedestal is not None else nodes.at(*other[0]))[0]
-    return np.concatenate([ground, dofs]), np.hstack([-np.eye(6), np.eye(6)])
+    moved = frame.sees(layout.model.shafts[other[0].shaft].frame).six if other else np.eye(6)
+    return np.concatenate([ground, dofs]), np.hstack([-moved, np.eye(6)])
 
 
 def _shaft(layout: Layout, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
@@ -265,8 +273,10 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
         pinion_base_radius=c.pinion_base_radius,
         gear_base_radius=c.gear_base_radius,
         pinion_offset=c.contact_z - c.pinion_place.z,
-        gear_offset=c.contact_z - c.gear_place.z,
+        gear_offset=c.gear_contact_z - c.gear_place.z,
         contact_position=past_pitch_point,
+        turn=c.turn,
+        gear_node=c.gear_node,
     )
 
 
@@ -291,9 +301,10 @@ def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
         nodes.of_teeth((c.mesh, c.helix), c.gear, *c.gear_place),
     ]
     mesh = layout.mesh(c.mesh)
-    ends = mesh.face(c.helix)
-    if force.face is not None and ends is not None:
-        dofs += [node_dofs(nodes.at(gear.shaft, z))[0] for gear in mesh.gears if gear.part.integral for z in ends]
+    if force.face is not None:
+        integral = (gear for gear in mesh.gears if gear.part.integral)
+        ends = ((gear.shaft, z) for gear in integral for z in mesh.own_face(gear, c.helix) or ())
+        dofs += [node_dofs(nodes.at(*end))[0] for end in ends]
     return np.concatenate(dofs)[None]
 
 

@@ -37,7 +37,7 @@ def outer_loads(system: System, *, steady: bool = False) -> np.ndarray:
 
 
 def wrench_load(system: System, load: ExternalLoad, wrench: np.ndarray) -> np.ndarray:
-    """Force and moment (6,) at the places of a load, in equal parts, over all dofs (a,)."""
+    """Force and moment (6,) at the places of a load, in the frame of its shaft and in equal parts, over all dofs (a,)."""
     f = np.zeros(system.dofs.transform.shape[0], wrench.dtype)
     for place in load.places:
         node = system.nodes.at(*place)
@@ -50,7 +50,8 @@ def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndar
     f = np.zeros(system.dofs.transform.shape[0])
     moved = np.zeros_like(f)
     count = 6 * len(system.nodes)
-    moved[:count].reshape(-1, 6)[:, :3] = gravity
+    own = {name: np.array(gravity) @ shaft.frame.axes for name, shaft in system.model.shafts.items()}
+    moved[:count].reshape(-1, 6)[:, :3] = [own[shaft] for shaft in system.nodes.shaft]
     for name in system.model.casings:
         forces = system.layout.casing(name).inertia_force[:, :3] @ np.array(gravity)
         # A body that was reduced elsewhere may come without its weight; results say so.

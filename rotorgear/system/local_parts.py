@@ -244,6 +244,6 @@ def external_parts(system: System) -> Iterator[LocalPart]:
         for component, values in zip(load.history.components, load.history.values, strict=True):
             k = COMPONENTS.index(component)
             over_angle = load.history.over == "angle"
-            table = TabulatedForce(load.history.places, values, over_angle, load.ratio, float(load.constant[k]))
-            column = wrench_load(system, load, np.eye(6)[k])[:, None]
+            table = TabulatedForce(load.history.places, values, over_angle, load.ratio, float(load.history.mean[k]))
+            column = wrench_load(system, load, load.frame.own(np.eye(6)[k]))[:, None]
             yield LocalPart(load.address, f"{name} {component}", table, column)

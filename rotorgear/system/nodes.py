@@ -139,7 +139,7 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
     for mesh in layout.meshes:
         for gear in mesh.gears if mesh.part.tilt else ():
             for helix in range(mesh.helices if gear.part.integral else 0):
-                found[gear.shaft] += [(z, f"meshes.{mesh.name} face") for z in mesh.face(helix) or ()]
+                found[gear.shaft] += [(z, f"meshes.{mesh.name} face") for z in mesh.own_face(gear, helix) or ()]
     return found
 
 

@@ -252,9 +252,12 @@ class System:
         return next((group for group in rigid_groups(self.model, self.nodes) if node in group), [node])
 
     def positions(self) -> np.ndarray:
-        """x, y, z of all nodes in m, shape (p, 3); shafts without positions lie at x = y = 0."""
-        axes = {name: shaft.position or (0.0, 0.0) for name, shaft in self.model.shafts.items()}
-        return np.column_stack([np.array([axes[shaft] for shaft in self.nodes.shaft]).reshape(-1, 2), self.nodes.z])
+        """x, y, z of all nodes in the model in m, shape (p, 3); shafts without positions begin at the origin."""
+        frames = {name: shaft.frame for name, shaft in self.model.shafts.items()}
+        origins, along = np.array(
+            [(frames[name].origin, frames[name].axes[:, 2]) for name in self.nodes.shaft]
+        ).swapaxes(0, 1)
+        return np.asarray(origins + np.array(self.nodes.z)[:, None] * along)
 
     @cached_property
     def _circulates(self) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 import scipy.optimize as optimize
+from scipy.spatial.transform import Rotation
 
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, flank_normal, gear_mesh
@@ -336,6 +337,26 @@ def test_c19_a_spur_pair_in_torsion_has_the_damping_ratio_that_was_asked_for() -
 def replace_motions(model: rg.Model) -> rg.Model:
     """The model with torsion only."""
     return rg.Model(motions=["torsion"], shafts=model.shafts, gears=model.gears, meshes=model.meshes)
+
+
+@pytest.mark.parametrize(("sense", "hand"), SIGNS)
+def test_c33_a_contact_of_shafts_in_space_is_one_point_and_one_normal(sense: int, hand: int) -> None:
+    """P and n by hand in space, each shaft with a frame of its own; a spin of x of the gear's shaft about its axis beside it."""
+    plain = contact(hand, sense)
+    R1 = Rotation.from_rotvec([0.4, 1.3, -0.8]).as_matrix()
+    R2 = R1 @ Rotation.from_rotvec([0.0, 0.0, 0.9]).as_matrix()
+    O1 = np.array([0.3, -0.2, 0.5])
+    r1, r2 = (r / np.cos(plain.pressure_angle) for r in (plain.pinion_base_radius, plain.gear_base_radius))
+    e, t = (np.array([np.cos(psi), np.sin(psi), 0.0]) for psi in (plain.psi, plain.psi + 0.5 * np.pi))
+    n_t = sense * np.cos(plain.pressure_angle) * t + np.sin(plain.pressure_angle) * e
+    P = O1 + R1 @ (r1 * e + plain.contact_position * n_t + np.array([0.0, 0.0, plain.pinion_offset]))
+    O2 = O1 + R1 @ ((r1 + r2) * e + np.array([0.0, 0.0, plain.pinion_offset - plain.gear_offset]))
+    n = R1 @ flank_normal(plain)
+    by_hand = np.concatenate([R1.T @ n, R1.T @ np.cross(P - O1, n), -R2.T @ n, -R2.T @ np.cross(P - O2, n)])
+    turn = tuple(map(tuple, (R2.T @ R1).tolist()))
+    node = tuple((R1.T @ (O2 - O1)).tolist())
+    for g in (replace(plain, turn=turn), replace(plain, turn=turn, gear_node=node)):
+        np.testing.assert_allclose(contact_vector(g), by_hand, rtol=0.0, atol=1e-15)
 
 
 def test_the_other_flank_has_the_mirrored_normal() -> None:

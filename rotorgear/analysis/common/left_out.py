@@ -160,7 +160,8 @@ def _without_motion(system: System) -> Iterator[Note]:
         for name, unbalance in model.unbalances.items():
             yield Note(f"unbalances.{name}", "", why, in_words(unbalance, "magnitude"))
     gravity = model.operation.gravity if model.operation else None
-    if gravity and any(gravity) and not (np.array(gravity)[moves[:3]]).any():
+    own = [np.array(gravity) @ shaft.frame.axes for shaft in model.shafts.values()] if gravity and any(gravity) else []
+    if own and not (np.abs(own)[:, moves[:3]] > 1e-12 * np.abs(own).max()).any():
         yield Note("operation.gravity", "", why)
 
 
@@ -395,7 +396,8 @@ def _of_load(system: System, load: ExternalLoad, analysis: Analysis) -> Iterator
     size = _size(load)
     given = (load.constant != 0.0) | (load.amplitude != 0.0)
     if load.history is not None:
-        given |= np.isin(COMPONENTS, load.history.components)
+        columns = np.eye(6)[[COMPONENTS.index(name) for name in load.history.components]]
+        given |= (np.abs(load.frame.own(columns)) > 1e-12).any(axis=0)
     lost = [name for k, name in enumerate(COMPONENTS) if given[k] and not system.model.has(_MOTION[k])]
     if lost:
         words = ", ".join(lost).replace("_", " ")

@@ -102,8 +102,7 @@ def coordinates(model: Model, text: str) -> tuple[np.ndarray, int]:
     """
     casing, where, dof = located(model, text)
     if isinstance(where, Place):
-        x, y = model.shafts[where.shaft].position or (0.0, 0.0)
-        return np.array([x, y, where.z]), dof
+        return model.shafts[where.shaft].frame.at(where.z), dof
     body = model.layout.casing(casing)
     if isinstance(where, str):
         return np.asarray(body.seat_points[body.seats.index(where)]), dof

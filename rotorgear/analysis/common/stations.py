@@ -19,15 +19,17 @@ from rotorgear.system.system import System
 def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.ndarray]:
     """Return nodes, inner stations and points on casings and gear bodies, and the displacements (p, 6, m) there of dofs q (a, m).
 
+    Those on shafts are in the frame of their shaft, those of surfaces along the axes of the model.
+
     Between the nodes of a basic element the exact static shape is all there is, so it gets no stations.
     """
     count = len(system.nodes)
     shafts = list(system.nodes.shaft)
     pedestals = list(system.nodes.pedestal)
+    along = [np.array(system.nodes.z)]
     positions = [system.positions()]
     shapes = [q[: 6 * count].reshape(count, 6, -1)]
     for name, shaft in system.model.shafts.items():
-        x, y = shaft.position or (0.0, 0.0)
         for rigid, order, elements, dofs in alike(system.model, system.nodes, name):
             if rigid or order < 2:
                 continue
@@ -37,7 +39,8 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
             left = np.array([system.nodes.z[element.left] for element in elements])
             length = np.array([element.length for element in elements])
             z = (left[:, None] + length[:, None] * places).ravel()
-            positions.append(np.column_stack([np.full(len(z), x), np.full(len(z), y), z]))
+            along.append(z)
+            positions.append(shaft.frame.at(z))
             shapes.append(inner)
             shafts += [name] * len(z)
             pedestals += [""] * len(z)
@@ -46,11 +49,14 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
         casings += [""] * (len(shafts) - len(casings)) + [name] * len(points)
         shafts += [""] * len(points)
         pedestals += [""] * len(points)
+        along.append(points[:, 2])
         positions.append(points)
         shapes.append(np.concatenate([displaced, np.zeros_like(displaced)], axis=1))
     # Those of a large model fill a good part of the memory: no copy without a reason.
     displaced_all = shapes[0] if len(shapes) == 1 else np.vstack(shapes)
-    return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals), tuple(casings)), displaced_all
+    inclined = any(shaft.frame.is_moved for shaft in system.model.shafts.values())
+    on_axis = np.concatenate(along) if inclined else None
+    return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals), tuple(casings), on_axis), displaced_all
 
 
 def _surfaces(system: System, q: np.ndarray) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
@@ -66,7 +72,9 @@ def _surfaces(system: System, q: np.ndarray) -> Iterator[tuple[str, np.ndarray, 
         node = system.nodes.at(*place)
         rigid = rigid_motions(wheel.surface.points).reshape(-1, 3, 6) @ q[6 * node : 6 * node + 6]
         elastic = wheel.surface.basis @ q[system.nodes.of_body(name)]
-        yield body_name(name), wheel.surface.points + system.positions()[node], rigid + elastic
+        frame = system.model.shafts[place.shaft].frame
+        moved = np.einsum("ij,pjm->pim", frame.axes, rigid + elastic) if frame.is_turned else rigid + elastic
+        yield body_name(name), wheel.surface.points @ frame.axes.T + system.positions()[node], moved
 
 
 def part_nodes(system: System) -> dict[str, int]:

@@ -154,7 +154,8 @@ def _external_loads(system: System, blank: Order, left: list[Note]) -> Iterable[
         elif load.history is not None and load.history.over == "angle":
             coefficients, rest = _of_history(load.history)
             for n, wrench in coefficients:
-                applied = T.T @ wrench_load(system, load, wrench if sense > 0 else wrench.conj())
+                own = load.frame.own(wrench if sense > 0 else wrench.conj())
+                applied = T.T @ wrench_load(system, load, own)
                 yield turning(float(n), load.counted, abs(load.ratio), applied)
             left += _weak(load.address, "table over the angle", rest)
 

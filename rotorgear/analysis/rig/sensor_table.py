@@ -16,13 +16,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.common.points import coordinates
+from rotorgear.analysis.common.points import coordinates, located
 from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.files.numbers import is_count
 from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.shaft import Place as ShaftPlace
 from rotorgear.note import Note
 from rotorgear.quantity import counted
 from rotorgear.uff.datasets import AXES, Nodes, UniversalFile
@@ -172,6 +173,7 @@ def _placed(
             distance, place = nearest[sensor.node]
             if place.startswith("casings.") and sensor.direction > 2:
                 continue  # surfaces of casings only displace
+            _require_plain_axes(model, place, sensor.node)
             sensor = replace(sensor, place=f"{place}:{DOF_NAMES[sensor.direction]}", distance=distance)
         other = found.get(sensor.place)
         if other is None or (other.distance or 0.0) > (sensor.distance or 0.0):
@@ -179,6 +181,16 @@ def _placed(
     if fewer := len(sensors) - len(found):
         notes.append(Note("", f"{counted(fewer, 'sensors')} left out: another one at the same place is nearer"))
     return list(found.values()), notes
+
+
+def _require_plain_axes(model: Model, place: str, node: int) -> None:
+    """AnalysisError for a node of a file, which looks along the axes of the model, at a place on a shaft with others."""
+    where = located(model, f"{place}:x")[1]
+    if isinstance(where, ShaftPlace) and model.shafts[where.shaft].frame.is_turned:
+        raise AnalysisError(
+            f"node {node} lies nearest to {place}, and shaft '{where.shaft}' does not have the axes of the file: name the place "
+            "and its direction in the frame of the shaft in a table (--points)"
+        )
 
 
 def places_of(model: Model) -> tuple[list[str], NDArray[np.float64]]:

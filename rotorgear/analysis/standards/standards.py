@@ -411,13 +411,13 @@ class UnbalanceResponse:
         size = np.linalg.norm(np.abs(moved), axis=1)
         padded = np.concatenate([[-1.0], size, [-1.0]])
         inner = np.flatnonzero((size >= padded[:-2]) & (size > padded[2:]) & (size >= _SEEN * size.max(initial=0.0)))
-        z = shape[0].position[there[inner], 2]
+        z = shape[0].along[there[inner]]
         # Deflections lie on one side or the other of the axis: the sign of the projection on the largest one.
         side = np.where(np.real(moved[inner] @ moved[int(np.argmax(size))].conj()) >= 0.0, 1.0, -1.0)
         at = np.array([system.nodes.at(shaft, place) for place in z], dtype=int)
         kept = np.unique(at, return_index=True)[1]
         self.z = z[kept]
-        weights = weight_loads(system, (1.0, 0.0, 0.0))
+        weights = weight_loads(system, tuple(system.model.shafts[shaft].frame.axes[:, 0]))
         places = np.array([system.nodes.z[node] for node in self.nodes])
         nearest = np.argmin(np.abs(places[:, None] - self.z), axis=1) if kept.size else np.zeros(0, int)
         mass = [weights[6 * self.nodes[nearest == k]].sum() for k in range(len(kept))]

@@ -14,12 +14,12 @@ from rotorgear.system.groups import ElementGroup
 
 
 def forces_on_gears(equilibrium: Equilibrated) -> np.ndarray:
-    """Force of the pinion on the gear at each contact, (c, 3): the normal force along v's own direction."""
+    """Force of the pinion on the gear at each contact, (c, 3), in the frame of the gear: the normal force along v."""
     groups = [group for group in equilibrium.system.groups if group.part.startswith("meshes.")]
     rows = []
     for group, force in zip(groups, equilibrium.force, strict=True):
         assert group.matrices.strain is not None
-        rows.append(force * group.matrices.strain[0, 0, :3])
+        rows.append(force * -group.matrices.strain[0, 0, 6:9])
     return np.array(rows).reshape(-1, 3)
 
 
@@ -52,13 +52,14 @@ def bearing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
 
 
 def _in_seats(equilibrium: Equilibrated) -> Iterator[tuple[BearingSeat, np.ndarray]]:
-    """The seat of each bearing and nonlinear element that is in one, and force and moment (6,) on its shaft."""
+    """The seat of each bearing and nonlinear element that is in one, and force and moment (6,) on its shaft in the model."""
     system = equilibrium.system
     forces = bearing_forces(equilibrium)
     for address, seat in system.layout.seats:
         on_shaft = forces.get(address.removeprefix("bearings."))
         if on_shaft is not None:
-            yield seat, on_shaft
+            frame = system.model.shafts[system.layout.place(address).shaft].frame
+            yield seat, frame.six @ on_shaft
 
 
 def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks import names, sizes
+from rotorgear.model.checks import axes, names, sizes
 from rotorgear.model.checks.casings import casings, gear_bodies
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
 from rotorgear.model.checks.loads import loads, loads_that_stand_still, operating_point, train_problems
@@ -40,6 +40,7 @@ def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Probl
         *names.unknown_materials(model, dropped),
         *sizes.materials(rest),
         *sizes.sections(rest),
+        *axes.positions(rest),
         *gear_problems(rest),
         *gear_bodies(rest),
         *sizes.matrices(rest),
@@ -51,7 +52,7 @@ def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Probl
         *operating_point(rest, dropped),
     ]
     stages: tuple[Callable[[Layout], Iterable[Problem]], ...] = (
-        lambda rest: [*sizes.stations(rest.model), *sizes.coupled_points(rest.model)],
+        lambda rest: [*sizes.stations(rest.model), *axes.coupled_points(rest.model)],
         mesh_problems,
         lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped), *loads_that_stand_still(rest)],
         massless_gears,

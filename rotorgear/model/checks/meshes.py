@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.pair import working_centre_distance
+from rotorgear.model.checks.axes import not_parallel
 from rotorgear.model.checks.casings import counted_twice
 from rotorgear.model.checks.gears import degrees, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
@@ -52,6 +53,8 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             yield Problem(address, f"gear '{mesh.gear}' with itself", "two gears")
         elif pinion.shaft == gear.shaft:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
+        elif inclined := list(not_parallel(address, both.gear_frame, "parallel axes of both gears")):
+            yield from inclined
         else:
             yield from _excitations(address, mesh, pinion, gear)
             yield from _on_shafts(address, both)
@@ -145,7 +148,7 @@ def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
 def _faces(address: str, mesh: MeshLayout) -> Iterator[Problem]:
     if mesh.pinion.part.kind != mesh.gear.part.kind:
         return
-    for helix, (one, other) in enumerate(zip(mesh.pinion.planes, mesh.gear.planes, strict=True)):
+    for helix, (one, other) in enumerate(mesh.planes):
         face = mesh.face(helix)
         if face is None and abs(one - other) > 1e-9 + 1e-6 * max(abs(one), abs(other)):
             text = f"gears at z = {millimetres(one)} and z = {millimetres(other)}, not both with a width"
@@ -165,7 +168,7 @@ def _on_shafts(address: str, mesh: MeshLayout) -> Iterator[Problem]:
         shaft = gear.shaft_part
         slack = 1e-9 * max(shaft.length, abs(shaft.start))
         for helix in range(mesh.helices if gear.part.integral else 0):
-            low, high = mesh.face(helix) or (shaft.start, shaft.end)
+            low, high = mesh.own_face(gear, helix) or (shaft.start, shaft.end)
             if low < shaft.start - slack or high > shaft.end + slack:
                 text = f"a face from {millimetres(low)} to {millimetres(high)} on shaft '{gear.shaft}'"
                 run = f"it runs from {millimetres(shaft.start)} to {millimetres(shaft.end)}"

@@ -224,21 +224,3 @@ def _station(model: Tables, address: str, shaft: str, at: float | str, offset: f
     else:
         got = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
         yield Problem(address, got, f"both helices on {run}", "nodes = 1 puts the whole gear at one place")
-
-
-def coupled_points(model: Tables) -> Iterator[Problem]:
-    """A coupling joins two points, and their shafts are coaxial."""
-    for name, coupling in model.couplings.items():
-        address = f"couplings.{name}"
-        first = model.shafts[coupling.from_shaft]
-        second = model.shafts[coupling.to_shaft]
-        if first is second and first.station(coupling.from_at) == second.station(coupling.to_at):
-            yield Problem(address, "one and the same point twice", "two points")
-        # Positions may be left out, and torsion alone knows no axes: nothing to compare then.
-        if not model.has("bending") or first.position is None or second.position is None:
-            continue
-        distance = max(abs(a - b) for a, b in zip(first.position, second.position, strict=True))
-        if distance > 1e-9 + 1e-6 * max(first.length, second.length):
-            apart = f"shafts whose axes are {millimetres(distance)} apart"
-            hint = "a coupling joins shafts on one axis, a mesh joins parallel ones"
-            yield Problem(address, apart, "coaxial shafts", hint)

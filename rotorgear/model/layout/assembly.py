@@ -106,8 +106,8 @@ def _pitches(done: Assembly, mesh: MeshLayout, gear: GearLayout) -> float:
 
 
 def _towards_pitch_point(mesh: MeshLayout, gear: GearLayout) -> float:
-    """Direction of the pitch point from a gear's axis."""
-    return mesh.psi + (math.pi if gear is mesh.gear else 0.0)
+    """Direction of the pitch point from a gear's axis, in the frame of its shaft."""
+    return mesh.gear_psi if gear is mesh.gear else mesh.psi
 
 
 def _wrapped(value: float, period: float) -> float:
@@ -184,4 +184,4 @@ def _tooth(assembly: Assembly, train: Train, direction: int, mesh: MeshLayout, n
     phase = turns(mesh.pinion, mesh.psi, half) % 1.0
     if is_pinion:
         return round(turns(mesh.pinion, mesh.psi, half) - phase)
-    return round(turns(mesh.gear, mesh.psi + math.pi, 0.5 - half) - phase)
+    return round(turns(mesh.gear, mesh.gear_psi, 0.5 - half) - phase)

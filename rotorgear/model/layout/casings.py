@@ -115,8 +115,17 @@ def _place(seat: Seat) -> str | Cylinder:
     if seat.set is not None:
         return seat.set
     # Checked: where there is no set, the whole place is given.
+    axis = seat.axis or "z"
     center = seat.center or (0.0, 0.0)
-    return Cylinder("xyz".index(seat.axis or "z"), center, seat.begin or 0.0, seat.to or 0.0, seat.radius or 0.0)
+    direction = [float(axis == name) for name in "xyz"] if isinstance(axis, str) else axis
+    line = np.array(direction) / math.hypot(*direction)
+    place = np.array(center if len(center) == 3 else np.insert(center, "xyz".index(str(axis)), 0.0))
+    return Cylinder(_three(place), _three(line), seat.begin or 0.0, seat.to or 0.0, seat.radius or 0.0)
+
+
+def _three(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def reduced_wheel(name: str, gear: Gear, material: Material) -> ReducedWheel:
@@ -161,13 +170,17 @@ def find_seat(model: Tables, address: str, place: Place, body_of: Callable[[str]
             f"(casings.{casing}.seats says which seat a bearing stands in)"
         )
     number = body.seats.index(wanted)
-    x, y = model.shafts[place.shaft].position or (0.0, 0.0)
-    arm = np.array([x, y, place.z]) - body.seat_points[number]
-    off = math.hypot(arm[0], arm[1])
+    frame = model.shafts[place.shaft].frame
+    arm = frame.at(place.z) - body.seat_points[number]
+    across = frame.axes[:, :2].T @ arm
+    off = math.hypot(*across)
     if off > _OFF_AXIS:
+        # What of its position must change: all three coordinates where that lies across an inclined axis.
+        wanted_place = frame.origin - frame.axes[:, :2] @ across
+        count = 3 if frame.is_turned else 2
         raise AnalysisError(
             f"{address}.casing: the axis of shaft '{place.shaft}' misses seat '{wanted}' of casing '{casing}' by "
-            f"{millimetres(off)}: give the shaft the position {millimetres(float(body.seat_points[number][0]))}, "
-            f"{millimetres(float(body.seat_points[number][1]))}, or name another seat"
+            f"{millimetres(off)}: give the shaft the position "
+            f"{', '.join(millimetres(float(x)) for x in wanted_place[:count])}, or name another seat"
         )
     return casing, number, arm

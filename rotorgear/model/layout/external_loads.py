@@ -3,7 +3,8 @@
     F(t) = F_0 + A cos(n theta + 2 pi f t + phase),   theta = ratio * angle of the reference
 
 n is the order, f the frequency; of a history over the angle theta or over the time, F_0 is its mean over a turn or its value at
-time 0, where a transient begins.
+time 0, where a transient begins. The file gives them along x, y and z of the model; here they are in the frame of their shaft,
+but for the values of a history.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.frame import Frame
 from rotorgear.model.parts.load import LoadHistory
 from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
@@ -25,7 +27,7 @@ class ExternalLoad:
 
     Attributes:
         address: such as "loads.belt".
-        places: where it acts, in equal parts: the nodes of a herringbone gear, else one.
+        places: where it acts, in equal parts: the nodes of a herringbone gear, else one; frame: of their shaft.
         constant: mean force and moment (6,) in N and N m.
         amplitude: of the harmonic part (6,).
         order: n times the ratio of the shaft, with its sign: radians for each of the reference.
@@ -37,6 +39,7 @@ class ExternalLoad:
 
     address: str
     places: tuple[Place, ...]
+    frame: Frame
     constant: np.ndarray
     amplitude: np.ndarray
     order: float
@@ -67,16 +70,18 @@ def external_loads(model: Tables, train: Train, places: Callable[[str], tuple[Pl
         address = f"loads.{name}"
         there = places(address)
         shaft = there[0].shaft
+        frame = model.shafts[shaft].frame
         counted = load.order_of or shaft
         ratio = train.ratio(counted)
-        given = np.array([*(load.force or (0.0,) * 3), *(load.moment or (0.0,) * 3)])
+        given = _in_frame(np.array([*(load.force or (0.0,) * 3), *(load.moment or (0.0,) * 3)]), frame)
         varies = load.order is not None or load.frequency is not None
         nothing = np.zeros(6)
         found.append(
             ExternalLoad(
                 address=address,
                 places=there,
-                constant=load.history.mean if load.history else nothing if varies else given,
+                frame=frame,
+                constant=_in_frame(load.history.mean, frame) if load.history else nothing if varies else given,
                 amplitude=given if varies else nothing,
                 order=(load.order or 0.0) * ratio,
                 frequency=load.frequency or 0.0,
@@ -88,3 +93,12 @@ def external_loads(model: Tables, train: Train, places: Callable[[str], tuple[Pl
             )
         )
     return tuple(found)
+
+
+def _in_frame(wrench: np.ndarray, frame: Frame) -> np.ndarray:
+    """Force and moment (6,) in the directions of a shaft, without what rounding leaves across them."""
+    if not frame.is_turned:
+        return wrench
+    own = frame.own(wrench).reshape(2, 3)
+    own[np.abs(own) < 1e-15 * np.linalg.norm(own, axis=1, keepdims=True)] = 0.0
+    return own.ravel()

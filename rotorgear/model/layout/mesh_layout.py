@@ -27,6 +27,7 @@ from rotorgear.gears.geometry.pair import (
 )
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.frame import Frame
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import millimetres
@@ -52,11 +53,14 @@ class Contact:
         mesh: name of the mesh.
         helix: 0 for the only one or that at the smaller z, 1 for the other of a herringbone.
         pinion, gear: names of the gears; pinion_place, gear_place: of the two gear nodes.
-        contact_z: z of the middle of the common face.
+        contact_z: z of the middle of the common face on the pinion's shaft; gear_contact_z: on the gear's.
         hand: +1 right, -1 left hand of the pinion's helix, 0 for a spur gear.
-        psi: direction from pinion to gear from +x.
+        psi: direction from pinion to gear from +x of the pinion's shaft; gear_psi: that from gear to pinion from +x of its own.
         pressure_angle: working transverse pressure angle.
         stiffness: along the flank normal; NaN where a contact stands for its geometry only.
+        turn: rows of (3, 3), directions of the pinion's shaft in those of the gear's; None where both are the same.
+        gear_node: (x, y, z) from the pinion's node to the gear's in the frame of the pinion's shaft, beside a turn and where
+            both shafts have positions.
     """
 
     mesh: str
@@ -66,14 +70,18 @@ class Contact:
     pinion_place: Place
     gear_place: Place
     contact_z: float
+    gear_contact_z: float
     hand: int
     psi: float
+    gear_psi: float
     pressure_angle: float
     base_helix_angle: float
     pinion_base_radius: float
     gear_base_radius: float
     stiffness: float
     contact_position: float
+    turn: tuple[tuple[float, ...], ...] | None = None
+    gear_node: tuple[float, ...] | None = None
 
 
 class MeshLayout:
@@ -114,18 +122,31 @@ class MeshLayout:
     @cached_property
     def centre_line(self) -> tuple[float, float] | None:
         """Centre distance in m and direction from pinion to gear in rad; None where the shafts have no positions."""
-        first = self.pinion.shaft_part.position
-        second = self.gear.shaft_part.position
-        if first is None or second is None:
+        if self.pinion.shaft_part.position is None or self.gear.shaft_part.position is None:
             return None
-        dx = second[0] - first[0]
-        dy = second[1] - first[1]
+        dx, dy, _ = self.gear_frame.at(self.gear.z).tolist()
         return math.hypot(dx, dy), math.atan2(dy, dx)
+
+    @cached_property
+    def gear_frame(self) -> Frame:
+        """The gear's shaft in the frame of the pinion's."""
+        return self.pinion.shaft_part.frame.sees(self.gear.shaft_part.frame)
+
+    @property
+    def _shift(self) -> float:
+        """z in m of the gear's z = 0 on the pinion's shaft."""
+        return float(self.gear_frame.origin[2])
 
     @property
     def psi(self) -> float:
-        """Direction from pinion to gear from +x in rad."""
+        """Direction from pinion to gear in rad, from +x of the pinion's shaft."""
         return self.centre_line[1] if self.centre_line else (self.part.centre_line_angle or 0.0)
+
+    @property
+    def gear_psi(self) -> float:
+        """Direction from gear to pinion in rad, from +x of the gear's shaft."""
+        x = self.gear_frame.axes[:, 0]
+        return self.psi + math.pi - math.atan2(x[1], x[0])
 
     @cached_property
     def pressure_angle(self) -> float:
@@ -179,14 +200,25 @@ class MeshLayout:
         )
 
     def face(self, helix: int) -> tuple[float, float] | None:
-        """z range in m where the two gears of one helix face each other; None where a width is missing."""
+        """z range in m where the two gears of one helix face each other, on the pinion's shaft; None where a width is missing."""
         pinion = self.pinion.part.width
         gear = self.gear.part.width
         if not pinion or not gear:
             return None
-        first = self.pinion.planes[helix]
-        second = self.gear.planes[helix]
+        first, second = self.planes[helix]
         return max(first - 0.5 * pinion, second - 0.5 * gear), min(first + 0.5 * pinion, second + 0.5 * gear)
+
+    @property
+    def planes(self) -> tuple[tuple[float, float], ...]:
+        """z in m of the mid-planes of pinion and gear, both on the pinion's shaft, of each helix from left to right."""
+        pairs = zip(self.pinion.planes, self.gear.planes, strict=True)
+        return tuple((first, second + self._shift) for first, second in pairs)
+
+    def own_face(self, gear: GearLayout, helix: int) -> tuple[float, float] | None:
+        """The same range on the shaft of one of its gears."""
+        face = self.face(helix)
+        shift = 0.0 if gear is self.pinion else self._shift
+        return None if face is None else (face[0] - shift, face[1] - shift)
 
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
@@ -194,23 +226,36 @@ class MeshLayout:
         return tuple(self._contact(helix) for helix in range(self.helices))
 
     def _contact(self, helix: int) -> Contact:
-        low, high = self.face(helix) or (self.pinion.planes[helix], self.gear.planes[helix])
+        low, high = self.face(helix) or self.planes[helix]
+        middle = 0.5 * (low + high)
+        pinion_place = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
+        gear_place = self.gear.places[helix if len(self.gear.places) == 2 else 0]
+        turn = None
+        gear_node = None
+        if self.gear_frame.is_turned:
+            turn = tuple(map(tuple, self.gear_frame.axes.T.tolist()))
+            if self.centre_line is not None:
+                gear_node = tuple((self.gear_frame.at(gear_place.z) - [0.0, 0.0, pinion_place.z]).tolist())
         return Contact(
             mesh=self.name,
             helix=helix,
             pinion=self.pinion.name,
             gear=self.gear.name,
-            pinion_place=self.pinion.places[helix if len(self.pinion.places) == 2 else 0],
-            gear_place=self.gear.places[helix if len(self.gear.places) == 2 else 0],
-            contact_z=0.5 * (low + high),
+            pinion_place=pinion_place,
+            gear_place=gear_place,
+            contact_z=middle,
+            gear_contact_z=middle - self._shift,
             hand=self.pinion.hand if helix == 0 else -self.pinion.hand,
             psi=self.psi,
+            gear_psi=self.gear_psi,
             pressure_angle=self.pressure_angle,
             base_helix_angle=self.pinion.base_helix_angle,
             pinion_base_radius=self.pinion.base_radius,
             gear_base_radius=self.gear.base_radius,
             stiffness=math.nan,
             contact_position=self.part.contact_position,
+            turn=turn,
+            gear_node=gear_node,
         )
 
     @property

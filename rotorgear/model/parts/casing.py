@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, WithJsonSchema, create_model, model_validator
 from pydantic_core import CoreSchema
 
 from rotorgear.model.parts import fields as si
-from rotorgear.model.parts.fields import Name, Part, listed
+from rotorgear.model.parts.fields import Name, Part, listed, parse_direction, refuse
 from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix
 
 # Lengths of the units that meshes are drawn in, in m.
@@ -17,17 +17,52 @@ UNIT_LENGTHS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 
 ONLY_MESH = "mesh"
 
 
-_CENTER = "the two coordinates across the axis, in the order x y z, such as ['-55 mm', '130 mm']"
+_CENTER = (
+    "the two coordinates across an axis x, y or z, in the order x y z, such as ['-55 mm', '130 mm'], or all three of a point on "
+    "an axis of any direction"
+)
 _POINT = "the point x y z of the seat such as ['-55 mm', '130 mm', '20 mm']"
+
+
+def _parse_axis(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return parse_direction(value)
+    if value not in ("x", "y", "z"):
+        raise refuse("'x', 'y' or 'z', or a direction such as [0, 0.6, 0.8]")
+    return value
+
+
+def _parse_center(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) not in (2, 3):
+        raise refuse(_CENTER)
+    return value
+
+
+_NUMBERS = {"type": "array", "minItems": 3, "maxItems": 3, "items": {"type": "number"}}
+SeatAxis = Annotated[
+    Literal["x", "y", "z"] | tuple[float, float, float],
+    BeforeValidator(_parse_axis),
+    WithJsonSchema({"anyOf": [{"enum": ["x", "y", "z"], "type": "string"}, _NUMBERS]}),
+]
+SeatCenter = Annotated[
+    tuple[si.Length, ...],
+    BeforeValidator(_parse_center),
+    WithJsonSchema({"type": "array", "minItems": 2, "maxItems": 3, "items": si.Unit("length").schema()}),
+]
 
 
 class _Seat(Part):
     """A bearing seat: a face or node set of the mesh, or the cylinder that a bearing sits in."""
 
     set: str | None = Field(None, description="name of a face or node set; a text in place of the table says it alone")
-    axis: Literal["x", "y", "z"] | None = Field(None, description="without a set: direction of the axis of the bore")
-    center: Annotated[tuple[si.Length, si.Length], listed(2, _CENTER)] | None = Field(
-        None, description="where the axis is: the coordinates across it, in the order x y z"
+    axis: SeatAxis | None = Field(
+        None,
+        description="without a set: direction of the axis of the bore, x, y or z, or a vector such as [0, 0.6, 0.8]",
+    )
+    center: SeatCenter | None = Field(
+        None,
+        description="where the axis is: the coordinates across it, in the order x y z; of a vector all three of a point on it, "
+        "from which `from` and `to` count",
     )
     radius: si.PositiveLength | None = Field(None, description="radius of the bore")
     to: si.Length | None = Field(None, description="where the seat ends along the axis")
@@ -36,6 +71,14 @@ class _Seat(Part):
     @classmethod
     def _a_text_is_a_set(cls, data: Any) -> Any:
         return {"set": data} if isinstance(data, str) else data
+
+    @model_validator(mode="after")
+    def _center_of_axis(self) -> Self:
+        if self.axis is not None and self.center is not None:
+            wanted = 2 if isinstance(self.axis, str) else 3
+            if len(self.center) != wanted:
+                raise refuse(f"a center of {wanted} coordinates beside this axis; it has {len(self.center)}")
+        return self
 
     @property
     def begin(self) -> float | None:

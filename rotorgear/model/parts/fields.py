@@ -255,7 +255,54 @@ def listed(count: int, expected: str) -> BeforeValidator:
     return BeforeValidator(parse)
 
 
-Position = Annotated[tuple[Length, Length], listed(2, "x and y of the axis such as ['0 mm', '120 mm']")]
+def _parse_position(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) not in (2, 3):
+        raise refuse("x and y of the axis such as ['0 mm', '120 mm'], or x, y and z of its z = 0")
+    return value
+
+
+def parse_direction(value: Any) -> tuple[float, ...]:
+    """Three numbers that are not all 0, of a direction.
+
+    Raises:
+        PydanticCustomError: others.
+    """
+    wanted = "x, y and z of a direction such as [0, 0.6, 0.8]; its length does not matter"
+    try:
+        x, y, z = (parse_quantity(part, "ratio") for part in value)
+    except (TypeError, ValueError, QuantityError):
+        raise refuse(wanted) from None
+    if not 1e-9 <= max(abs(x), abs(y), abs(z)) <= 1e9:
+        raise refuse(wanted)
+    return x, y, z
+
+
+Position = Annotated[
+    tuple[Length, ...],
+    BeforeValidator(_parse_position),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "minItems": 2,
+            "maxItems": 3,
+            "items": Unit("length").schema(),
+            "description": "x and y of the axis, or x, y and z of its z = 0",
+        }
+    ),
+]
+Direction = Annotated[
+    tuple[float, float, float],
+    BeforeValidator(parse_direction),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "minItems": 3,
+            "maxItems": 3,
+            "items": {"type": "number"},
+            "description": "x, y and z of a direction, of any length",
+        }
+    ),
+]
 Gravity = Annotated[
     tuple[Acceleration, Acceleration, Acceleration],
     listed(3, "its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']"),

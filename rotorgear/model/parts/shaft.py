@@ -1,13 +1,15 @@
-"""Shafts: an axis at (x, y), and sections along z; and the disks and point masses on them."""
+"""Shafts: an axis in space, and sections along it; and the disks and point masses on them."""
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from functools import cached_property
+from typing import Literal, NamedTuple, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from rotorgear.model.parts import fields as si
-from rotorgear.model.parts.fields import Flag, Part, Station, Whole
+from rotorgear.model.parts.fields import Flag, Part, Station, Whole, refuse
+from rotorgear.model.parts.frame import Frame, frame_along
 
 
 class Material(Part):
@@ -91,10 +93,20 @@ class Section(Part):
 
 
 class Shaft(Part):
-    """A shaft: an axis parallel to z, and sections from its start on. Without sections it is one rigid point."""
+    """A shaft: an axis, and sections from its start on. Without sections it is one rigid point.
+
+    Its places, displacements and forces are told in its own frame, whose z is the axis.
+    """
 
     position: si.Position | None = Field(
-        None, description="(x, y) of the axis; may be left out where no gear on the shaft needs a centre distance"
+        None,
+        description="(x, y) of the axis, or (x, y, z) of its z = 0; may be left out where all axes are parallel to z and no "
+        "gear on the shaft needs a centre distance",
+    )
+    axis: si.Direction = Field((0.0, 0.0, 1.0), description="direction of its own +z in space")
+    x_axis: si.Direction | None = Field(
+        None,
+        description="direction of its own +x, made square to the axis; default: x of the model, or y for an axis along x",
     )
     start: si.Length = Field(0.0, description="z of the left end of the first section")
     sections: tuple[Section, ...] = Field((), description="sections from left to right")
@@ -107,6 +119,19 @@ class Shaft(Part):
     speed_ratio: si.SignedRatio | None = Field(
         None, description="speed relative to the input shaft, only where no mesh or coupling leads to this shaft"
     )
+
+    @model_validator(mode="after")
+    def _has_two_directions(self) -> Self:
+        try:
+            _ = self.frame
+        except ValueError:
+            raise refuse("an x_axis that is not along the axis") from None
+        return self
+
+    @cached_property
+    def frame(self) -> Frame:
+        """Its own coordinates; those of a shaft without a position begin at the origin."""
+        return frame_along(self.position or (0.0, 0.0), self.axis, self.x_axis)
 
     @property
     def length(self) -> float:

@@ -58,6 +58,11 @@ class Tables(Part):
             for name, part in getattr(self, table).items():
                 yield f"{table}.{name}", part
 
+    @property
+    def has_turned_axes(self) -> bool:
+        """Whether the directions of some shaft are not those of the model."""
+        return any(shaft.frame.is_turned for shaft in self.shafts.values())
+
     def has(self, motion: str) -> bool:
         """Whether the model has a motion: bending, axial or torsion."""
         return motion in self.motions

@@ -23,7 +23,7 @@ meshio = pytest.importorskip("meshio")
 FORMATS = ("inp", "bdf", "msh22", "msh41", "vtu", "med")
 WITH_SETS = ("inp", "msh22", "msh41", "med")
 # A face of the block that needs no set: a wide "bore" can't be there, so that formats without sets are held by nothing.
-NO_BORE = Cylinder(2, (0.0, 0.0), 0.0, 0.2, 0.03)
+NO_BORE = Cylinder((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0, 0.2, 0.03)
 
 
 def write(folder: Path, form: str, found: FileMesh) -> Path:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.patches import Cylinder, by_cylinder
@@ -53,12 +54,24 @@ def curved(kind: str) -> SolidMesh:
     return solid_mesh(found, 1.0, "mesh")
 
 
+def test_an_inclined_bore_is_found_where_the_mesh_is_turned() -> None:
+    mesh = curved("hexahedron20")
+    R = Rotation.from_rotvec([0.4, -0.9, 0.3]).as_matrix()
+    at = np.array([0.02, 0.5, -0.1])
+    inclined = replace(mesh, points=mesh.points @ R.T + at)
+    upright = by_cylinder(mesh, Cylinder((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), -0.01, 0.05, 0.03), "seat")
+    x, y, z = R[:, 2].tolist()
+    found = by_cylinder(inclined, Cylinder((0.02, 0.5, -0.1), (x, y, z), -0.01, 0.05, 0.03), "seat")
+    assert found.nodes.tolist() == upright.nodes.tolist()
+    np.testing.assert_allclose(found.point, R @ upright.point + at, rtol=0.0, atol=1e-15)
+
+
 @pytest.mark.parametrize("kind", ["tetra10", "hexahedron20"])
 def test_curved_faces_stay_where_they_are_and_shapes_get_no_worse(kind: str) -> None:
     mesh = curved(kind)
     finer = split(split(mesh))
     assert np.all(jacobians(finer.points, finer.cells, finer.element) > 0.0)
-    bore = Cylinder(2, (0.0, 0.0), -0.01, 0.05, 0.03)
+    bore = Cylinder((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), -0.01, 0.05, 0.03)
     before = by_cylinder(mesh, bore, "seat")
     after = by_cylinder(finer, bore, "seat")
     assert after.area == pytest.approx(before.area, rel=1e-3)
@@ -97,7 +110,7 @@ def test_a_seat_found_by_its_place_is_found_before_elements_are_split(tmp_path: 
     tube.points[:, 0] = radius * np.cos(angle)
     tube.points[:, 1] = radius * np.sin(angle)
     file = settings(tmp_path)
-    bore = Cylinder(2, (0.0, 0.0), 0.0, 0.04, 0.03)
+    bore = Cylinder((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0, 0.04, 0.03)
     file = replace(file, files=(("mesh", write_inp(tmp_path / "tube.inp", tube)),), seats=(("one", bore),))
     plain, once = (finite_element_body(replace(file, splits=n)).seats[0] for n in (0, 1))
     assert once.area == pytest.approx(plain.area, rel=1e-12)

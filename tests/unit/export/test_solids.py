@@ -3,7 +3,7 @@ import pytest
 
 from rotorgear.elements.gear_mesh import ContactGeometry, flank_normal
 from rotorgear.export.attachment import Skeleton
-from rotorgear.export.layout import display_axes
+from rotorgear.export.layout import display_frames
 from rotorgear.export.parts import FINE, LIGHT, Detail
 from rotorgear.export.solids import KINDS, LARGEST_TURN, Solids, build_solids
 from rotorgear.export.surface import make_surface
@@ -101,11 +101,11 @@ def test_the_two_helices_of_a_herringbone_gear_mirror_each_other():
 def test_teeth_stand_in_the_gaps_of_their_mates_all_along_the_face(text):
     """Counted from the line of centres, a tooth's share of the pitch on one gear is a gap's on the other, which turns back."""
     model = model_of(text)
-    axes = display_axes(model)
-    phases = tooth_phases(model, axes)
+    frames = display_frames(model)
+    phases = tooth_phases(model, frames)
     one, two = (model.gears[name] for name in ("pinion", "wheel"))
-    here = axes[one.shaft]
-    there = axes[two.shaft]
+    here = frames[one.shaft].origin
+    there = frames[two.shaft].origin
     out = np.arctan2(there[1] - here[1], there[0] - here[0])
     for z in (0.0, 0.011, -0.013):
         share = []
@@ -119,7 +119,7 @@ def test_teeth_stand_in_the_gaps_of_their_mates_all_along_the_face(text):
 def test_teeth_in_mesh_do_not_cut_into_each_other():
     """With profile shifts that leave no backlash, flanks touch along the line of action and never overlap."""
     model = model_of(HERRINGBONE)
-    phases = tooth_phases(model, display_axes(model))
+    phases = tooth_phases(model, display_frames(model))
     outlines = []
     for name, centre in (("pinion", 0.0), ("wheel", 0.12j)):
         angles, radii = contour_of(model, name, 0.0, 60, 0)
@@ -177,7 +177,7 @@ def test_points_between_nodes_follow_the_deflection_curve_of_a_timoshenko_cantil
     ends = np.array([0.0, L])
     between = np.linspace(0.0, L, 13)
     nodes = NodeTable(("s", "s"), np.column_stack([np.zeros((2, 2)), ends]), ("", ""))
-    skeleton = Skeleton(model, nodes, {"s": (0.0, 0.0)})
+    skeleton = Skeleton(model, nodes, display_frames(model))
     for offset in (np.zeros(3), np.array([0.05, 0.0, 0.0]), np.array([0.0, 0.05, 0.0])):
         points = np.column_stack([np.zeros((13, 2)), between]) + offset
         expected = curve(between)[:, :3] + np.cross(curve(between)[:, 3:], offset)
@@ -200,10 +200,10 @@ def test_the_order_of_the_rows_of_a_node_table_does_not_matter():
 
 def test_shafts_without_a_place_are_shown_where_nothing_overlaps():
     model = model_of(CHAIN)
-    axes = display_axes(model)
+    axes = {name: tuple(frame.origin) for name, frame in display_frames(model).items()}
     assert set(axes) == set(model.shafts)
     assert len(set(axes.values())) == 4
-    distance = np.hypot(*np.subtract(axes["first"], axes["second"]))
+    distance = np.linalg.norm(np.subtract(axes["first"], axes["second"]))
     assert distance == pytest.approx(0.15 / np.cos(np.deg2rad(20.0)))
     solids = solids_of(CHAIN)
     assert np.all(np.isfinite(solids.points))
@@ -212,7 +212,8 @@ def test_shafts_without_a_place_are_shown_where_nothing_overlaps():
 
 def test_a_coupled_shaft_without_a_place_continues_the_other_one():
     text = PAIR.replace('[shafts.tail]\nposition = ["150 mm", 0]', "[shafts.tail]")
-    assert display_axes(loads(text))["tail"] == display_axes(model_of(PAIR))["slow"]
+    tail, slow = display_frames(loads(text))["tail"], display_frames(model_of(PAIR))["slow"]
+    assert tail.origin.tolist() == slow.origin.tolist()
 
 
 def test_torsion_turns_disks_without_shape_by_the_angle_of_their_node():
