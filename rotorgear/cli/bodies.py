@@ -10,6 +10,7 @@ from typing import Any
 import typer
 
 import rotorgear as rg
+from rotorgear.analysis.common.request import share_of
 from rotorgear.cli.console import console, progress_bar, say
 from rotorgear.cli.options import spelling
 from rotorgear.cli.run import Call
@@ -24,7 +25,12 @@ _PORTRAITS = 9
 def modal(call: Call) -> None:
     """Modes, and beside them the lines of a rig."""
     rig = rg.read_rig_lines(call["rig"]) if call["rig"] else ()
-    numbers_of_modes(call["shapes"])  # refused before anything is computed
+    # Refused before anything is computed.
+    numbers = numbers_of_modes(call["shapes"])
+    if numbers and call["modes"] and max(numbers) >= call["modes"]:
+        raise AnalysisError(f"--shapes: there is no mode {max(numbers) + 1}, --modes asks for {call['modes']}")
+    if rig:
+        share_of(call["tolerance"], "tolerance", "0.05")
     fmax = call["fmax"]
     if rig and call["modes"] is None and fmax is None:
         from rotorgear.analysis.rig.compare import ABOVE_RIG
@@ -52,12 +58,13 @@ def transient(call: Call) -> None:
     """A transient, and beside it the lines in a spectrum and those of a rig."""
     if call["rig"] and not call["spectrum"]:
         raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
+    lines = rg.read_rig_lines(call["rig"]) if call["rig"] else ()
     result = call.result(frames=call["frames"] if call["vtk"] else 0)
     beside: dict[str, Any] = {}
     if call["spectrum"]:
         beside["spectrum"] = rg.spectral_lines(result, call["spectrum"])
         if call["rig"]:
-            beside["rig"] = rg.compare_spectrum(result, beside["spectrum"], rg.read_rig_lines(call["rig"]))
+            beside["rig"] = rg.compare_spectrum(result, beside["spectrum"], lines)
     show(call, result, beside)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cached_property
@@ -42,6 +43,14 @@ class Call:
             require("tomlkit", "Writing a changed model file")
         if self["resume"] and self["save"] is None:
             raise AnalysisError("--resume needs the --save of the run that was interrupted")
+        for name, option in command.choices.items():
+            # Those of verbs are the verbs' to judge.
+            if option.kind == "float" and name not in command.arguments and not math.isfinite(self[name] or 0.0):
+                raise AnalysisError(f"{spelling(name)}: got {self[name]}, expected a finite number")
+        if command.name == "campbell" and self["plot"] is not None:
+            from rotorgear.plots.campbell import require_colour
+
+            require_colour(self["colour"])
         workers = self["workers"]
         cluster = self["cluster"]
         if workers is not None and workers < 1:
@@ -117,7 +126,23 @@ class Call:
         meshes = [file for casing in model.casings.values() for file in (*casing.mesh.values(), casing.matrices)]
         meshes += [gear.body.mesh for gear in model.gears.values()]
         self._check_outputs([file for file in meshes if file])
+        self._check_names(model)
         return model
+
+    def _check_names(self, model: Any) -> None:
+        """Refuse, before anything is computed, names of what is shown of a result that the model has not."""
+        names = [*model.meshes, *model.bearings, *model.points]
+        if self["waterfall"] is not None and self["at"] is not None and self["at"].rpartition(".")[2] not in names:
+            known = ", ".join(names) or "none"
+            raise AnalysisError(
+                f"--at: '{self['at']}' is no mesh, bearing or point of the model: expected one of {known}"
+            )
+        names += [*model.gears, *model.nonlinear_elements]
+        if self["spectrum"] and not any(name in self["spectrum"] for name in names):
+            raise AnalysisError(
+                f"--spectrum: there is no history '{self['spectrum']}': it names a mesh, bearing, point, gear or element of the "
+                f"model, such as 'force {names[0] if names else 'stage'}'"
+            )
 
     def result(self, verb: str = "", **more: Any) -> Any:
         """Run a verb, by default that of the command, with a bar of progress; `more` goes before what was given."""

@@ -45,8 +45,7 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
     Raises:
         AnalysisError: an unknown colour. MissingExtraError: matplotlib is not installed.
     """
-    if colour not in COLOURS:
-        raise AnalysisError(f"colour: got '{colour}', expected {', '.join(COLOURS[:-1])} or {COLOURS[-1]}")
+    require_colour(colour)
     axis = axes_for(ax, (11.0, 7.0), result.model.title or "Campbell diagram")
     from matplotlib.lines import Line2D
 
@@ -109,6 +108,16 @@ def _set_height(axis: Any, result: CampbellResult) -> None:
 def _shares(axis: Any, points: list[tuple[float, float]]) -> np.ndarray:
     """Where points stand as shares of the axes, (k, 2)."""
     return np.asarray((axis.transScale + axis.transLimits).transform(np.reshape(points, (-1, 2))))
+
+
+def require_colour(colour: str) -> None:
+    """Refuse what branches can't be coloured by.
+
+    Raises:
+        AnalysisError: it is none of `COLOURS`.
+    """
+    if colour not in COLOURS:
+        raise AnalysisError(f"colour: got '{colour}', expected {', '.join(COLOURS[:-1])} or {COLOURS[-1]}")
 
 
 def _branches(axis: Any, result: CampbellResult, colour: str) -> None:

@@ -18,8 +18,10 @@ import numpy as np
 import pytest
 
 from rotorgear.casings.mesh_file import read_mesh
+from rotorgear.cli.main import main
 from rotorgear.errors import AnalysisError
 from rotorgear.files.bounds import MOST_LISTED
+from rotorgear.system.system import System
 from tests.paths import ROOT
 from tests.unit.casings.blocks import block, write_inp
 
@@ -229,3 +231,41 @@ def test_formats_that_name_other_files_are_not_read(tmp_path: Path) -> None:
             read_mesh(path, "casings.b.mesh")
     with pytest.raises(AnalysisError, match="it is a device"):
         read_mesh(Path("/dev/zero"), "casings.b.mesh")
+
+
+# --- options -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        (
+            "transient m.toml --rho-inf 0.5",
+            "rho_inf belongs to the method hht or generalised-alpha; the method here is auto",
+        ),
+        ("transient m.toml --method hht --rho-inf -1", "rho_inf must lie between 0 and 1"),
+        ("transient m.toml --method newmark --beta nan", "beta must lie between 0 and 10"),
+        ("transient m.toml --steps -1", "the number of steps must be at least 1"),
+        ("transient m.toml --spectrum nobody", "there is no history 'nobody'"),
+        ("transient m.toml --spectrum left --rig missing.csv", "there is no such file"),
+        ("response m.toml --waterfall w.png --at nobody", "is no mesh, bearing or point of the model"),
+        ("campbell m.toml --plot p.png --colour nobody", "colour: got 'nobody'"),
+        ("modal m.toml --modes 3 --shapes 2,9 --uff m.uff", "there is no mode 9"),
+        ("modal m.toml --rig r.csv --tolerance nan", "--tolerance: got nan"),
+        ("update m.toml --rig r.csv --tolerance nan", "tolerance: got 'nan'"),
+        ("optimise m.toml --free bearings.*.stiffness --seed -1", "the seed can't be negative"),
+    ],
+)
+def test_options_of_what_is_shown_are_judged_before_the_work(
+    tmp_path: Path, line: str, sentence: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In this process: none of the solvers is reached."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.toml").write_text(JEFFCOTT, encoding="utf-8")
+    (tmp_path / "r.csv").write_text("frequency_hz\n50\n")
+    monkeypatch.setattr(System, "__init__", lambda *_, **__: pytest.fail("something was computed"))
+    monkeypatch.setattr("sys.argv", ["rotorgear", *line.split()])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 2
+    assert sentence in capsys.readouterr().err

@@ -112,6 +112,7 @@ def optimise(
         )
     share_of(participation, "participation", "0.01")
     check_whole("the number of searches", searches)
+    check_whole("the seed", seed, 0)
     operating = model.operating_speed
     if speeds is None and not operating:
         raise AnalysisError("no speed: give --speeds, or [operation] speed in the model file")

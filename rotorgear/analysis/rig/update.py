@@ -104,6 +104,7 @@ def update(
         several = read_campaigns(campaigns) if isinstance(campaigns, str | Path) else tuple(campaigns)
         if not several:
             raise AnalysisError("there are no campaigns to update by")
+    tolerance = share_of(tolerance, "tolerance", "0.05")
     numbers = free_numbers(model, free, prior)
     progress(0.05, "mesh")
     measured = []

@@ -167,6 +167,25 @@ def _kept(task: Task, count: int, asked: int | None) -> int:
     return 1
 
 
+def check_method(method: str, rho_inf: float | None, beta: float | None, gamma: float | None) -> None:
+    """Refuse, before anything is prepared, an unknown method and parameters that it does not have or bear.
+
+    Raises:
+        AnalysisError: with the method or the parameter.
+    """
+    if method not in METHODS:
+        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
+    for name, value, least, most, methods in (
+        ("rho_inf", rho_inf, 0.0, 1.0, ("hht", "generalised-alpha")),
+        ("beta", beta, 0.0, 10.0, ("newmark",)),
+        ("gamma", gamma, 0.5, 10.0, ("newmark",)),
+    ):
+        if value is not None and not least <= value <= most:
+            raise AnalysisError(f"{name} must lie between {least:g} and {most:g}, got {value:g}")
+        if value is not None and method not in methods:
+            raise AnalysisError(f"{name} belongs to the method {' or '.join(methods)}; the method here is {method}")
+
+
 def integrator_of(
     task: Task,
     grid: Grid,
@@ -179,12 +198,10 @@ def integrator_of(
     """Return the integrator and why it was chosen.
 
     Raises:
-        AnalysisError: unknown method, or one that this model can't take.
+        AnalysisError: a method that this model can't take.
     """
     local = task.local.local
     modal_ratio = task.local.system.model.damping.modal_ratio
-    if method not in METHODS:
-        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
     if modes is not None:
         check_whole("the number of modes", modes)
         modes = None if modes >= local.n else modes

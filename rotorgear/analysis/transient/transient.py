@@ -19,7 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import missed, quantity
+from rotorgear.analysis.common.request import check_whole, missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.transient.errors import FALLS, Stated, fine_enough, stated
 from rotorgear.analysis.transient.histories import Histories, Stream, run_task
@@ -28,6 +28,7 @@ from rotorgear.analysis.transient.request import (
     STARTS,
     Grid,
     Task,
+    check_method,
     damped,
     grid_of,
     integrator_of,
@@ -116,6 +117,9 @@ def transient(
         raise AnalysisError("steps and accuracy: give one of the two; steps fixes the step, accuracy chooses it")
     if accuracy is not None and not 1e-8 <= accuracy < 1.0:
         raise AnalysisError(f"the accuracy must lie between 1e-8 and 1, got {accuracy:g}")
+    check_method(method, rho_inf, beta, gamma)
+    if steps is not None:
+        check_whole("the number of steps", steps)
     if frames < 0:
         raise AnalysisError(f"frames: got {frames}, expected 0 or more")
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (discard, "discard"))]
