@@ -121,7 +121,7 @@ def test_a_header_alone_holds_no_lines(problems):
 
 
 def test_a_file_that_is_not_there_or_no_text_is_one_clear_problem(tmp_path, read):
-    with pytest.raises(ModelError, match="No such file"):
+    with pytest.raises(ModelError, match="there is no such file"):
         read_rig_lines(tmp_path / "none.csv")
     with pytest.raises(ModelError, match="UTF-8"):
         read("frequency,label\n361,Lager außen\n", encoding="utf-16")
