@@ -139,7 +139,7 @@ def _arrays(path: Path, address: str) -> dict[str, np.ndarray]:
             )
         if arrays[name].dtype.kind in "fiuc" and not np.all(np.abs(arrays[name]) < LARGEST):
             raise AnalysisError(
-                f"{address}: {name} in '{path.name}' has entries that are no finite numbers below {LARGEST:g}"
+                f"{address}: {name} has entries that are no finite numbers below {LARGEST:g} in '{path.name}'"
             )
     return arrays
 

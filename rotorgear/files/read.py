@@ -125,7 +125,11 @@ def read_text(path: str | Path, most_bytes: int, kinds: Collection[str] = ()) ->
 def text_lines(path: str | Path, most_bytes: int, kinds: Collection[str] = ()) -> Iterator[str]:
     """The lines of a named file in which the words count are ASCII; arguments and errors as of `opened`."""
     with opened(path, most_bytes, kinds) as file:
-        yield from io.TextIOWrapper(file, encoding="utf-8", errors="replace")
+        lines = io.TextIOWrapper(file, encoding="utf-8", errors="replace")
+        try:
+            yield from lines
+        finally:
+            lines.detach()  # the file is closed by who opened it
 
 
 def digest_of_named(path: str | Path, most_bytes: int) -> str:
