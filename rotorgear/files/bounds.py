@@ -15,7 +15,9 @@ MOST_DOTS = 64
 MOST_ROWS = 200_000
 # Elements of XML, or values of JSON: a gearbox with all its contact results has some ten thousands.
 MOST_ELEMENTS = 500_000
-# Files in an archive.
+# Components of a gearbox.
+MOST_COMPONENTS = 10_000
+# Files in an archive, or members of a relation.
 MOST_MEMBERS = 1000
 # Numbers that a set of a mesh lists.
 MOST_LISTED = 8_000_000
@@ -40,7 +42,8 @@ TABLE = Bound(
 REXS = Bound(
     "REXS (XML, JSON, zip of one)",
     32 * _MB,
-    f"{MOST_ELEMENTS:,} elements, {LONGEST_TEXT} letters in a text, {MOST_MEMBERS} files in the archive; no document type",
+    f"{MOST_ELEMENTS:,} elements, {MOST_COMPONENTS:,} components, {LONGEST_TEXT} letters in a text, "
+    f"{MOST_MEMBERS} files in the archive; no document type",
 )
 UNIVERSAL = Bound("universal files (UFF)", 500 * _MB, "a set has the values that its header says")
 MESH = Bound("meshes", 1000 * _MB, f"{MOST_LISTED:,} numbers in a set; formats that name other files are not read")

@@ -22,6 +22,13 @@ class Account:
     problems: list[Problem] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    _said: set[object] = field(default_factory=set)
+
+    def _is_new(self, told: object) -> bool:
+        """Whether a problem or a warning was not noted before; a file may give cause for one a thousand times."""
+        new = told not in self._said
+        self._said.add(told)
+        return new
 
     def assume(self, address: str, value: str, reason: str) -> str:
         """Note an assumption; return the comment for the model file."""
@@ -35,7 +42,7 @@ class Account:
             # From 1.5 on a file may refer to a data base beside it.
             hint = f"its values are in '{source.raw}', which is not read: write a file that holds them itself"
         problem = Problem(str(where), "", expected, hint)
-        if problem not in self.problems:
+        if self._is_new(problem):
             self.problems.append(problem)
 
     def number(self, component: Component, names: tuple[str, ...], kind: str) -> float | None:
@@ -82,7 +89,7 @@ class Account:
         if all(math.isfinite(one) and abs(one * factor) <= LARGEST.get(kind, math.inf) for one in numbers):
             return [one * factor for one in numbers]
         note = f"{component}: {name} = {value.raw} {value.unit}".rstrip() + " stands for no value and is not taken"
-        if note not in self.warnings:
+        if self._is_new(note):
             self.warnings.append(note)
         return None
 

@@ -18,7 +18,7 @@ from xml.parsers import expat
 
 from rotorgear.errors import AnalysisError
 from rotorgear.files.archive import opened_zip
-from rotorgear.files.bounds import LONGEST_TEXT, MOST_ELEMENTS, REXS
+from rotorgear.files.bounds import LONGEST_TEXT, MOST_COMPONENTS, MOST_ELEMENTS, MOST_MEMBERS, REXS
 from rotorgear.files.read import UnreadableError, opened, too_large
 from rotorgear.rexs.document import Component, Document, Relation, Value
 
@@ -166,6 +166,8 @@ class _Elements:
             self.relations.append(Relation(given.get("type", ""), ()))
         elif place == ("model", "relations", "relation", "ref"):
             self._refs.append((given.get("role", ""), _needed(tag, given, "id")))
+            if len(self._refs) > MOST_MEMBERS:
+                raise _UnreadableError(f"a relation has more than {MOST_MEMBERS} members")
         elif self._attributes is not None:
             self._inside(tag, given, len(path) - self._depth)
 
@@ -239,6 +241,8 @@ def _by_id(components: Iterable[Component]) -> dict[str, Component]:
     found: dict[str, Component] = {}
     for one in components:
         other = found.setdefault(one.id, one)
+        if len(found) > MOST_COMPONENTS:
+            raise _UnreadableError(f"it has more than {MOST_COMPONENTS} components")
         if other is not one:
             both = " and ".join(f"{part.type} '{part.name}'" for part in (other, one))
             raise _UnreadableError(f"two components have the id {one.id}: {both}")
@@ -272,6 +276,8 @@ def _from_json(data: bytes) -> Document:
             )
             for item in root.get("relations", ())
         ]
+        if any(len(one.refs) > MOST_MEMBERS for one in relations):
+            raise _UnreadableError(f"a relation has more than {MOST_MEMBERS} members")
         spectrum = root.get("load_spectrum") or {}
         cases = [
             (str(case.get("id", k)), {str(item["id"]): _entries(item) for item in case.get("components", ())})

@@ -14,7 +14,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.rexs.account import Account
-from rotorgear.rexs.document import Component, Document
+from rotorgear.rexs.document import Component, Document, Relation
 
 # Axes of one gearbox are given with ten digits or more; a tenth of a millirad apart is a drawing's rounding, not an angle.
 _PARALLEL = 1e-4
@@ -59,6 +59,8 @@ def axis_in(frame: Frame, model: Frame) -> Axis | None:
     return Axis(float(x), float(y), float(along), 1 if u[0] > 0.0 else -1, rotation)
 
 
+# Frames that stand in one another.
+_DEEPEST = 100
 GEAR = "cylindrical_gear"
 STAGE = "cylindrical_stage"
 # What a gearbox of external cylindrical gears on parallel shafts can't have.
@@ -161,6 +163,11 @@ class Structure:
         self.document = document
         self.account = account
         self._frames: dict[str, Frame | None] = {}
+        # Relations by the components that take part, in the order of the file.
+        self._of: dict[str, list[Relation]] = {}
+        for relation in document.relations:
+            for number in dict.fromkeys(number for _, number in relation.refs):
+                self._of.setdefault(number, []).append(relation)
         frames = map(self.frame, document.of_type("gear_unit"))
         self.model = next(filter(None, frames), SPACE)
 
@@ -176,7 +183,9 @@ class Structure:
             number = account.text(component, "reference_component_for_position").removesuffix(".0")
             reference = self.document.components.get(number)
             # A gear unit refers to itself, and its frame is that of the space.
-            if reference is not None and number != component.id and number not in below:
+            if len(below) >= _DEEPEST:
+                account.missing(component, f"frames in frames go {_DEEPEST} deep, and this one deeper")
+            elif reference is not None and number != component.id and number not in below:
                 base = self.frame(reference, (*below, component.id))
             base = base or SPACE
             axes = np.eye(3)
@@ -199,8 +208,8 @@ class Structure:
     def shaft_of(self, component: Component, *roles: str) -> str:
         """Number of the shaft that a component is on (in some of the roles of that shaft, where they are given), or ""."""
         wanted = roles or ("assembly", "inner_part", "shaft", "side_1")
-        for relation in self.document.relations:
-            if relation.type in _ON_SHAFT and component.id in (number for _, number in relation.refs):
+        for relation in self._of.get(component.id, ()):
+            if relation.type in _ON_SHAFT:
                 for owner in self._known(relation.at(*wanted)):
                     if owner.type == "shaft" and owner.id != component.id:
                         return owner.id
@@ -212,7 +221,7 @@ class Structure:
 
     def _linked(self, owner: Component, types: tuple[str, ...], role: str, *others: str) -> list[Component]:
         """The components in some roles of relations of some types in which a component has another role."""
-        relations = [one for one in self.document.relations if one.type in types and owner.id in one.at(role)]
+        relations = [one for one in self._of.get(owner.id, ()) if one.type in types and owner.id in one.at(role)]
         return self._known(dict.fromkeys(number for relation in relations for number in relation.at(*others)))
 
     def parts_of(self, owner: Component, *types: str) -> list[Component]:
@@ -227,8 +236,8 @@ class Structure:
     def data_of(self, gear: Component) -> list[Component]:
         """The gear and all that holds data of it, nearest first: versions moved attributes between these components."""
         near: dict[str, Component] = {gear.id: gear}
-        for relation in self.document.relations:
-            if relation.type in _DATA and gear.id in (number for _, number in relation.refs):
+        for relation in self._of.get(gear.id, ()):
+            if relation.type in _DATA:
                 others = [number for role, number in relation.refs if role not in ("stage", "assembly", "origin")]
                 known = self._known(others)
                 near |= {part.id: part for part in known if part.type not in ("material", "shaft", STAGE)}

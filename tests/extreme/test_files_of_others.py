@@ -108,6 +108,16 @@ def packed(name: str, text: str) -> Callable[[Path], None]:
     return make
 
 
+def of_components(one: str, count: int) -> str:
+    """A gearbox of so many components; {k} is the number of each, {next} that of the one after it."""
+    many = "".join(one.replace("{k}", str(k)).replace("{next}", str(k + 1)) for k in range(count))
+    return f"<model><components>{many}</components></model>"
+
+
+FRAME = (
+    '<component id="{k}" type="shaft"><attribute id="support_vector" unit="mm"><array><c>0</c><c>0</c><c>1</c></array>'
+    '</attribute><attribute id="reference_component_for_position">{next}</attribute></component>'
+)
 REXS: dict[str, tuple[Callable[[Path], object], str]] = {
     "utf-7": (lambda path: path.write_text('<?xml version="1.0" encoding="utf-7"?><model/>'), "multi-byte encodings"),
     "elements": (packed("a.rexs", "<model>" + "<a/>" * 7_000_000 + "</model>"), "more than 500000 elements"),
@@ -120,6 +130,9 @@ REXS: dict[str, tuple[Callable[[Path], object], str]] = {
         "document type",
     ),
     "a pipe": (os.mkfifo, "it is a pipe"),
+    "components": (packed("a.rexs", of_components('<component id="{k}"/>', 20_000)), "more than 10000 components"),
+    "9000 shafts": (packed("a.rexs", of_components('<component id="{k}" type="shaft" name="n"/>', 9000)), "problems"),
+    "frames in frames": (packed("a.rexs", of_components(FRAME, 1500)), "frames in frames go 100 deep"),
 }
 
 
