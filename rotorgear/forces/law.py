@@ -50,6 +50,7 @@ tests/contract/test_force_laws.py holds every law of the registry to what it say
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -304,6 +305,10 @@ class ForceLaw(ABC):
     def left_out(self) -> tuple[str, ...]:
         """What the law leaves out or takes in its place, as clauses behind the name of its part."""
         return ()
+
+    def doubts(self, d: Any, speed: float) -> Iterator[tuple[str, str]]:
+        """What the law leaves out in equilibrium at displacements d (k,), and of which of its parts; nothing by default."""
+        yield from ()
 
     # What varies as the reference turns.
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,7 +23,25 @@ import numpy as np
 from rotorgear.forces.inside import OilField
 from rotorgear.forces.law import Linearised, parameter, refuse
 from rotorgear.forces.oil_film import TURN, OilFilm
-from rotorgear.forces.thrust_pressure import FIRST, balanced_pad, force, gaps_at, schedule, sector_film
+from rotorgear.forces.pad_fold import KEPT, doubts, fold_of
+from rotorgear.forces.thrust_pressure import (
+    ACROSS,
+    ARC,
+    AROUND,
+    CLEARANCE,
+    FIRST,
+    INNER,
+    LEAST,
+    OUTER,
+    PIVOT,
+    VISCOSITY,
+    force,
+    gaps_at,
+    leaning,
+    pad_in_balance,
+    schedule,
+    sector_film,
+)
 
 _TAYLOR = 1000.0  # Reynolds' number rho omega r h / mu up to which films of thrust bearings are laminar
 
@@ -39,6 +58,33 @@ class ThrustField(OilField):
 
     side: np.ndarray
     radius: np.ndarray
+
+
+@lru_cache(maxsize=64)
+def _fold(
+    pivot: float, arc: float, inner: float, around: int, across: int, least: float
+) -> tuple[float, float, float, float]:
+    """Parameters of the fold of a pad.
+
+    Args:
+        pivot: from the leading edge, as a share of the arc. inner: r_i/r_o. around, across: cells. least: of the parameters.
+    """
+    if pivot <= 0.5:
+        return 0.0, 0.0, 0.0, 0.0
+    p = np.zeros(FIRST)
+    p[[VISCOSITY, INNER, OUTER, CLEARANCE, ARC, PIVOT, LEAST]] = 1.0, inner, 1.0, 1.0, arc, pivot, least
+    p[[AROUND, ACROSS]] = around, across
+    behind = (1.0 - pivot) * arc
+    pressure = np.zeros((around - 1, across - 1))
+
+    def moment(away: float, tilt: float) -> tuple[float, float, float]:
+        G = np.zeros(4)
+        K = np.zeros((4, 4))
+        q = np.array([0.0, 0.0, away, tilt * (1.0 + away * np.cos(behind)) / np.sin(behind)])
+        sector_film(p, 1.0, -pivot * arc, q, np.zeros(4), 0, 4, G, K, np.zeros((4, 4)), pressure)
+        return G[3], K[3, 2] + K[3, 3] * tilt / np.tan(behind), K[3, 3]
+
+    return fold_of(moment, 1.0 - least)
 
 
 @dataclass(frozen=True)
@@ -93,13 +139,17 @@ class ThrustFilm(OilFilm):
         return schedule, force
 
     def parameters(self) -> np.ndarray:
-        """What the grid needs, then middle and side of each pad."""
+        """What the grid needs, then middle and side of each pad, and the fold of tilting ones."""
         sides = {"both": (1.0, -1.0), "+z": (1.0,), "-z": (-1.0,)}[self.acts]
         middles = self.at + TURN * np.arange(self.pads) / self.pads
         pivot = self.pivot if self.order >= 0.0 or self.pivot < 0.0 else 1.0 - self.pivot
         own = [self.viscosity, self.inner_radius, self.outer_radius, self.clearance, self.order, self.arc, self.taper]
         own += [self.taper_share, pivot, self.least, self.around, self.across, len(sides) * self.pads]
-        return np.array([*own, *(value for side in sides for t in middles for value in (t, side))])
+        # Pads that turn the other way have their other edge in front.
+        share = max(self.pivot, 1.0 - self.pivot)
+        size = self.inner_radius / self.outer_radius
+        fold = _fold(share, self.arc, size, self.around, self.across, self.least) if self.pivot >= 0.0 else [0.0] * KEPT
+        return np.array([*own, *(value for side in sides for t in middles for value in (t, side)), *fold])
 
     def rough(self) -> ThrustFilm:
         """The same on a grid that knows the stiffness to some 10 %."""
@@ -117,10 +167,23 @@ class ThrustFilm(OilFilm):
             f"{self.heat_left_out}, turbulence, and oil carried over from pad to pad",
         )
 
+    def doubts(self, d: Any, speed: float) -> Iterator[tuple[str, str]]:
+        """Flutter of pads without a film, and the other stable tilt of pads that the collar leans away from."""
+        if self.pivot < 0.0:
+            return
+        p = self.parameters()
+        sides: dict[float, list[tuple[int, bool, float]]] = {}
+        for start, side, q, G, *_ in self._each_pad(d, speed):
+            away = leaning(p, start + p[PIVOT] * self.arc, q)
+            pads = sides.setdefault(side, [])
+            pads.append((len(pads) + 1, bool(G[0] > 0.0), float(away)))
+        for side, pads in sides.items():
+            yield from doubts(pads, p[-KEPT:], f" for {side:+.0f}z".replace("1", "") if self.acts == "both" else "")
+
     def _each_pad(self, d: Any, speed: float) -> Iterator[tuple[Any, ...]]:
         """Of each pad its start, side, q, G, K and C, and pressure, with the collar at rest at displacements d (5,)."""
         p = self.parameters()
-        for middle, side in p[FIRST:].reshape(-1, 2):
+        for middle, side in p[FIRST:-KEPT].reshape(-1, 2):
             q = np.array([*(side * np.asarray(d, float)[2:]), 0.0])
             G = np.zeros(4)
             K = np.zeros((4, 4))
@@ -128,7 +191,7 @@ class ThrustFilm(OilFilm):
             pressure = np.zeros((self.around - 1, self.across - 1))
             start = float(middle) - 0.5 * self.arc
             if self.pivot >= 0.0:
-                balanced_pad(p, self.order * speed, start, q, np.zeros(4), G, K, C, pressure, np.zeros((3, 2)))
+                pad_in_balance(p, self.order * speed, start, q, np.zeros(4), G, K, C, pressure, np.zeros((2, 3, 3)))
             else:
                 sector_film(p, self.order * speed, start, q, np.zeros(4), 0, 3, G, K, C, pressure)
             yield start, side, q, G, K, C, pressure

@@ -5,9 +5,11 @@ With p = 0 on all edges of a pad,
     d/dt(h^3/r dp/dt) + d/dr(r h^3 dp/dr) = 12 mu r (dh/dtime + omega/2 dh/dt),   h = c + shape - q . phi
     q = sigma (z, tx, ty),   phi = (1, r sin t, -r cos t),   sigma = +1 where the pads take a push towards +z
 
-in finite volumes of second order. Forces are int p phi dA, tangents those of the discrete film. A tilting pad has one more field,
-phi_3 = r sin(t - t_p) about the radius through its pivot at t_p, and its equilibrium is G_3 = int p phi_3 dA = 0. Below the least
-gap h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active set (film_grid.py).
+in finite volumes of second order. Forces are int p phi dA, tangents those of the discrete film. A tilting pad has one more
+field, phi_3 = r sin(t - t_p) about the radius through its pivot at t_p, and its equilibrium is G_3 = int p phi_3 dA = 0. Where
+the collar leans away from a pad its film may fail, as pad_fold.py has it with H = c - q_0 and a = (q_2 cos t_p - q_1 sin t_p)
+r_o/H. Below the least gap h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active
+set (film_grid.py).
 
 Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961), chs. 3 and 4.
 """
@@ -17,9 +19,10 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.forces.film_grid import applied, carried, solve
+from rotorgear.forces.pad_fold import TILT_THERE, film_weight, loaded_tilt
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
-# Of the parameters, then middle and side of each pad; and of the state.
+# Of the parameters, then middle and side of each pad, and the fold of tilting ones; and of the state.
 VISCOSITY, INNER, OUTER, CLEARANCE, ORDER, ARC, TAPER, SHARE, PIVOT, LEAST, AROUND, ACROSS, PADS, FIRST = range(14)
 SPEED = 0
 _ITERATIONS = 60
@@ -183,14 +186,90 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
 
 
 @compiled
-def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: ignore[no-untyped-def]
+def pad_in_balance(p, omega, start, q, v, G, K, C, pressure, follows):  # type: ignore[no-untyped-def]
+    """Turn a tilting pad until it is in balance: q[3] is found, and G, K, C and the pressure at it.
+
+    follows (2, 3, 3): what the changes of G with q and v gain as the pad follows. Near the fold all is weighted, as in
+    tilting_pads.py.
+    """
+    pivot = start + abs(p[PIVOT]) * p[ARC]
+    behind = p[ARC] - (pivot - start) if omega >= 0.0 else pivot - start
+    at = FIRST + 2 * int(p[PADS])
+    gap = p[CLEARANCE] - q[0]
+    away = leaning(p, pivot, q)
+    slope = np.zeros((3, 2))
+    follows[:] = 0.0
+    weight = 0.0
+    change = 0.0
+    if away >= 0.0 and behind < 0.5 * p[ARC]:
+        weight, change = film_weight(p, at, away)
+    # How far the collar leans away, with its displacements.
+    leans = np.array([away / gap, -np.sin(pivot) * p[OUTER] / gap, np.cos(pivot) * p[OUTER] / gap])
+    closing = False
+    for corner in range(4):
+        t = start + (p[ARC] if corner % 2 else 0.0)
+        r = p[OUTER] if corner // 2 else p[INNER]
+        closing |= v[0] + r * (np.sin(t) * v[1] - np.cos(t) * v[2]) > 0.0
+    if weight == 0.0 or (weight < 1.0 and closing):
+        balanced_pad(p, omega, start, q, v, False, closing, G, K, C, pressure, slope)
+        for i in range(3):
+            for j in range(3):
+                follows[0, i, j] = (1.0 - weight) * K[i, 3] * slope[j, 0] - change * leans[j] * G[i]
+                follows[1, i, j] = (1.0 - weight) * K[i, 3] * slope[j, 1]
+    if weight > 0.0:
+        rest_G = G * (1.0 - weight)
+        rest_K = K * (1.0 - weight)
+        rest_C = C * (1.0 - weight)
+        rest = weight < 1.0 and closing
+        balanced_pad(p, omega, start, q, v, True, closing, G, K, C, pressure, slope)
+        for i in range(3):
+            for j in range(3):
+                follows[0, i, j] += weight * K[i, 3] * slope[j, 0] + change * leans[j] * G[i]
+                follows[1, i, j] += weight * K[i, 3] * slope[j, 1]
+        G *= weight
+        K *= weight
+        C *= weight
+        pressure *= weight
+        if rest:
+            G += rest_G
+            K += rest_K
+            C += rest_C
+
+
+@compiled
+def leaning(p, pivot, q):  # type: ignore[no-untyped-def]
+    """a of pad_fold.py: how far the collar leans away from a pad."""
+    gap = p[CLEARANCE] - q[0]
+    if gap <= p[LEAST] * p[CLEARANCE]:
+        return -1.0
+    return (np.cos(pivot) * q[2] - np.sin(pivot) * q[1]) * p[OUTER] / gap
+
+
+@compiled
+def balanced_pad(p, omega, start, q, v, loaded, closing, G, K, C, pressure, slope):  # type: ignore[no-untyped-def]
     """Turn a pad about its pivot until G_3 = 0: q[3] is found; a pad whose edge comes down first lies on it.
 
+    `loaded`: on the loaded tilt of a pad that the collar leans away from; `closing`: whether the gap closes anywhere.
     slope (3, 2): change of q[3] with the other three and with their velocities.
     """
     tilt_unit = p[CLEARANCE] / p[OUTER]
     least = p[LEAST] * p[CLEARANCE]
     pivot = start + abs(p[PIVOT]) * p[ARC]
+    sense = 1.0 if omega >= 0.0 else -1.0
+    behind = p[ARC] - (pivot - start) if sense > 0.0 else pivot - start
+    # Gap and tilt about the pivot with q[3] = 0, and how far the collar leans away.
+    gap = p[CLEARANCE] - q[0]
+    along = np.cos(pivot) * q[1] + np.sin(pivot) * q[2]
+    away = leaning(p, pivot, q)
+    slope[:] = 0.0
+    if away > 0.0 and not loaded and not closing:
+        G[:] = 0.0
+        K[:] = 0.0
+        C[:] = 0.0
+        pressure[:] = 0.0
+        # The gap opens from the leading edge to the trailing one.
+        q[3] = -sense * away * gap / p[OUTER] * np.tan(behind) - along
+        return
     low = -1e3 * tilt_unit
     high = 1e3 * tilt_unit
     # Tilts that leave the least gap at the edges of the pad.
@@ -211,9 +290,25 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
         high = low = 0.0
     most = high
     lowest = low
-    sense = 1.0 if omega >= 0.0 else -1.0
     # A flat pad has no pressure to tell it how to turn: it begins with its leading edge open.
     q[3] = 0.5 * (high if sense > 0.0 else low)
+    if loaded:
+        at = FIRST + 2 * int(p[PADS])
+        shut = sense * gap * (1.0 + away * np.cos(behind)) / (p[OUTER] * np.sin(behind))
+        q[3] = p[at + TILT_THERE] * shut - along
+        below = 0.0
+        if v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0:
+            sector_film(p, omega, start, q, v, 3, 4, G, K, C, pressure)
+            below = sense * G[3]
+        # A collar that moves fast may leave no loaded tilt: then the pad turns on from the one at the fold.
+        if below <= 0.0:
+            if sense > 0.0:
+                low = max(q[3], low)
+            else:
+                high = min(q[3], high)
+            q[3] = shut * loaded_tilt(p, at, away) - along
+    elif away > 0.0:
+        q[3] = -along
     if not low < q[3] < high:
         q[3] = 0.5 * (low + high)
     for _ in range(_ITERATIONS):
@@ -253,7 +348,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     C = np.zeros((4, 4))
     q = np.zeros(4)
     w = np.zeros(4)
-    slope = np.zeros((3, 2))
+    follows = np.zeros((2, 3, 3))
     taken = 0.0
     tilts = p[PIVOT] >= 0.0
     pressure = np.zeros((int(p[AROUND]) - 1, int(p[ACROSS]) - 1))
@@ -265,17 +360,14 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             q[i] = side * d[2 + i]
             w[i] = side * v[2 + i]
         if tilts:
-            balanced_pad(p, omega, start, q, w, G, K, C, pressure, slope)
+            pad_in_balance(p, omega, start, q, w, G, K, C, pressure, follows)
         else:
             sector_film(p, omega, start, q, w, 0, 3, G, K, C, pressure)
         for i in range(3):
             F[2 + i] += side * G[i]
             for j in range(3):
-                stiff = K[i, j]
-                damp = C[i, j]
-                if tilts:
-                    stiff += K[i, 3] * slope[j, 0]
-                    damp += K[i, 3] * slope[j, 1]
+                stiff = K[i, j] + follows[0, i, j]
+                damp = C[i, j] + follows[1, i, j]
                 taken += v[2 + i] * C[i, j] * v[2 + j]
                 Kd[5 * (2 + i) + 2 + j] += stiff
                 Kv[5 * (2 + i) + 2 + j] += damp

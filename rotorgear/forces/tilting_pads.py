@@ -11,21 +11,36 @@ exp(i w t) of a pad without inertia keep F_t = 0, so with Z = K + i w C in xi, e
     Z_red = Z_rr - Z_rt Z_tr / Z_tt,   K = sum Re Z_red e_r e_r^T,   C = sum Im Z_red / w e_r e_r^T
 
 at w = `whirl_ratio` times the speed of the journal; 1: synchronous. The film of a pad is that of journal_pressure.py.
+
+Pads whose pivot lies behind their middle keep a film where the journal has moved away, up to a fold, a = -(xi + m c_p)/c_p in
+pad_fold.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
 
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_pressure import ALONG, AROUND, FIRST, PADS, PRELOAD, pad_film
+from rotorgear.forces.journal_pressure import ALONG, AROUND, CUT, FIRST, PADS, PRELOAD, pad_film
 from rotorgear.forces.law import Linearised, parameter, refuse
 from rotorgear.forces.oil_film import TURN, JournalOil
-from rotorgear.forces.shell import CLEARANCE, SPEED, WALL, add_wall, place_in_shell, schedule
+from rotorgear.forces.pad_fold import KEPT, TILT_THERE, doubts, film_weight, fold_of, loaded_tilt
+from rotorgear.forces.shell import (
+    CLEARANCE,
+    LENGTH,
+    RADIUS,
+    SPEED,
+    VISCOSITY,
+    WALL,
+    add_wall,
+    place_in_shell,
+    schedule,
+)
 from rotorgear.solvers.time.compiled import compiled, force_function
 
 _ITERATIONS = 60
@@ -36,14 +51,64 @@ _LEVEL = 1e-12
 
 
 @compiled
-def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope):  # type: ignore[no-untyped-def]
+def pad_in_balance(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure):  # type: ignore[no-untyped-def]
+    """Of a pad in balance its force along e_r, the changes of that with xi and with v_xi as the pad follows, and eta.
+
+    F (2,), K and C (4,) at this eta, in (e_r, e_t), and the pressure are filled. Near the fold they are weighted, and so is what
+    the journal squeezes out of the film as it comes nearer to a pad on its other tilt.
+    """
+    c_pad = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    away = -(xi + p[PRELOAD] * c_pad) / c_pad
+    at = FIRST + 3 * int(p[PADS])
+    behind = extent - (pivot - start) if omega >= 0.0 else pivot - start
+    slope = np.zeros(2)
+    if away < 0.0 or behind >= 0.5 * extent:
+        eta = tilted(p, omega, xi, v_xi, start, extent, pivot, False, F, K, C, pressure, slope)
+        return F[0], K[0] + K[1] * slope[0], C[0] + K[1] * slope[1], eta
+    weight, change = film_weight(p, at, away)
+    force = 0.0
+    stiff = 0.0
+    damp = 0.0
+    eta = 0.0
+    if weight < 1.0 and (v_xi > 0.0 or weight == 0.0):
+        eta = tilted(p, omega, xi, v_xi, start, extent, pivot, False, F, K, C, pressure, slope)
+        force = (1.0 - weight) * F[0]
+        stiff = (1.0 - weight) * (K[0] + K[1] * slope[0]) + change / c_pad * F[0]
+        damp = (1.0 - weight) * (C[0] + K[1] * slope[1])
+    if weight > 0.0:
+        eta = tilted(p, omega, xi, v_xi, start, extent, pivot, True, F, K, C, pressure, slope)
+        force += weight * F[0]
+        stiff += weight * (K[0] + K[1] * slope[0]) - change / c_pad * F[0]
+        damp += weight * (C[0] + K[1] * slope[1])
+        F *= weight
+        K *= weight
+        C *= weight
+        pressure *= weight
+    return force, stiff, damp, eta
+
+
+@compiled
+def tilted(p, omega, xi, v_xi, start, extent, pivot, loaded, F, K, C, pressure, slope):  # type: ignore[no-untyped-def]
     """Tilt a pad until F_t = 0; fill its force and tangents in (e_r, e_t) and its pressure, and return eta.
 
-    F (2,), K and C (4,), slope (2,): change of eta with xi and its velocity. A pad whose edge comes down to the least gap before
-    F_t = 0 lies on that edge; one that nothing presses has no force.
+    `loaded`: on the loaded tilt of a pad that the journal has moved away from; else from the level pad on. F (2,), K and C (4,),
+    slope (2,): change of eta with xi and its velocity. A pad whose edge comes down to the least gap before F_t = 0 lies on that
+    edge; one that nothing presses has no force.
     """
     around = int(p[AROUND])
     c_pad = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    away = -(xi + p[PRELOAD] * c_pad) / c_pad
+    sense = 1.0 if omega >= 0.0 else -1.0
+    # From the pivot to the trailing edge.
+    behind = extent - (pivot - start) if sense > 0.0 else pivot - start
+    slope[:] = 0.0
+    if away >= 0.0 and v_xi <= 0.0 and not loaded:
+        F[:] = 0.0
+        K[:] = 0.0
+        C[:] = 0.0
+        pressure[:] = 0.0
+        # The gap opens from the leading edge to the trailing one.
+        return -sense * away * c_pad * np.tan(behind)
     low = -1e3 * c_pad
     high = 1e3 * c_pad
     low_slope = 0.0
@@ -59,14 +124,31 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
             low_slope = -np.cos(t) / np.sin(t)
     most = high
     least = low
-    eta = 0.0 if low < 0.0 < high else 0.5 * (low + high)
-    sense = 1.0 if omega >= 0.0 else -1.0
+    eta = 0.0
+    if loaded:
+        at = FIRST + 3 * int(p[PADS])
+        shut = sense * c_pad * (1.0 + away * np.cos(behind)) / np.sin(behind)
+        eta = p[at + TILT_THERE] * shut
+        below = 0.0
+        if v_xi != 0.0:
+            F[:] = 0.0
+            pad_film(p, omega, xi, eta, v_xi, 0.0, start - pivot, extent, 0.0, F, K, C, pressure)
+            below = sense * F[1]
+        # A journal that moves fast may leave no loaded tilt: then the pad turns on from the one at the fold.
+        if below <= 0.0:
+            if sense > 0.0:
+                low = eta
+            else:
+                high = eta
+            eta = shut * loaded_tilt(p, at, away)
+    if not low < eta < high:
+        eta = 0.5 * (low + high)
     for _ in range(_ITERATIONS):
         F[:] = 0.0
         K[:] = 0.0
         C[:] = 0.0
         pad_film(p, omega, xi, eta, v_xi, 0.0, start - pivot, extent, 0.0, F, K, C, pressure)
-        if abs(F[1]) <= _LEVEL * abs(F[0]) or high - low < 1e-14 * c_pad:
+        if (F[0] > 0.0 and abs(F[1]) <= _LEVEL * F[0]) or high - low < 1e-14 * c_pad:
             break
         # More tilt presses the trailing edge, which lies at larger angles where the journal turns about +z.
         if F[1] > 0.0:
@@ -77,7 +159,6 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
             high = eta
         step = eta - F[1] / K[3] if K[3] != 0.0 else low
         eta = step if low < step < high else 0.5 * (low + high)
-    slope[1] = 0.0
     if most - eta < 1e-9 * c_pad:
         slope[0] = high_slope
     elif eta - least < 1e-9 * c_pad:
@@ -86,6 +167,32 @@ def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope): 
         slope[0] = -K[2] / K[3] if K[3] != 0.0 else 0.0
         slope[1] = -C[2] / K[3] if K[3] != 0.0 else 0.0
     return eta
+
+
+@lru_cache(maxsize=64)
+def _fold(
+    pivot: float, arc: float, slenderness: float, around: int, along: int, cut: float
+) -> tuple[float, float, float, float]:
+    """Parameters of the fold of a pad.
+
+    Args:
+        pivot: from the leading edge, as a share of the arc. slenderness: L/R. around, along: cells. cut: of the parameters.
+    """
+    if pivot <= 0.5:
+        return 0.0, 0.0, 0.0, 0.0
+    p = np.zeros(FIRST)
+    p[[VISCOSITY, RADIUS, LENGTH, CLEARANCE, AROUND, ALONG, CUT]] = 1.0, 1.0, slenderness, 1.0, around, along, cut
+    behind = (1.0 - pivot) * arc
+    pressure = np.zeros((around - 1, along))
+
+    def moment(away: float, tilt: float) -> tuple[float, float, float]:
+        F = np.zeros(2)
+        K = np.zeros(4)
+        eta = tilt * (1.0 + away * np.cos(behind)) / np.sin(behind)
+        pad_film(p, 1.0, -away, eta, 0.0, 0.0, -pivot * arc, arc, 0.0, F, K, np.zeros(4), pressure)
+        return F[1], -K[2] + K[3] * tilt / np.tan(behind), K[3]
+
+    return fold_of(moment, 1.0 - _EDGE)
 
 
 @force_function
@@ -99,7 +206,6 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     pad_F = np.zeros(2)
     pad_K = np.zeros(4)
     pad_C = np.zeros(4)
-    slope = np.zeros(2)
     pressure = np.zeros((int(p[AROUND]) - 1, int(p[ALONG])))
     for pad in range(int(p[PADS])):
         at = FIRST + 3 * pad
@@ -107,13 +213,13 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         n = np.sin(p[at + 2])
         xi = place.x * c + place.y * n
         v_xi = v[0] * c + v[1] * n
-        tilted(p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], pad_F, pad_K, pad_C, pressure, slope)
-        if pad_F[0] <= 0.0:
+        force, stiff, damp, _ = pad_in_balance(
+            p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], pad_F, pad_K, pad_C, pressure
+        )
+        if force <= 0.0:
             continue
-        stiff = pad_K[0] + pad_K[1] * slope[0]
-        damp = pad_C[0] + pad_K[1] * slope[1]
-        film[0] += pad_F[0] * c
-        film[1] += pad_F[0] * n
+        film[0] += force * c
+        film[1] += force * n
         k[0] += stiff * c * c
         k[1] += stiff * c * n
         k[2] += stiff * c * n
@@ -154,7 +260,11 @@ class TiltingPads(JournalOil):
         place = self.pivot if self.order >= 0.0 else 1.0 - self.pivot
         pivots = self.at + TURN * np.arange(self.pads) / self.pads
         pads = [(float(q) - place * self.arc, self.arc, float(q)) for q in pivots]
-        return self.of_grid(max(self.around // self.pads, 12), False, pads)
+        around = max(self.around // self.pads, 12)
+        p = self.of_grid(around, False, pads)
+        # Pads that turn the other way have their other edge in front.
+        share = max(self.pivot, 1.0 - self.pivot)
+        return np.array([*p, *_fold(share, self.arc, self.length / self.radius, around, self.along, float(p[CUT]))])
 
     def rough(self) -> TiltingPads:
         """The same on a grid that knows the stiffness to some 10 %."""
@@ -173,17 +283,25 @@ class TiltingPads(JournalOil):
             f"{self.heat_left_out}, turbulence and tilt of the journal in its film",
         )
 
+    def doubts(self, d: Any, speed: float) -> Iterator[tuple[str, str]]:
+        """Flutter of pads without a film, and the other stable tilt of pads that the journal moved away from."""
+        pads = enumerate(self._each_pad(np.asarray(d, float), speed), 1)
+        told = (
+            (k, bool(F[0] > 0.0), -float(e_r @ d) / self.pad_clearance - self.preload) for k, (_, _, e_r, F, *_) in pads
+        )
+        return doubts(told, self.parameters()[-KEPT:])
+
     def _each_pad(self, d: np.ndarray, speed: float) -> Iterator[tuple[Any, ...]]:
         """Of each pad start and pivot in rad, e_r (2,), force (2,), K and C (2, 2) in (e_r, e_t), eta, and pressure."""
         p = self.parameters()
-        for start, extent, q in p[FIRST:].reshape(-1, 3):
+        for start, extent, q in p[FIRST:-KEPT].reshape(-1, 3):
             e_r = np.array([np.cos(q), np.sin(q)])
             F = np.zeros(2)
             K = np.zeros((2, 2))
             C = np.zeros((2, 2))
             pressure = np.zeros((int(p[AROUND]) - 1, self.along))
-            answer = (F, K.reshape(4), C.reshape(4), pressure, np.zeros(2))
-            eta = tilted(p, self.order * speed, float(e_r @ d), 0.0, start, extent, q, *answer)
+            answer = (F, K.reshape(4), C.reshape(4), pressure)
+            *_, eta = pad_in_balance(p, self.order * speed, float(e_r @ d), 0.0, start, extent, q, *answer)
             yield start, q, e_r, F, K, C, eta, pressure
 
     def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0, points: int | None = None) -> Linearised:

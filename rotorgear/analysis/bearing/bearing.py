@@ -195,7 +195,7 @@ def bearing(
         consistency=consistency,
         error_estimate=error,
         cpu_seconds=seconds,
-        left_out=tuple(_left_out(model, address, law, inside)),
+        left_out=(*_left_out(model, address, law, inside), *here.doubts(given)),
         warnings=tuple(notes),
         method="equilibrium of the whole gearbox, Newton's method; tangents of the bearing's law",
     )

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 # A contact pulls where its force is below minus this share of the largest one.
 _PULLS = 1e-9
+# Of the largest stiffness of a film along its axes.
+_ROUNDING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,10 @@ class LawState:
         # Rolling elements that turn: force and tangents are means over a pitch of them.
         averaged = bool(self.part.law.cycle()) and speed != 0.0
         return OperatingPoint(self.part.part, speed, self.force, self.d, self.stiffness, self.damping, averaged)
+
+    def doubts(self, speed: float) -> tuple[Note, ...]:
+        """What the law leaves out in this equilibrium, at a speed of the reference shaft in rad/s."""
+        return tuple(Note(self.part.part, what, "", value) for what, value in self.part.law.doubts(self.d, speed))
 
 
 @dataclass(frozen=True)
@@ -207,10 +213,18 @@ def _held(system: System, groups: list[ElementGroup], speed: float) -> tuple[sp.
 def law_group(part: LocalPart, stiffness: np.ndarray) -> ElementGroup:
     """A law as springs of a stiffness (k, k) between its displacements."""
     dofs = np.flatnonzero(np.any(part.columns != 0.0, axis=1))
+    strain = part.columns[dofs].T
     symmetric = 0.5 * (stiffness + stiffness.T)
     skew = 0.5 * (stiffness - stiffness.T)
+    if np.any(part.law.extents) and not np.any(skew):
+        # Where one tilting pad alone carries, a film holds the shaft along its pivot only, and rounding must not seem to hold it
+        # across: springs along the axes of the stiffness, in units of the displacements that change the film.
+        unit = np.where(part.law.extents > 0.0, part.law.extents, 1.0)
+        size, axes = np.linalg.eigh(unit[:, None] * symmetric * unit)
+        symmetric = np.diag(np.where(np.abs(size) > _ROUNDING * np.abs(size).max(), size, 0.0))
+        strain = axes.T @ (strain / unit[:, None])
     matrices = ElementMatrices(
-        strain=part.columns[dofs].T[None], modulus=symmetric[None], circulation=skew[None] if np.any(skew) else None
+        strain=strain[None], modulus=symmetric[None], circulation=skew[None] if np.any(skew) else None
     )
     return ElementGroup(part.part, "", matrices, dofs[None])
 

@@ -134,7 +134,9 @@ def _state_at(model: Model, speeds: Sequence[float | None], state: State, near: 
     # Each once where there is one speed, in the order of the speeds.
     ends = {at[0]: found[0], at[-1]: found[-1]}
     operating = [there[part].at(speed) for speed, there in ends.items() for part in wanted]
-    return replace(state, tangents={**state.tangents, **tangents}, operating=tuple(operating))
+    doubts = (note for speed, there in ends.items() for part in wanted for note in there[part].doubts(speed))
+    notes = (*state.notes, *dict.fromkeys(doubts))
+    return replace(state, tangents={**state.tangents, **tangents}, operating=tuple(operating), notes=notes)
 
 
 def _tangent(

@@ -156,6 +156,7 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
     unfelt = [
         Note(f"meshes.{r.mesh}", what, why, f"{1e6 * r.shaft_misalignment_m:+.3g} um") for r in faces if not r.fed_back
     ]
+    doubts = (note for law in equilibrium.laws for note in law.doubts(speed or 0.0))
     return StaticResult(
         model=system.model,
         speed=speed,
@@ -196,7 +197,7 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
         faces=faces,
         laws=law_rows(law.at(speed or 0.0) for law in equilibrium.laws),
         passes=equilibrium.passes,
-        left_out=(*left_out(system, "static", speed), *equilibrium.notes, *unfelt, *underivable),
+        left_out=(*left_out(system, "static", speed), *equilibrium.notes, *doubts, *unfelt, *underivable),
         warnings=(*system.nodes.merged, *_warnings(equilibrium, faces)),
         method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
