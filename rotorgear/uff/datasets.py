@@ -21,6 +21,9 @@ FORCE = 13
 FREQUENCY = 18
 RPM = 19
 ORDER = 20
+# "Unknown" and "general".
+SAYS_NOTHING = (0, 1)
+MOTIONS = {"displacement": DISPLACEMENT, "velocity": VELOCITY, "acceleration": ACCELERATION}
 # Powers of i w between a displacement and them.
 DERIVATIVES = {DISPLACEMENT: 0, VELOCITY: 1, ACCELERATION: 2}
 # Function types of dataset 58.

@@ -32,30 +32,38 @@ _OTHER_FLOATS = {1: "DEC VMS", 3: "IBM 5/370"}
 # Sizes that measured quantities in any unit have; bytes in the wrong order give others.
 _LEAST = 1e-20
 _MOST = 1e20
-# Units that ordinates are labelled with: their name in lower case without blanks -> factor to SI.
+# Units that ordinates are labelled with: their name in lower case without blanks -> what is measured in them, factor to SI.
 _LABELS = {
-    "m": 1.0,
-    "mm": 1e-3,
-    "um": 1e-6,
-    "µm": 1e-6,
-    "m/s": 1.0,
-    "mm/s": 1e-3,
-    "m/s2": 1.0,
-    "mm/s2": 1e-3,
-    "g": GRAVITY,
-    "n": 1.0,
-    "kn": 1e3,
-    "lbf": 4.4482216152605,
-    "in": 0.0254,
-    "in/s": 0.0254,
-    "in/s2": 0.0254,
+    "m": (datasets.DISPLACEMENT, 1.0),
+    "mm": (datasets.DISPLACEMENT, 1e-3),
+    "um": (datasets.DISPLACEMENT, 1e-6),
+    "µm": (datasets.DISPLACEMENT, 1e-6),
+    "in": (datasets.DISPLACEMENT, 0.0254),
+    "m/s": (datasets.VELOCITY, 1.0),
+    "mm/s": (datasets.VELOCITY, 1e-3),
+    "in/s": (datasets.VELOCITY, 0.0254),
+    "m/s2": (datasets.ACCELERATION, 1.0),
+    "m/s/s": (datasets.ACCELERATION, 1.0),
+    "mm/s2": (datasets.ACCELERATION, 1e-3),
+    "in/s2": (datasets.ACCELERATION, 0.0254),
+    "g": (datasets.ACCELERATION, GRAVITY),
+    "n": (datasets.FORCE, 1.0),
+    "kn": (datasets.FORCE, 1e3),
+    "lbf": (datasets.FORCE, 4.4482216152605),
 }
 _LENGTHS = (datasets.DISPLACEMENT, datasets.VELOCITY, datasets.ACCELERATION)
 _FORCES = (datasets.REACTION, datasets.FORCE)
+_WORDS = {quantity: word for word, quantity in datasets.MOTIONS.items()} | {datasets.FORCE: "force"}
 
 
-def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Function, list[str]]:
+def read_function(
+    block: Block, units: datasets.Units, motion: int | None = None
+) -> tuple[datasets.Function, list[str]]:
     """Return a function in SI, and sentences on assumptions.
+
+    Args:
+        block: the dataset. units: of the file.
+        motion: data type of numerators that neither their own type nor a unit names; None leaves these as they are.
 
     Raises:
         ModelError: a header that makes no sense, fewer values than it says, numbers that are not finite.
@@ -63,7 +71,7 @@ def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Functio
     lines = block.lines
     if len(lines) < 11:
         raise block.problem(0, f"eleven header lines of a function, {len(lines)} are there")
-    kind, response, reference = _freedoms(lines[5], block)
+    kind, place, reference = _freedoms(lines[5], block)
     form = block.numbers(7)
     if len(form) < 3 or form[0] not in _KINDS or form[1] < 0 or not is_whole(form[1]):
         expected = "ordinate type 2, 4, 5 or 6, number of values and spacing"
@@ -84,21 +92,53 @@ def read_function(block: Block, units: datasets.Units) -> tuple[datasets.Functio
     if not (np.isfinite(at).all() and np.isfinite(values).all()):
         raise block.problem(12, "finite numbers")
     axes = [_axis(lines[k], block, k + 1) for k in (7, 8, 9, 10)]
-    # To SI: by the labels where they are known, else by the units of the file.
-    factor = 1.0
-    for (quantity, label), power in ((axes[1], 1), (axes[2], -1)):
-        plain = re.sub(r"[\s()^*\[\]]|²", lambda m: "2" if m[0] == "²" else "", label).lower()
-        of_file = 1.0 / units.length if quantity in _LENGTHS else 1.0 / units.force if quantity in _FORCES else 1.0
-        known = _LABELS.get(plain)
-        if label and known is None and quantity in (*_LENGTHS, *_FORCES):
-            notes.append(f"the unit '{label}' of a function is not known: its values are taken in the file's units")
-        factor *= (of_file if known is None else known) ** power
-    x_type, numerator, denominator, z_type = (quantity for quantity, _ in axes)
+    x_type, z_type = axes[0][0], axes[3][0]
+    (numerator, over), (denominator, under) = axes[1], axes[2]
+    if not under and (written := re.fullmatch(r"(.+)/\s*(\w+)", over)) and _label(written[2])[0] == datasets.FORCE:
+        over, under = written.groups()  # the unit of the whole ratio, such as (m/s^2)/N, stands at the numerator
+    response = kind == datasets.FREQUENCY_RESPONSE
+    numerator, above, unsure = _in_si(numerator, over, units, motion if response else None)
+    denominator, below, more = _in_si(denominator, under, units, datasets.FORCE if response else None)
+    notes += [*unsure, *more]
     if x_type == datasets.FREQUENCY and axes[0][1].lower() == "khz":
         at = 1000.0 * at
     names = tuple(text.strip() for text in lines[:5])
-    y = values * factor
-    return datasets.Function(kind, response, reference, at, y, x_type, numerator, denominator, z, names, z_type), notes
+    y = values * (above / below)
+    return datasets.Function(kind, place, reference, at, y, x_type, numerator, denominator, z, names, z_type), notes
+
+
+def _label(text: str) -> tuple[int, float] | tuple[None, None]:
+    """What is measured in the unit of a label, and the factor of its values to SI; None of one that is not known."""
+    # UTF-8 that was read a byte a letter has a letter before the square and the micro.
+    plain = re.sub(r"[\s()^*\[\]Â]|²", lambda m: "2" if m[0] == "²" else "", text).lower()
+    return _LABELS.get(plain.replace("sec", "s"), (None, None))
+
+
+def _in_si(quantity: int, label: str, units: datasets.Units, meant: int | None) -> tuple[int, float, list[str]]:
+    """Data type of an ordinate, the factor of its values to SI, and sentences on assumptions.
+
+    By the label where its unit is known, else by the units of the file. A type that says nothing is that of the label, else the
+    one that is `meant`.
+    """
+    said, known = _label(label)
+    notes = []
+    if quantity in datasets.SAYS_NOTHING and said:
+        notes.append(f"a function does not say what it is (type {quantity}): its unit '{label}' says {_WORDS[said]}")
+        quantity = said
+    elif quantity in datasets.SAYS_NOTHING and meant:
+        notes.append(
+            f"a function does not say what it is (type {quantity}): taken as {_WORDS[meant]} in the file's units"
+        )
+        quantity = meant
+    elif label and known is None and quantity in (*_LENGTHS, *_FORCES):
+        notes.append(f"the unit '{label}' of a function is not known: its values are taken in the file's units")
+    if known is not None:
+        return quantity, known, notes
+    return (
+        quantity,
+        1.0 / units.length if quantity in _LENGTHS else 1.0 / units.force if quantity in _FORCES else 1.0,
+        notes,
+    )
 
 
 # Function type, ids, then name, node and direction of response and of reference, where the names have no blanks.
@@ -213,11 +253,12 @@ _CODES = {
 }
 
 
-def read_universal(path: str | Path) -> datasets.UniversalFile:
+def read_universal(path: str | Path, motion: int | None = None) -> datasets.UniversalFile:
     """Return what a universal file holds.
 
     Args:
         path: of the file; ASCII, or with functions in binary (58b).
+        motion: data type of responses that neither their own type nor a unit names; None leaves these as they are.
 
     Returns:
         Its contents in SI. Without dataset 164 it is taken to be in SI, which a note says.
@@ -252,7 +293,7 @@ def read_universal(path: str | Path) -> datasets.UniversalFile:
             case 55:
                 shapes.append(_shape(block))
             case 58:
-                found, unsure = read_function(block, units)
+                found, unsure = read_function(block, units, motion)
                 functions.append(found)
                 notes += unsure
             case number:

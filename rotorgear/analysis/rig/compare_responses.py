@@ -52,6 +52,7 @@ def compare_frf(
     frf: str | Path | MeasuredFrf,
     *,
     points: str | Path | None = None,
+    frf_motion: str | None = None,
     speed: float | str | None = None,
     modal_damping: float = 0.0,
     accuracy: float | None = None,
@@ -64,6 +65,8 @@ def compare_frf(
         model: the model, with its damping.
         frf: measured frequency responses: a universal file (dataset 58 or 58b); in Python also what it holds.
         points: as in `compare_shapes`.
+        frf_motion: what responses are where neither their type in the file nor their unit says it: "displacement", "velocity" or
+            "acceleration".
         speed: as in `compare`.
         modal_damping: as in `frf`.
         accuracy: as in `frf`.
@@ -76,7 +79,7 @@ def compare_frf(
     Raises:
         ModelError: a file that can't be read. AnalysisError: no frequency responses, places that the model has not.
     """
-    given = frf if isinstance(frf, MeasuredFrf) else read_rig_frf(frf, points, model)
+    given = frf if isinstance(frf, MeasuredFrf) else read_rig_frf(frf, points, model, frf_motion)
     inputs = list(dict.fromkeys(given.references))
     outputs = list(dict.fromkeys(given.responses))
     settings: dict[str, Any] = {
@@ -141,7 +144,8 @@ def read_order_cuts(path: str | Path, points: str | Path | None = None) -> tuple
         power = DERIVATIVES.get(function.numerator)
         if power is None:
             raise AnalysisError(
-                f"{path}: an order function is of type {function.numerator}; expected a motion (8, 11 or 12)"
+                f"{path}: an order function is of type {function.numerator}; expected a motion (8, 11 or 12), or a "
+                "unit such as m/s^2 or g that says it"
             )
         w = function.z * function.x / RPM_PER_RAD_S
         found.append(OrderCut(place, function.z, function.x, np.abs(function.values) * w ** (2 - power)))

@@ -30,7 +30,7 @@ from rotorgear.files.toml import long_texts, tables_of
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.results.comparison import RigLine
-from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE
+from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE, MOTIONS, SAYS_NOTHING
 from rotorgear.uff.read import read_universal
 
 
@@ -165,19 +165,25 @@ class MeasuredFrf:
     notes: tuple[str, ...] = ()
 
 
-def read_rig_frf(path: str | Path, points: str | Path | None = None, model: Model | None = None) -> MeasuredFrf:
+def read_rig_frf(
+    path: str | Path, points: str | Path | None = None, model: Model | None = None, motion: str | None = None
+) -> MeasuredFrf:
     """Return the frequency responses of a universal file (dataset 58 or 58b) as receptances.
 
     Args:
         path: of the file.
         points: table of sensors (CSV); None: each node at the nearest place of the model.
         model: needed where the table doesn't name all places.
+        motion: what responses are, "displacement", "velocity" or "acceleration", where neither their type in the file nor their
+            unit says so.
 
     Raises:
         ModelError: a file that can't be read.
-        AnalysisError: no frequency responses, different frequencies, quantities that are no motion over force.
+        AnalysisError: no frequency responses, different frequencies, quantities that are no motion over force, another word.
     """
-    file = read_universal(path)
+    if motion is not None and motion not in MOTIONS:
+        raise AnalysisError(f"the motion of frequency responses is one of {', '.join(MOTIONS)}; got {motion!r}")
+    file = read_universal(path, MOTIONS.get(motion or ""))
     functions = [function for function in file.functions if function.kind == FREQUENCY_RESPONSE]
     if not functions:
         raise AnalysisError(
@@ -193,6 +199,8 @@ def read_rig_frf(path: str | Path, points: str | Path | None = None, model: Mode
         if function.numerator not in DERIVATIVES:
             motions = "displacement (8), velocity (11) or acceleration (12)"
             wrong = f"the response of a function is of type {function.numerator}; expected {motions}"
+            if function.numerator in SAYS_NOTHING:
+                wrong += f", or a unit such as m/s^2 or g that says it; name it by --frf-motion {' | '.join(MOTIONS)}"
         elif function.denominator in DERIVATIVES:
             what = f"a motion over a motion (type {function.denominator}), a transmissibility"
             wrong = f"a function is {what}; expected motions over forces (13)"
@@ -228,7 +236,7 @@ def _sensor(freedom: tuple[int, int], sensors: dict[tuple[int, int], Sensor]) ->
     return sensor, (1.0 if direction > 0 else -1.0) * (sensor.sign if sensor else 1.0)
 
 
-_KEYS = ("name", "rig", "shapes", "frf", "points", "speed", "changes")
+_KEYS = ("name", "rig", "shapes", "frf", "frf_motion", "points", "speed", "changes")
 _FILES = ("rig", "shapes", "frf", "points")
 
 
@@ -244,6 +252,7 @@ class Campaign:
         changes: address -> value of what was otherwise than in the model file, such as {"disks.hub.mass": "3 kg"}.
         name: what tables call it.
         frf: beside lines or shapes, or alone: a universal file with frequency responses, or what it holds (`rg.read_rig_frf`).
+        frf_motion: what its responses are where the file doesn't say it.
     """
 
     rig: str | Path | Measured | Sequence[RigLine | float] | None = None
@@ -253,6 +262,7 @@ class Campaign:
     changes: Mapping[str, Any] = field(default_factory=dict)
     name: str = ""
     frf: str | Path | MeasuredFrf | None = None
+    frf_motion: str | None = None
 
     def measured(self, model: Model) -> tuple[Measured, MeasuredFrf | None]:
         """Lines and shapes, and frequency responses, by the model in the state of the campaign.
@@ -280,15 +290,15 @@ class Campaign:
         given.check_points(model)
         if self.frf is None or isinstance(self.frf, MeasuredFrf):
             return given, self.frf
-        return given, read_rig_frf(self.frf, self.points, model)
+        return given, read_rig_frf(self.frf, self.points, model, self.frf_motion)
 
 
 def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
     """Return the campaigns of a file (TOML).
 
     Args:
-        path: of the file: tables [[campaign]] with rig, or shapes and points, or frf, and speed, changes, name. Files that it
-            names lie beside it.
+        path: of the file: tables [[campaign]] with rig, or shapes and points, or frf and frf_motion, and speed, changes, name.
+            Files that it names lie beside it.
 
     Raises:
         ModelError: a file that can't be read, no campaigns, other keys.
@@ -309,7 +319,7 @@ def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
     for number, table in enumerate(tables, start=1):
         address = f"campaign {number}"
         strange = sorted(set(table) - set(_KEYS))
-        wrong = [key for key in ("name", *_FILES) if not isinstance(table.get(key, ""), str)]
+        wrong = [key for key in ("name", "frf_motion", *_FILES) if not isinstance(table.get(key, ""), str)]
         if strange:
             problems.append(Problem(address, strange[0], f"only {', '.join(_KEYS)}"))
         elif wrong:
@@ -319,7 +329,8 @@ def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
         else:
             files = {key: file.parent / table[key] for key in _FILES if key in table}
             name = table.get("name", f"campaign {number}")
-            found.append(Campaign(**files, speed=table.get("speed"), changes=table.get("changes", {}), name=name))
+            others = {key: table[key] for key in ("speed", "changes", "frf_motion") if key in table}
+            found.append(Campaign(**files, **others, name=name))
     if problems:
         raise ModelError(problems, file.name)
     return tuple(found)

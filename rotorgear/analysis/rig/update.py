@@ -46,6 +46,7 @@ def update(
     *,
     shapes: str | Path | None = None,
     frf: str | Path | MeasuredFrf | None = None,
+    frf_motion: str | None = None,
     points: str | Path | None = None,
     free: str | Iterable[str] = "bearings.*.stiffness, meshes.*.stiffness",
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
@@ -68,6 +69,8 @@ def update(
         shapes: measured mode shapes with their frequencies (UFF, dataset 55), in place of the frequencies alone.
         frf: measured frequency responses (UFF, dataset 58), beside frequencies or shapes or alone; in Python also what
             `rg.read_rig_frf` read.
+        frf_motion: what responses are where neither their type in the file nor their unit says it: "displacement", "velocity" or
+            "acceleration".
         points: table of the sensors of shapes and responses (CSV: point,node,direction; default: each node is at the nearest
             place of the model).
         free: addresses of the free numbers, with commas between; "*" stands for all names or places there.
@@ -95,7 +98,7 @@ def update(
     shape_noise = share_of(shape_noise, "shape_noise", "0.02")
     frf_noise = share_of(frf_noise, "frf_noise", "0.05")
     check_modal_damping(modal_damping)
-    several: Sequence[Campaign] = (Campaign(rig, shapes, points, speed, frf=frf),)
+    several: Sequence[Campaign] = (Campaign(rig, shapes, points, speed, frf=frf, frf_motion=frf_motion),)
     if campaigns is not None:
         if several[0] != Campaign():
             raise AnalysisError(

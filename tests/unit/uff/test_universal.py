@@ -10,7 +10,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import ModelError
-from rotorgear.uff.datasets import Function, Nodes, TraceLine, Units
+from rotorgear.uff.datasets import ACCELERATION, DISPLACEMENT, FORCE, VELOCITY, Function, Nodes, TraceLine, Units
 from rotorgear.uff.read import read_universal
 from rotorgear.uff.write import function_set, line_sets, nodes_set, units_set
 from tests.paths import MODELS
@@ -287,3 +287,48 @@ def test_order_functions_of_a_run_up_stand_at_the_nodes_of_its_points(tmp_path):
         assert function.z == pytest.approx(result.ratio[k], rel=1e-5)
         np.testing.assert_allclose(function.x, result.speed_rpm, rtol=1e-5)
         np.testing.assert_allclose(function.values, result.acceleration[k, :, 0], rtol=1e-11)
+
+
+def labelled(kind, label, reference=0, under="NONE"):
+    """A frequency response of ones whose axes have these types and units."""
+    axes = list(AXES)
+    axes[1] = f"{kind:10d}    0    0    0 {'NONE':20s} {label:20s}"
+    axes[2] = f"{reference:10d}    0    0    0 {'NONE':20s} {under:20s}"
+    return "\n".join(
+        ["    -1", "    58", *HEADER, form(5, 2, 1, 10.0, 0.5), *axes, "  1.0  0.0  1.0  0.0", "    -1", ""]
+    )
+
+
+@pytest.mark.parametrize("kind", [0, 1])
+@pytest.mark.parametrize(
+    ("label", "under", "read", "factor"),
+    [
+        ("m/s2", "N", ACCELERATION, 1.0),
+        ("m/s^2", "NONE", ACCELERATION, 1.0),
+        ("m/s**2", "kN", ACCELERATION, 1e-3),
+        ("m/sec2", "N", ACCELERATION, 1.0),
+        ("g", "N", ACCELERATION, 9.80665),
+        ("(m/s²)/N", "NONE", ACCELERATION, 1.0),
+        ("g/lbf", "NONE", ACCELERATION, 9.80665 / 4.4482216152605),
+        ("mm/s", "N", VELOCITY, 1e-3),
+        ("um / N", "NONE", DISPLACEMENT, 1e-6),
+    ],
+)
+def test_a_function_of_unknown_type_is_what_its_unit_says(tmp_path, kind, label, under, read, factor):
+    file = read_universal(saved(tmp_path, labelled(kind, label, kind, under).encode()))
+    (function,) = file.functions
+    assert (function.numerator, function.denominator) == (read, FORCE)
+    np.testing.assert_allclose(function.values, factor, rtol=1e-12)
+    assert any(f"type {kind}" in note and "says" in note for note in file.notes)
+
+
+def test_a_function_that_nothing_names_is_what_the_caller_says_in_the_units_of_the_file(tmp_path):
+    units = units_set(Units(1e3, 1.0, "mm, N", 9)).decode()
+    path = saved(tmp_path, (units + labelled(0, "NONE")).encode())
+    assert read_universal(path).functions[0].numerator == 0
+    (function,) = read_universal(path, VELOCITY).functions
+    assert function.numerator == VELOCITY
+    np.testing.assert_allclose(function.values, 1e-3, rtol=1e-12)
+    # What the file says is not overruled.
+    (said,) = read_universal(saved(tmp_path, (units + labelled(1, "g")).encode()), VELOCITY).functions
+    assert said.numerator == ACCELERATION

@@ -160,6 +160,22 @@ def test_functions_that_are_no_motion_over_force_are_refused(tmp_path, wound, te
         rg.read_rig_frf(tmp_path / "rig.uff", tmp_path / "sensors.csv")
 
 
+def test_a_response_without_type_and_unit_is_refused_with_the_option_that_names_it(tmp_path):
+    told = Function(4, (1, 1), (2, 2), np.array([1.0, 2.0]), np.array([2.0 + 1j, 1.0]), 18, 12, 13)
+    table = tmp_path / "sensors.csv"
+    table.write_text("point,node,direction\ngears.pinion,1,x\ngears.wheel,2,y\n")
+    (tmp_path / "told.uff").write_bytes(function_set(told))
+    (tmp_path / "untold.uff").write_bytes(function_set(replace(told, numerator=0, denominator=0)))
+    with pytest.raises(AnalysisError, match=r"--frf-motion displacement \| velocity \| acceleration"):
+        rg.read_rig_frf(tmp_path / "untold.uff", table)
+    with pytest.raises(AnalysisError, match="one of displacement, velocity, acceleration; got 'jerk'"):
+        rg.read_rig_frf(tmp_path / "untold.uff", table, motion="jerk")
+    expected = rg.read_rig_frf(tmp_path / "told.uff", table).receptance
+    found = rg.read_rig_frf(tmp_path / "untold.uff", table, motion="acceleration")
+    np.testing.assert_allclose(found.receptance, expected, rtol=1e-12)
+    assert any("taken as acceleration" in note for note in found.notes)
+
+
 def test_a_shape_that_moves_nowhere_is_a_line_without_shape(tmp_path):
     model = rg.load(MODELS / "geared_pair.toml")
     result = rg.modal(model, modes=6, elements=2)
