@@ -196,3 +196,24 @@ def test_every_first_order_of_a_mesh_has_its_margin_without_an_option() -> None:
     assert len(first) == 2
     assert all(item.branch for item in first)
     assert np.nanmax(result.frequency_hz) > max(item.frequency_hz for item in first)
+
+
+def test_a_rotor_on_springs_next_to_nothing_has_its_frequencies_within_the_error_of_the_basis() -> None:
+    """Rigid on springs 14 decades below its shaft, where rounding shows: frequencies go with the root of the stiffness."""
+    text = """
+    operation = {{ input_shaft = "r", speed = "3000 rpm" }}
+    motions = ["torsion", "bending"]
+    [shafts.r]
+    sections = [{{ length = "400 mm", outer_diameter = "50 mm" }}, {{ length = "300 mm", outer_diameter = "40 mm" }}]
+    [disks]
+    a = {{ shaft = "r", at = "start", mass = 5.0, polar_inertia = 0.05, diametral_inertia = 0.03 }}
+    b = {{ shaft = "r", at = "end", mass = 3.0, polar_inertia = 0.02, diametral_inertia = 0.01 }}
+    [bearings]
+    l = {{ shaft = "r", at = "100 mm", stiffness = {{ radial = {k}, torsion = 100.0 }} }}
+    m = {{ shaft = "r", at = "600 mm", stiffness = {{ radial = {twice} }} }}
+    """
+    soft, firm = (rg.campbell(rg.loads(text.format(k=k, twice=2.0 * k)), points=5, modes=2) for k in (1e-6, 1e-3))
+    assert firm.basis_error < 1e-9
+    assert soft.basis_error < 1e-5
+    still = [float(np.nanmin(found.frequency_hz[0])) for found in (soft, firm)]
+    assert still[0] / still[1] == pytest.approx(np.sqrt(1e-3), rel=3.0 * max(soft.basis_error, 1e-9))
