@@ -216,7 +216,9 @@ class ForcedChanges:
     """Bubbles of all shaft elements on the n free dofs, each of modal mass 1.
 
     Attributes:
-        mass, stiffness, gyroscopic: what b bubbles take from the free dofs, (b, n); the last per reference speed.
+        mass, stiffness, gyroscopic, circulatory: what b bubbles take from the free dofs, (b, n); the last two per reference
+            speed, the last with the internal damping.
+        partner, spun, swept: as in `Bubbles` (b,), per reference speed and with the internal damping.
         squared: w_b^2 (b,); beta: damping of each, proportional to its stiffness (b,); alpha: to its mass.
         lumping: what consistent mass adds to a lumped one, (n, n).
     """
@@ -224,6 +226,10 @@ class ForcedChanges:
     mass: sp.csr_array
     stiffness: sp.csr_array
     gyroscopic: sp.csr_array
+    circulatory: sp.csr_array
+    partner: np.ndarray
+    spun: np.ndarray
+    swept: np.ndarray
     squared: np.ndarray
     beta: np.ndarray
     alpha: float
@@ -235,39 +241,56 @@ class ForcedChanges:
         model = system.model
         T = system.dofs.transform
         none = sp.csr_array((0, T.shape[1]))
-        terms = {"mass": [none], "stiffness": [none], "gyroscopic": [none]}
-        squared = [np.zeros(0)]
-        beta = [np.zeros(0)]
+        terms = {"mass": [none], "stiffness": [none], "gyroscopic": [none], "circulatory": [none]}
+        each: dict[str, list[np.ndarray]] = {name: [np.zeros(0)] for name in ("spun", "swept", "squared", "beta")}
+        partner = [np.zeros(0, dtype=int)]
+        count = 0
         lumping = None
         for shaft, _, dofs, bubbles in bubble_groups(system):
-            squared.append(bubbles.squared.ravel())
-            own_beta = model.damping.rayleigh_beta + model.shafts[shaft].internal_damping
-            beta.append(np.full(bubbles.squared.size, own_beta))
-            turning = system.train.ratio(shaft) * bubbles.gyroscopic
-            for name, rows in (("mass", bubbles.mass), ("stiffness", bubbles.stiffness), ("gyroscopic", turning)):
-                terms[name].append(_on_free_dofs(rows, dofs, T))
+            internal = model.shafts[shaft].internal_damping
+            ratio = system.train.ratio(shaft)
+            for name, factor in {
+                "mass": 1.0,
+                "stiffness": 1.0,
+                "gyroscopic": ratio,
+                "circulatory": ratio * internal,
+            }.items():
+                terms[name].append(_on_free_dofs(factor * getattr(bubbles, name), dofs, T))
+            each["spun"].append(ratio * bubbles.spun.ravel())
+            each["swept"].append(ratio * internal * bubbles.swept.ravel())
+            each["squared"].append(bubbles.squared.ravel())
+            each["beta"].append(np.full(bubbles.squared.size, model.damping.rayleigh_beta + internal))
+            elements, own = bubbles.partner.shape
+            partner.append((count + own * np.arange(elements)[:, None] + bubbles.partner).ravel())
+            count += elements * own
             if bubbles.lumping is not None:
                 nodal = dofs[:, : bubbles.lumping.shape[1]]
                 added = T[nodal.ravel(), :].T @ _on_free_dofs(bubbles.lumping, nodal, T)
                 lumping = added if lumping is None else lumping + added
         stacked = {name: sp.csr_array(sp.vstack(parts)) for name, parts in terms.items()}
         alpha = model.damping.rayleigh_alpha
-        return cls(**stacked, squared=np.concatenate(squared), beta=np.concatenate(beta), alpha=alpha, lumping=lumping)
+        joined = {name: np.concatenate(parts) for name, parts in each.items()}
+        return cls(**stacked, **joined, partner=np.concatenate(partner), alpha=alpha, lumping=lumping)
 
     def change(self, speed: float, w: np.ndarray, q: np.ndarray, *, turning: bool) -> np.ndarray:
         """Size of d for responses q (n, m) at w (m,) in rad/s, at a reference speed in rad/s: (m,).
 
-        It is exact to first order where loads don't turn and the system is symmetric; else it says where to look.
+        It is exact to first order where loads don't turn and the system is symmetric, and where loads turn with a rotor that is
+        alike in all directions; else it says where to look.
         """
         s = 1j * np.asarray(w)
         squared = s**2 + self.alpha * s
         elastic = 1.0 + s * self.beta[:, None]
         held = squared * (self.mass @ q) + elastic * (self.stiffness @ q)
-        turned = s * speed * (self.gyroscopic @ q) if speed else 0.0
+        turned = speed * (s * (self.gyroscopic @ q) + self.circulatory @ q) if speed else 0.0
         gap = squared + elastic * self.squared[:, None]
         rest = held + turned
         other = rest.conj() if turning else held - turned
-        change = np.sum(rest * other / np.where(gap != 0.0, gap, np.inf), axis=0)
+        # As in `_moved`: a bubble answers with its partner in the other plane.
+        coupled = speed * (s * self.spun[:, None] + self.swept[:, None])
+        both = gap**2 + coupled**2
+        answer = (gap * rest - coupled * rest[self.partner]) / np.where(both != 0.0, both, np.inf)
+        change = np.sum(other * answer, axis=0)
         if self.lumping is not None:
             change = change - squared * np.sum((q.conj() if turning else q) * (self.lumping @ q), axis=0)
         return np.abs(change)

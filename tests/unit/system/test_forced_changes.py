@@ -66,3 +66,31 @@ def test_a_circular_whirl_is_not_overlooked() -> None:
     plain = changes.change(0.0, w, dynamics.solve(1e3, x[:, None]), turning=True)
     whirl = changes.change(0.0, w, dynamics.solve(1e3, (x - 1j * y)[:, None]), turning=True)
     assert whirl == pytest.approx(2.0 * plain, rel=1e-9)
+
+
+@pytest.mark.parametrize("whirl", [1.0, -1.0])
+@pytest.mark.parametrize("turned", [0.0, 0.25, 0.9])
+def test_a_whirl_of_a_shaft_that_damps_inside_and_turns_is_known_without_a_finer_mesh(
+    whirl: float, turned: float
+) -> None:
+    """Rotating load f on a rotor alike in all directions, at eta times the speed = `turned`: the change of f^H q."""
+    speed = 1500.0
+    shaft = {"internal_damping": turned / speed}
+    ws = 2.0 * np.pi * np.linspace(300.0, 3000.0, 40)
+    model = rotor(shaft, {"rayleigh_alpha": 30.0}).with_("operation.speed", speed)
+
+    def solved(plan: Plan) -> tuple[System, np.ndarray, list[np.ndarray]]:
+        system = System(model, plan=plan)
+        node = 6 * system.nodes.at("rotor", 0.2)
+        x, y = np.asarray(system.dofs.transform[[node, node + 1], :].toarray())
+        f = x - 1j * whirl * y
+        K = sp.csc_array(system.stiffness(speed) + system.circulatory(speed))
+        D = sp.csc_array(system.damping(speed) + speed * system.gyroscopic)
+        found = [Dynamics(system.mass, D, K).solve(float(w), f[:, None]) for w in ws]
+        return system, np.array([f.conj() @ q[:, 0] for q in found]), found
+
+    coarse, rough, moved = solved(Plan(16))
+    error = np.abs(rough - solved(Plan(6, 5))[1])
+    changes = ForcedChanges.of(coarse)
+    told = [changes.change(speed, np.array([w]), q, turning=True)[0] for w, q in zip(ws, moved, strict=True)]
+    assert told == pytest.approx(error, rel=0.05, abs=0.02 * error.max())
