@@ -26,7 +26,7 @@ def sensitivities(
     # Name, unit, df - dK q, and the part of dF that does not go through dq.
     terms: list[tuple[str, str, np.ndarray, np.ndarray]] = []
     # Behind the flank that they are told of, index errors close what they open before it.
-    opens = np.array([-1.0 if state.behind else 1.0 for state in lines.states])
+    opens = np.array([-1.0 if state.behind != state.turned else 1.0 for state in lines.states])
     masks = {mesh: np.array([name == mesh for name in lines.names], float) for mesh in lines.names}
     for mesh, own in masks.items():
         mine = own * active * opens

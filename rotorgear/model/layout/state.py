@@ -75,7 +75,9 @@ class MeshForce:
         face: how the contact resists a tilt along its face; None for one that does not.
         start: N, of a contact that is linear about its mean state over the mesh cycle or along its face, where the flanks have
             not approached: F = start + k (v . q - gap); None of one whose force is proportional to its deflection.
-        behind: whether the flank works that stands behind the one of the torque flow, which index errors are told of.
+        behind: whether the flank works that stands behind the one of the torque flow, which errors of the mesh are told of.
+        turned: whether the flank of the torque flow stands behind the one that it presses at the model's own sense of rotation,
+            of which the file tells index errors: a tooth space that sits late on one side sits early on the other.
     """
 
     contact: Contact
@@ -86,6 +88,7 @@ class MeshForce:
     face: FaceState | None = None
     start: float | None = None
     behind: bool = False
+    turned: bool = False
 
     @property
     def on_other_flank(self) -> MeshForce:
@@ -105,7 +108,8 @@ class MeshForce:
         told of, the backlash is what that one leaves.
         """
         mesh = layout.mesh(self.contact.mesh).part
-        own = mesh.index_error + (mesh.helix_index_error if self.contact.helix else 0.0) + self.clocking_gap(layout)
+        index_error = mesh.index_error + (mesh.helix_index_error if self.contact.helix else 0.0)
+        own = (-index_error if self.turned else index_error) + self.clocking_gap(layout)
         if self.behind:
             own = (mesh.backlash or 0.0) - own
         return own if self.face is None else own + self.face.shift

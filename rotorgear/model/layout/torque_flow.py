@@ -88,6 +88,9 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
             sense = 1 if force > 0 else -1
         carried = 0.0 if unloaded else abs(force)
         states.append(MeshForce(contact, carried, sense, sense == direction * pinion_sense, assumed=unloaded))
+    if direction != layout.direction and any(m.part.index_error or m.part.helix_index_error for m in layout.meshes):
+        own = torque_flow(layout, layout.direction, faces).forces
+        states = [replace(a, turned=a.torque_sense != b.torque_sense) for a, b in zip(states, own, strict=True)]
     return State(layout, direction, tuple(applied), tuple(states), curves, faces=faces).of_kind("dynamic")
 
 

@@ -179,7 +179,8 @@ class Mesh(Part):
     )
     index_error: si.Length = Field(
         0.0,
-        description="gap along the flank normal that must close before this mesh carries (timing error of a branch)",
+        description="gap along the flank normal that must close before this mesh carries (timing error of a branch), at the "
+        "sense of rotation of the operating speed; an analysis at the other sense takes it with the other sign",
     )
     helix_index_error: si.Length = Field(
         0.0, description="gap that the helix at the larger z of a herringbone has beside that"

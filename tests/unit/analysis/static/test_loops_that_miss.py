@@ -147,6 +147,31 @@ def test_a_clocking_that_misses_a_loop_is_the_index_error_of_its_turn(speed: flo
     assert forces(result) == pytest.approx(forces(rg.static(known)), rel=1e-9)
 
 
+@pytest.mark.parametrize("speed", [100.0, -100.0])
+@pytest.mark.parametrize("error", [60e-6, -70e-6])
+def test_a_gearbox_that_runs_backwards_has_its_errors_on_the_other_side_of_the_teeth(
+    speed: float, error: float
+) -> None:
+    """One gearbox, told by an index error and told by a clocking, forwards and backwards: late there is early here."""
+    fitting, mesh, pinion = closed(speed)
+    sense = np.sign(speed) * (1.0 if mesh.startswith("first") else -1.0)
+    off = -sense * error / (1e-3 * GEARS[pinion][2])
+    by_index = fitting.with_(f"meshes.{mesh}.index_error", error)
+    by_clocking = closed(speed, off)[0]
+    for one in (by_index, by_clocking):
+        for turns, there in ((speed, error), (-speed, -error)):
+            wanted = least_energy({mesh: there})
+            size = max(wanted.values())
+            assert forces(rg.static(one, speed=turns)) == pytest.approx(wanted, abs=1e-6 * size)
+    back = rg.static(by_index, speed=-speed)
+    row = back.parameter.index(f"meshes.{mesh}.index_error")
+    h = 1e-7
+    there, here = (
+        rg.static(fitting.with_(f"meshes.{mesh}.index_error", error + step), speed=-speed) for step in (h, -h)
+    )
+    assert back.force_derivative[row] == pytest.approx((there.mesh_force - here.mesh_force) / (2.0 * h), rel=1e-6)
+
+
 @pytest.mark.parametrize("off", [1e-3, -1e-3])
 @pytest.mark.parametrize("speed", ["16350 rpm", "-16350 rpm"])
 def test_both_helices_of_a_herringbone_feel_the_clocking(off: float, speed: str) -> None:
