@@ -13,10 +13,13 @@ from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Line, Table, grid
 
-# A mode within the margin forbids it from this share of the least participation on, so that just below the least is no way out.
-COUNTS_FROM = 0.7
+# Shares of the least participation. From the first on a mode may come to count; from the second on it has a weight in the
+# penalty, which so has a slope at the least one; from the third on the search does not end while such a mode is within the
+# margin; from the fourth on it forbids the margin. So just below the least participation is no way out, and the mesh of the
+# search may differ a little from the finer one that judges it.
+NEARLY, WEIGHS_FROM, SOUGHT_FROM, COUNTS_FROM = 0.5, 0.6, 0.63, 0.7
 # Modes within the margin are named where their participation is this near to the least one.
-_NEAR_LEAST = (0.5, 1.3)
+_NEAR_LEAST = (NEARLY, 1.3)
 
 
 class LayoutNumber(Record):

@@ -30,22 +30,20 @@ from rotorgear.analysis.sensitivity.forms import (
 from rotorgear.model.model import Model
 from rotorgear.model.spreads import spreads_of
 from rotorgear.results.campbell import ExcitationOrder
-from rotorgear.results.optimise import COUNTS_FROM
+from rotorgear.results.optimise import COUNTS_FROM, NEARLY
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.system import System
 
 # A motion softer than this share of the first elastic frequency is rigid.
 _LEAST = 1e-3
-# Modes within this many margins of a line, and with this share of the least participation, may come to count.
+# Modes within this many margins of a line may come to count.
 _WIDER = 1.2
-_SOME = 0.5
 # Modes closer than this are looked at as one space.
 CLOSE = 2e-3
 # Half width of the differences, in standard deviations.
 _STEP = 1e-3
-# Scatter is found of modes within this many margins of a line, and with this share of the least participation.
+# Scatter is found of modes within this many margins of a line.
 MARGINS = 3.0
-_PERHAPS = 0.5
 
 
 @dataclass(frozen=True)
@@ -111,7 +109,7 @@ def state_of(
     if not speed:
         return rough
     near = np.abs(rough.hz[None, :] / hz[:, None] - 1.0) < _WIDER * margin
-    counts = np.flatnonzero(np.any(near & (rough.taken >= _SOME * least), axis=0))
+    counts = np.flatnonzero(np.any(near & (rough.taken >= NEARLY * least), axis=0))
     if not len(counts):
         return rough
     steps = np.column_stack([_step(system, speed, rough, int(k)) for k in counts])
@@ -166,7 +164,7 @@ def with_deviations(state: ModesAtSpeed, model: Model, margin: float, least: flo
         AnalysisError: a number whose scatter moves a place past another one.
     """
     near = np.abs(state.hz[None, :] / state.line_hz[:, None] - 1.0) < MARGINS * margin
-    chosen = np.flatnonzero(np.any(near & (state.common >= _PERHAPS * least), axis=0))
+    chosen = np.flatnonzero(np.any(near & (state.common >= NEARLY * least), axis=0))
     # A space is looked at as a whole.
     own = [space for space in spaces_of(state.hz) if set(space) & set(chosen.tolist())]
     modes = [k for space in own for k in space]

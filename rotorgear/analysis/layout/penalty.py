@@ -23,11 +23,8 @@ from rotorgear.analysis.layout.modes_at_speed import ModesAtSpeed, spaces_of
 from rotorgear.analysis.sensitivity.derivatives import bordered, changed_forces
 from rotorgear.analysis.sensitivity.forms import Floats, FormNames, Shapes, complex_forms, forms_of
 from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.optimise import WEIGHS_FROM
 from rotorgear.system.system import System
-
-# Participation begins to count at this share of the least one, so that the function has a slope there.
-_RAMP = 0.6
-
 
 # A line by number, the modes of one space near it, w, dw/ds, the mean of h, and dJ/df of each mode at fixed participation.
 Near = tuple[int, tuple[int, ...], float, float, float, Floats]
@@ -42,10 +39,10 @@ def near_modes(state: ModesAtSpeed, margin: Floats, least: float) -> Iterator[Ne
             u = (state.hz[own] / F - 1.0) / margin[line, own]
             inside = np.maximum(1.0 - u**2, 0.0)
             share = float(state.taken[line, own].sum())
-            t = float(np.clip((share / least - _RAMP) / (1.0 - _RAMP), 0.0, 1.0))
+            t = float(np.clip((share / least - WEIGHS_FROM) / (1.0 - WEIGHS_FROM), 0.0, 1.0))
             weight = t * t * (3.0 - 2.0 * t)
             if weight and inside.any():
-                slope = 6.0 * t * (1.0 - t) / (least * (1.0 - _RAMP))
+                slope = 6.0 * t * (1.0 - t) / (least * (1.0 - WEIGHS_FROM))
                 df = weight * (-4.0 * u * inside) / (F * margin[line, own] * len(own))
                 yield line, space, weight, slope, float(np.mean(inside**2)), df
 

@@ -23,7 +23,7 @@ from rotorgear.model.numbers import Numbers
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.results.campbell import ExcitationOrder
-from rotorgear.results.optimise import COUNTS_FROM
+from rotorgear.results.optimise import SOUGHT_FROM
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 
@@ -150,10 +150,8 @@ def _taken(numbers: Numbers, j: int, bound: float) -> float:
 _STEP = 1e-5
 # A place that coincides with another one is differentiated a hair beside it, where the shaft is cut alike on both sides.
 _HAIR = 2e-3
-# The search asks for a hair more than the margin, and for participations a little below those that count: its mesh and the finer
-# one that judges it differ by less.
+# The search asks for a hair more than the margin: its mesh and the finer one that judges it differ by less.
 _EDGE = 1.001
-_BELOW = 0.9
 
 
 @dataclass
@@ -259,7 +257,7 @@ class Problem:
         """
         for state in states:
             near = np.abs(state.hz / state.line_hz[:, None] - 1.0) < _EDGE * self._wide(state, self.asked)
-            if np.any(near & (state.common >= _BELOW * COUNTS_FROM * self.least)):
+            if np.any(near & (state.common >= SOUGHT_FROM * self.least)):
                 return False
         return True
 
