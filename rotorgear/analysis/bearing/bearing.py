@@ -85,8 +85,8 @@ def bearing(
 
     Args:
         model: a model with torques, forces, weight or other loads.
-        name: name of a bearing with `rolling` or `journal`, or of a nonlinear element; it may be left out where there is only
-            one.
+        name: name of a bearing with `rolling`, `journal` or `thrust`, or of a nonlinear element; it may be left out where
+            there is only one.
         speed: speed of the input shaft in rad/s or with its unit (default: the operating speed).
         speeds: speeds of the input shaft over which stiffness and damping are listed (default: 0.25 to 1.5 times `speed`).
         stability: also solve the damped modes of the gearbox at these speeds: least logarithmic decrement, and the threshold of

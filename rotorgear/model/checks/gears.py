@@ -157,11 +157,11 @@ def _teeth(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem
 
 
 def _pair(address: str, part: Gear | Flank, keys: tuple[str, str], place: str, amount: str) -> Iterator[Problem]:
-    """The amount and the place of a relief come together; `place` and `amount` say what is missing."""
+    """The amount, which may be given as 0, and the place of a relief come together; `place` and `amount` say what is missing."""
     given = [getattr(part, key) for key in keys]
     if given[0] and not given[1]:
         yield missing(f"{address}.{keys[1]}", place)
-    if given[1] and not given[0]:
+    if given[1] and keys[0] not in part.model_fields_set:
         yield missing(f"{address}.{keys[0]}", amount)
 
 

@@ -46,3 +46,12 @@ def test_what_cannot_be_is_said_with_its_address(pinion: str, mesh: str, said: s
 def test_modifications_that_can_be_are_taken() -> None:
     flank = 'flank = { root_relief = "5 um", root_relief_diameter = "168 mm", end_relief = "5 um", end_relief_length = "8 mm" }'
     assert rg.loads(pair_file(pinion=flank)).gears["pinion"].flank.root_relief == pytest.approx(5e-6)
+
+
+def test_an_amount_of_nothing_is_an_amount() -> None:
+    """A study from 0 on keeps the place where the relief starts."""
+    none = 'tip_relief = "0 um"\ntip_relief_diameter = "179 mm"\n'
+    none += 'flank = { root_relief = "0 um", root_relief_diameter = "168 mm", end_relief = "0 um", end_relief_length = "8 mm" }'
+    assert rg.loads(pair_file(pinion=none)).gears["pinion"].tip_relief == 0.0
+    with pytest.raises(rg.ModelError, match=r"tip_relief"):
+        rg.loads(pair_file(pinion='tip_relief_diameter = "179 mm"'))
