@@ -32,6 +32,7 @@ _EQUAL = 1e-6  # relative distance of Ritz values that may be copies: one too ma
 _SOUND = 1e-9  # backward error, and distance of two pairs, above and below which a Krylov result is not taken
 _TOO_BLURRED = 1e-8  # rounding of the smallest mu from which the upper spectrum is taken from the companion matrix
 _LARGEST_DENSE = 6000  # states: 0.6 GB a complex matrix
+_GATHERED_DENSE = 2000  # states: a minute, where a Krylov space does not tell eigenvalues apart
 _SPARE = 8  # pairs beyond those that matter which are refined too, since refinement may change their order
 _SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
 _BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
@@ -86,7 +87,13 @@ def solve(inverse: InverseState, rows: int | None, below: float | None, dense: b
     wanted = 2 * rows + 4 if rows is not None else 40
     iterates = not dense and quadratic.n > _DENSE_UP_TO and not (rows is None and below is None)
     while iterates and wanted < quadratic.n // 2:
-        values, vectors, reach = _arnoldi(inverse, wanted)
+        try:
+            values, vectors, reach = _arnoldi(inverse, wanted)
+        except ConvergenceError:
+            # Those of damping in proportion to the stiffness gather at one place without end.
+            if 2 * quadratic.n > _GATHERED_DENSE:
+                raise
+            break
         inside = int(np.count_nonzero(np.abs(values) <= reach))
         if (rows is not None and inside >= rows) or reach >= limit:
             shown = slice(0, inside if rows is None else rows)

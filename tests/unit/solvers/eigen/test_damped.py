@@ -256,3 +256,18 @@ def test_double_real_roots_stand_twice(seed: int) -> None:
     exact = np.concatenate([np.roots([1.0, ci, ki]) for ci, ki in zip(c, k, strict=True)])
     found = damped_modes(sp.csc_array(np.eye(16)), sp.csc_array(C), sp.csc_array(K), dense=True).eigenvalues
     assert np.sort(found[found.imag == 0.0].real) == pytest.approx(np.sort(exact[exact.imag == 0.0].real), rel=1e-9)
+
+
+@pytest.mark.parametrize("eta", [0.3, 3.0])
+def test_the_lowest_of_eigenvalues_that_gather_without_end_are_found(eta: float) -> None:
+    """A chain with D = eta K: s^2 + eta w^2 s + w^2 = 0, overdamped ones at -1/eta."""
+    n = 200
+    k = float(n) ** 2
+    K = sp.csc_array(sp.diags([-k * np.ones(n - 1), 2.0 * k * np.ones(n), -k * np.ones(n - 1)], [-1, 0, 1]))
+    found = damped_modes(sp.csc_array(sp.eye(n)), sp.csc_array(eta * K), K, count=4).eigenvalues[:4]
+    w2 = 4.0 * k * np.sin(np.arange(1, n + 1) * np.pi / (2.0 * (n + 1))) ** 2
+    root = np.sqrt((0.5 * eta * w2) ** 2 - w2 + 0j)
+    exact = np.concatenate([-0.5 * eta * w2 + root, -0.5 * eta * w2 - root])
+    exact = exact[exact.imag >= 0.0]
+    exact = exact[np.argsort(np.abs(exact))][:4]
+    np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(exact), rtol=1e-8)
