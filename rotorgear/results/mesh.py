@@ -354,9 +354,9 @@ class MeshResult(Result, kind="mesh"):
     def _orders(self, count: int) -> Table:
         rows = []
         for one in self.orders(count):
-            # Below this share of the mean an order is rounding, and its phase says nothing.
+            # Below this share of the mean an order is rounding.
             small = one.stiffness_n_per_m < 1e-9 * self.mean_stiffness
-            cells = [str(one.order), f"{one.stiffness_n_per_m:.4g} N/m"]
+            cells = [str(one.order), "0 N/m" if small else f"{one.stiffness_n_per_m:.4g} N/m"]
             cells.append("-" if small else f"{one.stiffness_phase_deg:.1f} deg")
             if one.ste_m is not None:
                 cells += [f"{1e6 * one.ste_m:.4f} um", "-" if small else f"{one.ste_phase_deg:.1f} deg"]

@@ -113,6 +113,12 @@ def test_a_number_in_the_file_is_answered_by_teeth_and_on_request_by_itself() ->
     assert given.peak_to_peak_stiffness == pytest.approx(0.0, abs=1.0)
 
 
+def test_orders_of_a_stiffness_that_does_not_vary_are_none_and_not_rounding() -> None:
+    text = mesh_of(pair_file(mesh=NAMED), stiffness="iso").text(harmonics=4)
+    rows = text[text.index("mesh order") :].splitlines()[1:5]
+    assert all("0 N/m" in row and "e-" not in row for row in rows), text
+
+
 def test_iso_and_teeth_answer_in_the_same_plane() -> None:
     text = pair_file(20.86, "helical", mesh=NAMED)
     teeth = mesh_of(text)
