@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 
 from rotorgear.errors import AnalysisError
 from rotorgear.files.own import text_of
@@ -46,3 +48,28 @@ def require_memory(needed: float, what: str, remedy: str) -> None:
         raise AnalysisError(
             f"{what} would take {1e-9 * needed:.2g} GB of memory, and {1e-9 * free:.2g} GB are free: {remedy}"
         )
+
+
+@contextmanager
+def at_most(more: float) -> Iterator[None]:
+    """Let this process take so many bytes more within it, and then a MemoryError; no bound where the system has none.
+
+    For readers of other packages, which unpack whatever a file says.
+    """
+    try:
+        import resource
+
+        taken = int(text_of("/proc/self/statm", "ascii").split()[0]) * os.sysconf("SC_PAGE_SIZE")
+        before = resource.getrlimit(resource.RLIMIT_AS)
+    except (ImportError, OSError, ValueError):
+        yield
+        return
+    bound = int(taken + more)
+    soft = bound if before[0] == resource.RLIM_INFINITY else min(bound, before[0])
+    try:
+        with suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_AS, (soft, before[1]))
+        yield
+    finally:
+        with suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_AS, before)

@@ -21,6 +21,7 @@ from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.files.bounds import MESH
 from rotorgear.files.hdf5 import opened_hdf5
 from rotorgear.files.read import UnreadableError, named_file
+from rotorgear.memory import at_most
 
 # Data that name groups by numbers: their names stand elsewhere in the file.
 _TAGS = ("point_tags", "cell_tags")
@@ -28,6 +29,9 @@ _TAGS = ("point_tags", "cell_tags")
 _BY_MESHIO = (".msh", ".vtu", ".vtk", ".med", ".mesh", ".meshb", ".su2", ".avs", ".f3grid", ".vol", ".ugrid")
 # Of the data in MED, how many times the file they may be when they are unpacked.
 _PACKED = 50
+# Memory that meshio may take, times the file and besides: its own modules and the arrays of a small mesh.
+_TIMES = 30.0
+_ANYWAY = 150e6
 _DECKS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".fem": read_nastran, ".dat": read_nastran}
 
 
@@ -96,10 +100,13 @@ def _by_meshio(path: Path) -> FileMesh:
     if path.suffix.lower() == ".med":
         with opened_hdf5(path, MESH.most_bytes, packed=_PACKED):
             pass
+    size = path.stat().st_size
     said = io.StringIO()
     try:
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), at_most(_TIMES * size + _ANYWAY):
             found = meshio.read(path)
+    except MemoryError:
+        raise ValueError("it unpacks to more than any mesh of its size") from None
     except SystemExit:
         words = " ".join(said.getvalue().split())[-200:]
         raise RuntimeError(f"meshio gave up: {words}") from None

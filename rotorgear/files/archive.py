@@ -35,6 +35,9 @@ _DAMAGED = (
     OverflowError,
     MemoryError,
 )
+# Largest times that texts and numbers are packed by, but for small files: zeros alone come to a thousand.
+_TIGHTEST = 100
+_ANYWAY = 16_000_000
 _PLAIN = "biufcUS"
 _LONGEST_HEADER = 10_000
 
@@ -55,6 +58,9 @@ def opened_zip(path: str | Path, most_bytes: int, kinds: tuple[str, ...] = ()) -
                     raise _many(path)
                 if sum(item.file_size for item in members) > most_bytes:
                     raise UnreadableError(path, f"unpacked {too_large(most_bytes)}")
+                packed = sum(item.compress_size for item in members)
+                if sum(item.file_size for item in members) > _TIGHTEST * packed + _ANYWAY:
+                    raise UnreadableError(path, f"it unpacks to more than {_TIGHTEST} times its size")
                 if any(item.compress_type not in _METHODS for item in members):
                     raise UnreadableError(path, "the archive is packed by another method than deflate")
                 yield archive

@@ -48,7 +48,7 @@ REXS = Bound(
 UNIVERSAL = Bound("universal files (UFF)", 500 * _MB, "a set has the values that its header says")
 MESH = Bound("meshes", 1000 * _MB, f"{MOST_LISTED:,} numbers in a set; formats that name other files are not read")
 MATRICES = Bound(
-    "matrices (npz)", 1000 * _MB, f"{MOST_MEMBERS} arrays, none larger than its place in the file; no Python objects"
+    "matrices (npz)", 400 * _MB, f"{MOST_MEMBERS} arrays, none larger than its place in the file; no Python objects"
 )
 RESULT = Bound(
     "results and chunks (HDF5)",

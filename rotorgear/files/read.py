@@ -10,7 +10,7 @@ import io
 import os
 import stat
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
@@ -129,7 +129,8 @@ def text_lines(path: str | Path, most_bytes: int, kinds: Collection[str] = ()) -
         try:
             yield from lines
         finally:
-            lines.detach()  # the file is closed by who opened it
+            with suppress(ValueError):  # a generator that was left in the middle may find it closed
+                lines.detach()
 
 
 def digest_of_named(path: str | Path, most_bytes: int) -> str:

@@ -5,12 +5,15 @@ Each case runs as a command of its own, within a CPU second and 200 MB: one sent
 
 from __future__ import annotations
 
+import base64
 import os
 import re
+import resource
 import stat
 import subprocess
 import sys
 import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -100,9 +103,9 @@ def test_a_model_that_would_hang_is_refused_in_a_sentence(tmp_path: Path, name: 
     assert (code, sentence in error) == (2, True), error
 
 
-def packed(name: str, text: str) -> Callable[[Path], None]:
+def packed(name: str, text: str, method: int = zipfile.ZIP_STORED) -> Callable[[Path], None]:
     def make(path: Path) -> None:
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        with zipfile.ZipFile(path, "w", method, compresslevel=9) as archive:
             archive.writestr(name, text)
 
     return make
@@ -121,7 +124,14 @@ FRAME = (
 REXS: dict[str, tuple[Callable[[Path], object], str]] = {
     "utf-7": (lambda path: path.write_text('<?xml version="1.0" encoding="utf-7"?><model/>'), "multi-byte encodings"),
     "elements": (packed("a.rexs", "<model>" + "<a/>" * 7_000_000 + "</model>"), "more than 500000 elements"),
-    "large": (packed("a.rexs", "<model>" + "<a/>" * 10_000_000 + "</model>"), "larger than 32 MB"),
+    "large": (
+        packed("a.rexs", "<model>" + "<a/>" * 10_000_000 + "</model>", zipfile.ZIP_DEFLATED),
+        "unpacked it is larger than 32 MB",
+    ),
+    "tight": (
+        packed("a.rexs", "<model>" + "<a/>" * 7_000_000 + "</model>", zipfile.ZIP_DEFLATED),
+        "it unpacks to more than 100 times its size",
+    ),
     "lists": (packed("a.rexsj", '{"model":[' + "[]," * 9_000_000 + "[]]}"), "more than 500000 elements"),
     "a tag": (packed("a.rexs", f"<model x='{'y' * 29_000_000}'/>"), "a tag or a comment of more than"),
     "deep": (packed("a.rexs", "<a>" * 400_000), "its root is <a>"),
@@ -234,6 +244,25 @@ def test_sets_that_name_sets_do_not_double_without_end(tmp_path: Path) -> None:
     path = write_inp(tmp_path / "b.inp", block(), text)
     with pytest.raises(AnalysisError, match=f"a set of more than {MOST_LISTED} numbers"):
         read_mesh(path, "casings.b.mesh")
+
+
+def test_a_mesh_that_unpacks_to_more_than_any_of_its_size_is_refused(tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    found = block()
+    path = tmp_path / "b.vtu"
+    meshio.write(path, meshio.Mesh(found.points, [("tetra10", found.cells["tetra10"])]))
+    assert len(read_mesh(path, "casings.b.mesh").points) == len(found.points)
+    # Points as one block of zeros, a gigabyte of them.
+    packed = zlib.compress(bytes(1_000_000_000), 9)
+    head = base64.b64encode(np.array([1, 1_000_000_000, 0, len(packed)], dtype=np.uint32).tobytes()).decode()
+    text = path.read_text()
+    begin = text.index(">", text.index('Name="Points"')) + 1
+    path.write_text(text[:begin] + head + base64.b64encode(packed).decode() + text[text.index("<", begin) :])
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(AnalysisError, match="it unpacks to more than any mesh of its size"):
+        read_mesh(path, "casings.b.mesh")
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 300_000
+    bytearray(1_000_000_000)  # the bound is gone
 
 
 def test_formats_that_name_other_files_are_not_read(tmp_path: Path) -> None:
