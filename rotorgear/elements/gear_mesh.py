@@ -21,6 +21,12 @@ One contact point serves both bodies: that makes all six rigid motions of the pa
 each gear's arm to its own base tangent point fails a rigid tilt by up to a_w sin a sin b per rad.) Conventions:
 docs/conventions.md.
 
+Bevel gears (gears/geometry/bevel.py) push in the same way at the mean point of their pitch cones. The pitch line, away from the
+apex, stands in the place of k, and e leaves the pinion's cone at right angles to it: with the radial direction e_r of the pitch
+point and a = +-k away from the apex,
+
+    k -> sin d_1 e_r + cos d_1 a      e -> cos d_1 e_r - sin d_1 a      -e (gear's arm) -> -cos S e_r + sin S a
+
 All this is told in the frame of the pinion's shaft. Where the gear's shaft has other directions, its entries are turned into
 them by Q = R_g' R_p, with the axes of both shafts in the columns of R:
 
@@ -35,6 +41,21 @@ from math import cos, sin
 import numpy as np
 
 from rotorgear.elements.matrices import ElementMatrices
+
+
+@dataclass(frozen=True)
+class Cone:
+    """What a contact of bevel gears has beside that of cylindrical ones.
+
+    Attributes:
+        pitch_angle: d_1 of the pinion in rad.
+        shaft_angle: S in rad, between the axes away from the apex.
+        sides: for pinion and gear +1 where z of the shaft leads away from the apex, -1 where it leads to it.
+    """
+
+    pitch_angle: float
+    shaft_angle: float
+    sides: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -54,6 +75,7 @@ class ContactGeometry:
         contact_position: xi, from the pitch point along the line of action.
         turn: Q, rows of (3, 3), directions of the pinion's shaft in those of the gear's; None where both are the same.
         gear_node: (x, y, z) of the gear's node from that of the pinion, beside a turn and where both are known.
+        cone: of bevel gears.
     """
 
     psi: float
@@ -68,6 +90,7 @@ class ContactGeometry:
     contact_position: float = 0.0
     turn: tuple[tuple[float, ...], ...] | None = None
     gear_node: tuple[float, ...] | None = None
+    cone: Cone | None = None
 
 
 @dataclass(frozen=True)
@@ -90,7 +113,8 @@ class Face:
 def flank_normal(geometry: ContactGeometry) -> np.ndarray:
     """Direction of the force on the gear, a unit vector (3,)."""
     g = geometry
-    axial = np.array([0.0, 0.0, -g.torque_sense * g.hand * sin(g.base_helix_angle)])
+    side = g.cone.sides[0] if g.cone else 1
+    axial = -side * g.torque_sense * g.hand * sin(g.base_helix_angle) * _frame(g)[2]
     return cos(g.base_helix_angle) * _transverse_normal(g) + axial
 
 
@@ -102,7 +126,7 @@ def contact_vector(geometry: ContactGeometry) -> np.ndarray:
 def tilt_vector(geometry: ContactGeometry) -> np.ndarray:
     """The 12 entries v_t that give the tilt of the flanks along the face, approach per metre of z, from the dofs, shape (12,)."""
     # n . (theta x z k) = z theta . (k x n); the axial part of n drops out.
-    turned = cos(geometry.base_helix_angle) * np.cross([0.0, 0.0, 1.0], _transverse_normal(geometry))
+    turned = cos(geometry.base_helix_angle) * np.cross(_frame(geometry)[2], _transverse_normal(geometry))
     return _turned(geometry, np.concatenate([np.zeros(3), turned, np.zeros(3), -turned]))
 
 
@@ -113,7 +137,7 @@ def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
         Shape (2, 12). First row: displacement across the line of action (along k x n_t) of the pinion relative to the gear,
         at the pitch point. Second row: what a contact at xi adds to it for each metre of xi.
     """
-    k = np.array([0.0, 0.0, 1.0])
+    k = _frame(geometry)[2]
     across = np.cross(k, _transverse_normal(geometry))
     # A rotation theta_z carries a point that lies xi along n_t by xi theta_z across it; theta_x and theta_y do not.
     turned = _turned(geometry, np.concatenate([np.zeros(3), k, np.zeros(3), -k]))
@@ -122,7 +146,7 @@ def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
 
 def _transverse_normal(geometry: ContactGeometry) -> np.ndarray:
     """n_t, the flank normal of the transverse plane, (3,)."""
-    e, t = _frame(geometry.psi)
+    e, t, _ = _frame(geometry)
     return geometry.torque_sense * cos(geometry.pressure_angle) * t + sin(geometry.pressure_angle) * e
 
 
@@ -132,11 +156,18 @@ def _relative(geometry: ContactGeometry, direction: np.ndarray, beside: np.ndarr
     It is that of one point of both bodies, which lies `beside` (3,) the pitch point in the plane of the contact.
     """
     g = geometry
-    e = _frame(g.psi)[0]
+    radial = np.array([cos(g.psi), sin(g.psi), 0.0])
     k = np.array([0.0, 0.0, 1.0])
+    back = -radial
+    gear_k = k
+    if g.cone is not None:
+        away = g.cone.sides[0] * k
+        S = g.cone.shaft_angle
+        back = sin(S) * away - cos(S) * radial
+        gear_k = g.cone.sides[1] * (cos(S) * away + sin(S) * radial)
     # Arms from both nodes to the same point: working radius r_w = r_b / cos a, then along the line of action.
-    pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + beside + g.pinion_offset * k
-    gear = -g.gear_base_radius / cos(g.pressure_angle) * e + beside + g.gear_offset * k
+    pinion = g.pinion_base_radius / cos(g.pressure_angle) * radial + beside + g.pinion_offset * k
+    gear = g.gear_base_radius / cos(g.pressure_angle) * back + beside + g.gear_offset * gear_k
     if g.gear_node is not None:
         gear = pinion - np.array(g.gear_node)
     return _turned(g, np.concatenate([direction, np.cross(pinion, direction), -direction, -np.cross(gear, direction)]))
@@ -212,6 +243,14 @@ def equivalent_mass_general(geometry: ContactGeometry, first: np.ndarray, second
     return float(1.0 / np.sum(v[moved] ** 2 / inertia[moved]))
 
 
-def _frame(psi: float) -> tuple[np.ndarray, np.ndarray]:
-    """e from pinion to gear, and t across it, each (3,)."""
-    return np.array([cos(psi), sin(psi), 0.0]), np.array([-sin(psi), cos(psi), 0.0])
+def _frame(geometry: ContactGeometry) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """e from pinion to gear, t across it, and k along the pitch line, each (3,)."""
+    psi = geometry.psi
+    radial = np.array([cos(psi), sin(psi), 0.0])
+    t = np.array([-sin(psi), cos(psi), 0.0])
+    k = np.array([0.0, 0.0, 1.0])
+    if geometry.cone is None:
+        return radial, t, k
+    delta = geometry.cone.pitch_angle
+    away = geometry.cone.sides[0] * k
+    return cos(delta) * radial - sin(delta) * away, t, sin(delta) * radial + cos(delta) * away

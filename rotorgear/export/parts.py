@@ -22,6 +22,7 @@ from rotorgear.export.surface import (
     wedge,
 )
 from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
+from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.results.modal import body_name
@@ -117,7 +118,10 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
     phases = tooth_phases(model, skeleton.frames)
     for gear in model.layout.gears:
         for number, (plane, rate) in enumerate(zip(gear.planes, twist_rates(gear), strict=True)):
-            surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
+            if gear.part.is_bevel:
+                surface = _cone(model, gear, detail)
+            else:
+                surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
             placed = skeleton.placed(gear.shaft, surface)
             place = gear.places[number if len(gear.places) == 2 else 0]
             wheel = gear.wheel
@@ -133,6 +137,22 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
                     f"gears.{gear.name}", "gear", gear.shaft, shown, skeleton.on_casing(body, shown.points)
                 )
             yield PartSurface(f"gears.{gear.name}", "gear", gear.shaft, placed, attachment)
+
+
+def _cone(model: Model, gear: GearLayout, detail: Detail) -> Surface:
+    """The pitch cone of a bevel gear about its own axis, over its face."""
+    mesh = next((mesh for mesh in model.layout.meshes if gear in mesh.gears), None)
+    radius, half, rise, z = 0.5 * helix_width(model, gear.name), 0.5 * helix_width(model, gear.name), 0.0, gear.z
+    if mesh is not None and mesh.bevel is not None and mesh.meeting is not None:
+        number = mesh.gears.index(gear)
+        delta = mesh.bevel.pitch_angles[number]
+        radius = mesh.bevel.mean_radii[number]
+        rise = half * math.sin(delta)
+        half *= math.cos(delta)
+        rise *= mesh.meeting.sides[number]
+    hole = _hole(model, gear.shaft, z - half, z + half, None, radius - abs(rise))
+    ends = [(radius - rise, z - half), (radius + rise, z + half), (hole, z + half), (hole, z - half)]
+    return revolve(np.array(ends), detail.segments, closed=True)
 
 
 def _helix(model: Model, name: str, plane: float, rate: float, phase: float, detail: Detail) -> Surface:

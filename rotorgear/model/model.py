@@ -126,7 +126,6 @@ __all__ = ["MOTIONS", "SCHEMA_VERSION", "Model"]
 
 # Keys of a gear body that only a mesh has.
 _OF_MESHES = ("connection", "damping_ratio", "mass_tolerance")
-_ALONG_Z = (0.0, 0.0, 1.0)
 
 
 def model_hash(model: Model) -> str:
@@ -163,9 +162,11 @@ def _hash(model: Model) -> str:
             body["mesh"] = _digest(Path(body["mesh"]))
         else:  # a gear without a mesh keeps the name that it had before there were any
             gear["body"] = {key: value for key, value in body.items() if key not in _OF_MESHES}
-    for shaft in fields["shafts"].values():
-        if tuple(shaft["axis"]) == _ALONG_Z:  # so does a shaft that is parallel to z
-            del shaft["axis"]
+    # A model keeps the name that it had before there were keys which it does not give.
+    for table, key, usual in (("shafts", "axis", [0.0, 0.0, 1.0]), ("gears", "spiral_angle", 0.0)):
+        for part in fields[table].values():
+            if part[key] == usual:
+                del part[key]
     if not fields["casings"]:
         del fields["casings"]  # a model without them keeps the name that it had before there were any
     if not fields["scatter"]:

@@ -15,6 +15,7 @@ _MESH_LEGEND = (
     "at: direction from pinion to gear from +x; a_wt: working transverse pressure angle; beta_b: base helix angle in deg; "
     "eps: contact ratios, transverse and overlap (of one helix)"
 )
+_BEVEL_LEGEND = "; of bevel gears those on the pinion at its mean point, towards its axis and away from the apex"
 _FORCE_LEGEND = (
     "phase: in pitches, when the mark of the input shaft points to +x; "
     "forces on one helix: normal to the flank, tangential and radial at the working circle, axial; "
@@ -84,6 +85,12 @@ class MeshRow(Record):
     flank_assumed: bool = of("whether the working flank is an assumption", note=": no torque flows")
     stiffness_n_per_m: float = of("stiffness along the flank normal", "N/m", note=", of all helices")
     damping_n_s_per_m: float = of("damping coefficient along the flank normal", "N s/m", note=", of all helices")
+    bevel_radial_force_n: float | None = of(
+        "force on the pinion towards its axis", "N", note=", of bevel gears", default=None
+    )
+    bevel_axial_force_n: float | None = of(
+        "force on the pinion away from the apex", "N", note=", of bevel gears; negative: towards it", default=None
+    )
 
 
 class TorqueRow(Record):
@@ -131,7 +138,8 @@ class ModelDescription(Result, kind="check"):
             yield from ("", grid(rows, "shaft", "z mm of the other parts on it", left=2, caption="Other parts"))
         if self.meshes:
             yield from ("", table_of(self, "meshes"), Line(rest=_MESH_LEGEND, dim=True))
-            yield from ("", self._forces(), Line(rest=_FORCE_LEGEND, dim=True))
+            bevel = any(mesh.bevel_axial_force_n is not None for mesh in self.meshes)
+            yield from ("", self._forces(), Line(rest=_FORCE_LEGEND + _BEVEL_LEGEND * bevel, dim=True))
         if self.torques:
             yield from ("", table_of(self, "torques"))
         mass = f"total mass {self.total_mass_kg:.6g} kg; " if self.total_mass_kg else ""
@@ -150,12 +158,15 @@ class ModelDescription(Result, kind="check"):
             transverse = math.cos(beta) * math.cos(alpha), math.cos(beta) * math.sin(alpha)
             helices = len(mesh.normal_force_n)
             for k, force in enumerate(mesh.normal_force_n):
+                shares = [force * share for share in (1.0, *transverse, math.sin(beta))]
+                if mesh.bevel_radial_force_n is not None and mesh.bevel_axial_force_n is not None:
+                    shares[2:] = mesh.bevel_radial_force_n, mesh.bevel_axial_force_n
                 rows.append(
                     (
                         mesh.name if helices == 1 else f"{mesh.name} {'LR'[k]}",
                         f"{mesh.driver} (assumed)" if mesh.flank_assumed else mesh.driver,
                         written(mesh.phase_pitches[k], ".3f"),
-                        *(f"{force * share:.5g}" for share in (1.0, *transverse, math.sin(beta))),
+                        *(f"{share:.5g}" for share in shares),
                         f"{mesh.stiffness_n_per_m / helices:.4g}",
                         f"{mesh.damping_n_s_per_m / helices:.4g}",
                     )

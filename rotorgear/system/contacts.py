@@ -18,7 +18,8 @@ class ContactLines:
 
     Attributes:
         states: mean state of each contact, with its geometry.
-        vectors: v over the free dofs, (n, c); turned: dv/dpsi, the change when the centre line turns, (n, c).
+        vectors: v over the free dofs, (n, c); turned: dv/dpsi, the change when the centre line turns, (n, c), which says nothing
+            of bevel gears.
         tilt: v_t over the free dofs, tilt of the flanks along the face, (n, c).
         tilted: dv_t/dpsi, (n, c).
         rotation: r_b1 tz_1 + r_b2 tz_2 over the free dofs in the sense that presses the teeth, (n, c), in m along the line
@@ -86,8 +87,7 @@ def contact_lines(system: System) -> ContactLines:
 def rotation_vector(state: MeshForce) -> np.ndarray:
     """r_b1 tz_1 + r_b2 tz_2 over the dofs of pinion and gear, (12,), in the sense that presses the teeth."""
     found = np.zeros(12)
-    found[5] = state.torque_sense * state.contact.pinion_base_radius
-    found[11] = state.torque_sense * state.contact.gear_base_radius
+    found[5], found[11] = (state.torque_sense * lever for lever in state.contact.levers)
     return found
 
 

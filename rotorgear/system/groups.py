@@ -277,6 +277,7 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
         contact_position=past_pitch_point,
         turn=c.turn,
         gear_node=c.gear_node,
+        cone=c.cone,
     )
 
 

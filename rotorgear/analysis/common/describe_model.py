@@ -9,10 +9,12 @@ import numpy as np
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.elements.gear_mesh import flank_normal
 from rotorgear.model.checks.names import TABLES
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
+from rotorgear.system.groups import contact_geometry
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 
@@ -107,6 +109,11 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
     phases = [system.state.phase(force.contact) for force in forces]
     line = mesh.centre_line
     pair = mesh.pair
+    radial = axial = None
+    if contact.cone is not None:
+        on_gear = forces[0].normal_force * flank_normal(contact_geometry(forces[0]))
+        radial = float(on_gear[0] * math.cos(contact.psi) + on_gear[1] * math.sin(contact.psi))
+        axial = float(-contact.cone.sides[0] * on_gear[2])
     viscosities = (group.matrices.viscosity for group in system.groups if group.part == f"meshes.{name}")
     return MeshRow(
         name=name,
@@ -128,4 +135,6 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         flank_assumed=any(force.assumed for force in forces),
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum((float(C[0, 0, 0]) for C in viscosities if C is not None), 0.0),
+        bevel_radial_force_n=radial,
+        bevel_axial_force_n=axial,
     )

@@ -51,6 +51,7 @@ def model_warnings(system: System) -> Iterator[str]:
     # A coupling ties its two points as if they were at one place: far apart, a shaft likely starts where it should not.
     for name, coupling in model.couplings.items():
         first, second = (place.z for place in system.layout.places(f"couplings.{name}"))
+        second += float(model.shafts[coupling.from_shaft].frame.sees(model.shafts[coupling.to_shaft].frame).origin[2])
         length = max(model.shafts[coupling.from_shaft].length, model.shafts[coupling.to_shaft].length)
         if length and abs(second - first) > 0.25 * length:
             gap = 1e3 * abs(second - first)
@@ -61,7 +62,7 @@ def _faces(system: System) -> Iterator[str]:
     """Gears that stand in one another, and gears that hang over the end of their shaft."""
     faces: dict[str, list[tuple[float, float, str]]] = {}
     for gear in system.layout.gears:
-        half = 0.5 * gear.part.total_width
+        half = 0.0 if gear.part.is_bevel else 0.5 * gear.part.total_width
         faces.setdefault(gear.shaft, []).append((gear.z - half, gear.z + half, gear.name))
     for shaft, found in faces.items():
         part = system.model.shafts[shaft]

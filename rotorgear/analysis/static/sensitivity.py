@@ -42,7 +42,10 @@ def sensitivities(
         terms.append((f"meshes.{mesh}.stiffness", "N", right, mine))
     terms += [(part, "N", right, np.zeros(len(active))) for part, right in _stiffness_terms(equilibrium).items()]
     turning = lines.turned.T @ equilibrium.q
+    cylindrical = {state.contact.mesh for state in lines.states if state.contact.cone is None}
     for mesh, own in masks.items():
+        if mesh not in cylindrical:  # what turns about an axis leaves the other axis of a bevel pair
+            continue
         right = -(lines.turned @ (own * equilibrium.force) + lines.vectors @ (own * active * turning))
         right -= lines.tilted @ (own * equilibrium.moment)
         right -= lines.tilt @ (own * resists * (lines.tilted.T @ equilibrium.q))

@@ -105,11 +105,16 @@ def gear(model: Model, mesh: str | None = None) -> GearSheet:
     wanted = [gear.name for item in meshes for gear in item.gears] if mesh else list(model.gears)
     toothed = [gear for gear in model.layout.gears if gear.name in wanted and gear.geometry]
     if not toothed:
-        raise AnalysisError("The model has no gears with teeth: those given by base_radius have no tooth geometry.")
+        raise AnalysisError(
+            "The model has no gears with teeth: those given by base_radius and bevel gears have no tooth geometry here."
+        )
     whole = [item for item in meshes if item.pinion.geometry]
     lumped = [name for name, gear in model.gears.items() if name in wanted and not gear.geometry]
     rows = tuple(_mesh(model, item) for item in whole)
-    left_out = [f"gears.{name}: given by its base radius, without teeth" for name in lumped]
+    left_out = [
+        f"gears.{name}: {'a bevel gear' if model.layout.gear(name).part.is_bevel else 'given by its base radius, without teeth'}"
+        for name in lumped
+    ]
     left_out += [
         f"meshes.{row.name}: the stiffness of '{row.stiffness_model}' is that of loaded teeth, and no torque flows: give torque, "
         "power or loads"

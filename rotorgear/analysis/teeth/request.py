@@ -162,6 +162,10 @@ def mesh_request(
         hint = did_you_mean(name, names, f"there are {', '.join(names)}.")
         raise AnalysisError(f"There is no mesh '{name}': {hint}")
     mesh = model.layout.mesh(name or names[0])
+    if mesh.is_bevel:
+        raise AnalysisError(
+            f"meshes.{mesh.name}: bevel gears have no teeth here that could be loaded, only a mesh stiffness."
+        )
     given = mesh.part.stiffness
     chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
     known = (*MODELS, "given")

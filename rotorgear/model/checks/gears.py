@@ -29,6 +29,12 @@ _OF_TEETH = (
     *("normal_module", "normal_pressure_angle", "helix_angle", "profile_shift"),
     *("addendum_factor", "dedendum_factor", "tip_diameter"),
 )
+_OF_BEVELS = ("outer_module", "mean_normal_module", "spiral_angle")
+_BEVEL_KEYS = (
+    *("shaft", "at", "kind", "teeth", "width", "hand", "normal_pressure_angle", "clocking", "material"),
+    *("mass", "polar_inertia", "diametral_inertia"),
+    *_OF_BEVELS,
+)
 # The ideal ball is rounded up to a multiple of this (m), or of a quarter of a smaller module.
 _BALL_STEP = 0.25e-3
 # Deeper modifications, as a share of the normal module, are a slip of the unit.
@@ -51,6 +57,11 @@ def gear_problems(model: Tables) -> Iterator[Problem]:
     """Yield what is missing or impossible in the teeth of each gear by itself."""
     for name, gear in model.gears.items():
         address = f"gears.{name}"
+        if gear.is_bevel:
+            yield from _bevel_gear(address, gear)
+            continue
+        for key in not_default(gear, _OF_BEVELS):
+            yield Problem(f"{address}.{key}", "a value", _NOTHING, "kind = 'bevel' has it")
         if not gear.lumped:
             yield from _toothed_gear(address, gear)
             continue
@@ -83,6 +94,30 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
         yield from (Problem(address, "", text) for text in wrong)
     elif geometry:
         yield from _teeth(address, gear, geometry)
+
+
+def _bevel_gear(address: str, gear: Gear) -> Iterator[Problem]:
+    """A bevel gear has teeth, one module, a width, and given inertias; all else that a gear may have is of cylindrical ones."""
+    for key in not_default(gear, (key for key in type(gear).model_fields if key not in _BEVEL_KEYS)):
+        yield Problem(f"{address}.{key}", "a value", _NOTHING, "it is not known of a bevel gear")
+    for key in ("teeth", "width"):
+        if getattr(gear, key) is None:
+            yield missing(f"{address}.{key}", Gear.model_fields[key].description or "a value")
+    modules = (gear.outer_module, gear.mean_normal_module)
+    spiral = gear.spiral_angle
+    steep = not 0.0 <= spiral < math.radians(_LARGEST_HELIX_ANGLE)
+    limits = f"an angle from 0 to below {_LARGEST_HELIX_ANGLE:g} deg"
+    yield from told(
+        address,
+        ("mean_normal_module", not any(modules), "", "missing", "required, or outer_module"),
+        ("", all(modules), "outer_module and mean_normal_module", "one of the two"),
+        ("spiral_angle", steep, degrees(spiral), limits, "hand = 'left' or 'right' says which way it winds"),
+        ("hand", spiral > 0.0 and gear.hand is None, "", "missing", "required: 'right' or 'left'"),
+        ("hand", spiral == 0.0 and gear.hand, f"'{gear.hand}'", _NOTHING, "teeth without a spiral angle have no hand"),
+    )
+    yield from pressure_angle_problems(f"{address}.normal_pressure_angle", gear.normal_pressure_angle)
+    if not inertia_is_given(gear):
+        yield missing(f"{address}.mass", "mass and moments of inertia of a bevel gear")
 
 
 def _helix(address: str, gear: Gear, key: str) -> Iterator[Problem]:

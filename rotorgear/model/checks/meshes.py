@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.pair import working_centre_distance
 from rotorgear.model.checks.axes import not_parallel
+from rotorgear.model.checks.bevel import bevel_problems
 from rotorgear.model.checks.casings import counted_twice
 from rotorgear.model.checks.gears import degrees, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
@@ -22,6 +23,7 @@ from rotorgear.quantity import millimetres
 CENTRE_DISTANCE_TOLERANCE = 0.05
 # Lumped gears come with rounded radii and angles.
 LUMPED_TOLERANCE = 5e-3
+_AXES = "parallel axes of cylindrical gears"
 # Fewer pitches than these are no body for a tooth and its neighbours.
 _LEAST_PITCHES = 3
 
@@ -53,7 +55,10 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             yield Problem(address, f"gear '{mesh.gear}' with itself", "two gears")
         elif pinion.shaft == gear.shaft:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
-        elif inclined := list(not_parallel(address, both.gear_frame, "parallel axes of both gears")):
+        elif pinion.is_bevel and gear.is_bevel:
+            yield from _excitations(address, mesh, pinion, gear)
+            yield from bevel_problems(address, both)
+        elif pinion.is_bevel == gear.is_bevel and (inclined := list(not_parallel(address, both.gear_frame, _AXES))):
             yield from inclined
         else:
             yield from _excitations(address, mesh, pinion, gear)

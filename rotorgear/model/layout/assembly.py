@@ -90,24 +90,37 @@ def put_together(
             free = [gear for gear in mesh.gears if gear.name not in fixed and gear.name not in done.clocking]
             for gear in free[:1]:
                 pitch = 2.0 * math.pi / (gear.part.teeth or 1)
-                done.clocking[gear.name] = _wrapped(pitch * rest, pitch)
-            done.loops.append((mesh.name, free[0].name if free else "", rest))
+                done.clocking[gear.name] = _wrapped(_side(mesh, gear) * pitch * rest, pitch)
+            done.loops.append((mesh.name, free[0].name if free else "", _side(mesh, mesh.pinion) * rest))
         else:
             wanted, known = mesh.gears if mesh.gear.shaft in done.shaft else (mesh.gear, mesh.pinion)
             fit = _pitches(done, mesh, known) % 1.0 + 0.5
-            tooth = _towards_pitch_point(mesh, wanted) + 2.0 * math.pi / (wanted.part.teeth or 1) * fit
+            pitch = _side(mesh, wanted) * 2.0 * math.pi / (wanted.part.teeth or 1)
+            tooth = _towards_pitch_point(mesh, wanted) + pitch * fit
             done.shaft[wanted.shaft] = tooth - done.clocking.get(wanted.name, 0.0)
         fixed |= {gear.name for gear in mesh.gears}
 
 
 def _pitches(done: Assembly, mesh: MeshLayout, gear: GearLayout) -> float:
-    """a_p or a_g: pitches from a tooth of a gear to the pitch point."""
-    return (gear.part.teeth or 0) * (_towards_pitch_point(mesh, gear) - done.angle(gear)) / (2.0 * math.pi)
+    """a_p or a_g: pitches from a tooth of a gear to the pitch point, of a bevel gear about its axis away from the apex."""
+    return (
+        _side(mesh, gear)
+        * (gear.part.teeth or 0)
+        * (_towards_pitch_point(mesh, gear) - done.angle(gear))
+        / (2.0 * math.pi)
+    )
 
 
 def _towards_pitch_point(mesh: MeshLayout, gear: GearLayout) -> float:
     """Direction of the pitch point from a gear's axis, in the frame of its shaft."""
     return mesh.gear_psi if gear is mesh.gear else mesh.psi
+
+
+def _side(mesh: MeshLayout, gear: GearLayout) -> int:
+    """-1 of a bevel gear whose z leads to the apex, else 1."""
+    if mesh.meeting is None:
+        return 1
+    return mesh.meeting.sides[1 if gear is mesh.gear else 0]
 
 
 def _wrapped(value: float, period: float) -> float:

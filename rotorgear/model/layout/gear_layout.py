@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.model.layout.bevel import meeting, pair_of
 from rotorgear.model.parts.gear import BLANK, DEPTHS, Flank, Gear
 from rotorgear.model.parts.shaft import Disk, Place
 from rotorgear.model.parts.tables import Tables
@@ -49,13 +50,30 @@ class GearLayout:
 
     @property
     def base_radius(self) -> float:
-        """r_b in m, given or from the teeth."""
+        """r_b in m, given or from the teeth; of a bevel gear at its mean point."""
+        if self.part.is_bevel:
+            return self._bevel_numbers[0]
         return self.geometry.base_radius if self.geometry else (self.part.base_radius or 0.0)
 
     @property
     def base_helix_angle(self) -> float:
-        """b_b in rad, given or from the teeth; 0 for a spur gear."""
+        """b_b in rad, given or from the teeth; 0 for a spur gear; of a bevel gear at its mean point."""
+        if self.part.is_bevel:
+            return self._bevel_numbers[1]
         return self.geometry.base_helix_angle if self.geometry else (self.part.base_helix_angle or 0.0)
+
+    @cached_property
+    def _bevel_numbers(self) -> tuple[float, float]:
+        """r_b and b_b at the mean point of a bevel gear, whose cone is that of its first mesh; 0 without one."""
+        for mesh in self._model.meshes.values():
+            if self.name in (mesh.pinion, mesh.gear):
+                first, second = (self._model.gears[name] for name in (mesh.pinion, mesh.gear))
+                shafts = (self._model.shafts[first.shaft], self._model.shafts[second.shaft])
+                met = meeting(shafts, (shafts[0].station(first.at), shafts[1].station(second.at)))
+                if met is not None:
+                    pair = pair_of(met, first, second)
+                    return pair.base_radii[0 if mesh.pinion == self.name else 1], pair.base_helix_angle
+        return 0.0, 0.0
 
     @property
     def hand(self) -> int:

@@ -16,7 +16,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from rotorgear.elements.gear_mesh import Cone
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.bevel import BevelPair
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import (
     Backlash,
@@ -25,6 +27,7 @@ from rotorgear.gears.geometry.pair import (
     pair_geometry,
     working_pressure_angle_from_shifts,
 )
+from rotorgear.model.layout.bevel import Meeting, meeting, pair_of
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.frame import Frame
@@ -61,6 +64,7 @@ class Contact:
         turn: rows of (3, 3), directions of the pinion's shaft in those of the gear's; None where both are the same.
         gear_node: (x, y, z) from the pinion's node to the gear's in the frame of the pinion's shaft, beside a turn and where
             both shafts have positions.
+        cone: of bevel gears.
     """
 
     mesh: str
@@ -82,6 +86,16 @@ class Contact:
     contact_position: float
     turn: tuple[tuple[float, ...], ...] | None = None
     gear_node: tuple[float, ...] | None = None
+    cone: Cone | None = None
+
+    @property
+    def levers(self) -> tuple[float, float]:
+        """r_b of pinion and gear in m, by which a positive rotation of each about its own z presses one and the same flank.
+
+        That of a gear is negative where the axes of a bevel pair lead to the apex on one side and away from it on the other.
+        """
+        side = self.cone.sides[0] * self.cone.sides[1] if self.cone else 1
+        return self.pinion_base_radius, side * self.gear_base_radius
 
 
 class MeshLayout:
@@ -122,7 +136,7 @@ class MeshLayout:
     @cached_property
     def centre_line(self) -> tuple[float, float] | None:
         """Centre distance in m and direction from pinion to gear in rad; None where the shafts have no positions."""
-        if self.pinion.shaft_part.position is None or self.gear.shaft_part.position is None:
+        if self.pinion.shaft_part.position is None or self.gear.shaft_part.position is None or self.is_bevel:
             return None
         dx, dy, _ = self.gear_frame.at(self.gear.z).tolist()
         return math.hypot(dx, dy), math.atan2(dy, dx)
@@ -133,24 +147,47 @@ class MeshLayout:
         return self.pinion.shaft_part.frame.sees(self.gear.shaft_part.frame)
 
     @property
+    def is_bevel(self) -> bool:
+        """Whether it is one of bevel gears."""
+        return self.pinion.part.is_bevel and self.gear.part.is_bevel
+
+    @cached_property
+    def meeting(self) -> Meeting | None:
+        """Where the axes of bevel gears meet; None of cylindrical gears, and of parallel axes."""
+        if not self.is_bevel:
+            return None
+        return meeting((self.pinion.shaft_part, self.gear.shaft_part), (self.pinion.z, self.gear.z))
+
+    @cached_property
+    def bevel(self) -> BevelPair | None:
+        """The pitch cones of bevel gears; None as of `meeting`."""
+        return None if self.meeting is None else pair_of(self.meeting, self.pinion.part, self.gear.part)
+
+    @property
     def _shift(self) -> float:
         """z in m of the gear's z = 0 on the pinion's shaft."""
         return float(self.gear_frame.origin[2])
 
     @property
     def psi(self) -> float:
-        """Direction from pinion to gear in rad, from +x of the pinion's shaft."""
+        """Direction from pinion to gear in rad, from +x of the pinion's shaft; of bevel gears to the pitch point."""
+        if self.meeting is not None:
+            return self.meeting.directions[0]
         return self.centre_line[1] if self.centre_line else (self.part.centre_line_angle or 0.0)
 
     @property
     def gear_psi(self) -> float:
-        """Direction from gear to pinion in rad, from +x of the gear's shaft."""
+        """Direction from gear to pinion in rad, from +x of the gear's shaft; of bevel gears to the pitch point."""
+        if self.meeting is not None:
+            return self.meeting.directions[1]
         x = self.gear_frame.axes[:, 0]
         return self.psi + math.pi - math.atan2(x[1], x[0])
 
     @cached_property
     def pressure_angle(self) -> float:
-        """Working transverse pressure angle in rad."""
+        """Working transverse pressure angle in rad; of bevel gears at the mean point."""
+        if self.bevel is not None:
+            return self.bevel.pressure_angle
         if self.centre_line is not None:
             return math.acos(min((self.pinion.base_radius + self.gear.base_radius) / self.centre_line[0], 1.0))
         if self.part.pressure_angle is not None:
@@ -179,7 +216,8 @@ class MeshLayout:
     def _toothed(self, lacking: str) -> tuple[GearGeometry, GearGeometry, PairGeometry]:
         """The geometry of gears that are given by their teeth; others lack what is asked for."""
         if self.pinion.geometry is None or self.gear.geometry is None or self.pair is None:
-            raise AnalysisError(f"meshes.{self.name}: gears given by their base radius have no {lacking}.")
+            kind = "bevel gears" if self.is_bevel else "gears given by their base radius"
+            raise AnalysisError(f"meshes.{self.name}: {kind} have no {lacking}.")
         return self.pinion.geometry, self.gear.geometry, self.pair
 
     @cached_property
@@ -203,7 +241,7 @@ class MeshLayout:
         """z range in m where the two gears of one helix face each other, on the pinion's shaft; None where a width is missing."""
         pinion = self.pinion.part.width
         gear = self.gear.part.width
-        if not pinion or not gear:
+        if not pinion or not gear or self.is_bevel:
             return None
         first, second = self.planes[helix]
         return max(first - 0.5 * pinion, second - 0.5 * gear), min(first + 0.5 * pinion, second + 0.5 * gear)
@@ -227,7 +265,13 @@ class MeshLayout:
 
     def _contact(self, helix: int) -> Contact:
         low, high = self.face(helix) or self.planes[helix]
-        middle = 0.5 * (low + high)
+        places = (0.5 * (low + high), 0.5 * (low + high) - self._shift)
+        cone = None
+        if self.meeting is not None and self.bevel is not None:
+            met, pair = self.meeting, self.bevel
+            first, second = zip(met.apex, met.sides, pair.mean_distances, strict=True)
+            places = (first[0] + first[1] * first[2], second[0] + second[1] * second[2])
+            cone = Cone(pair.pitch_angles[0], pair.shaft_angle, met.sides)
         pinion_place = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
         gear_place = self.gear.places[helix if len(self.gear.places) == 2 else 0]
         turn = None
@@ -243,8 +287,8 @@ class MeshLayout:
             gear=self.gear.name,
             pinion_place=pinion_place,
             gear_place=gear_place,
-            contact_z=middle,
-            gear_contact_z=middle - self._shift,
+            contact_z=places[0],
+            gear_contact_z=places[1],
             hand=self.pinion.hand if helix == 0 else -self.pinion.hand,
             psi=self.psi,
             gear_psi=self.gear_psi,
@@ -256,6 +300,7 @@ class MeshLayout:
             contact_position=self.part.contact_position,
             turn=turn,
             gear_node=gear_node,
+            cone=cone,
         )
 
     @property
@@ -453,6 +498,10 @@ class MeshLayout:
             # A file gives both helices together, in phase: half of it is one helix.
             one = given_stiffness([value / self.helices for value in values], angle, 1, load, positions)
             return (one,) * self.helices
+        if self.bevel is not None:
+            from rotorgear.gears.stiffness.bevel import bevel_stiffness
+
+            return (bevel_stiffness(self.bevel, self.width, load, positions),)
         with self._named_in_errors():
             return tuple(
                 mesh_stiffness(given, self.helix_teeth(helix, sense, f), load, positions)

@@ -269,8 +269,8 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
     for row, line in zip(squeeze, lines, strict=True):
         pinion = elastic.get((line.pinion, line.pinion_place), node[line.pinion_place])
         gear = elastic.get((line.gear, line.gear_place), node[line.gear_place])
-        row[pinion] += line.pinion_base_radius * np.cos(line.base_helix_angle)
-        row[gear] += line.gear_base_radius * np.cos(line.base_helix_angle)
+        for number, lever in zip((pinion, gear), line.levers, strict=True):
+            row[number] += lever * np.cos(line.base_helix_angle)
     stiffness = np.array([line.stiffness for line in lines])
     # K = sum of the springs + S^T diag(k) S
     K = np.zeros((count, count))

@@ -1,6 +1,7 @@
 """The gear train: speed and sense of every shaft, by a walk over meshes and couplings from the input shaft.
 
-An external mesh multiplies the speed by -z_1/z_2, a coupling with torsional stiffness by 1. A closed loop (split torque)
+An external mesh multiplies the speed by -z_1/z_2, and so does a bevel pair where both axes lead away from the apex (or both to
+it; +z_1/z_2 where one does), a coupling with torsional stiffness by 1. A closed loop (split torque)
 must give one ratio on every path; with whole numbers of teeth that is decided in exact fractions.
 """
 
@@ -12,6 +13,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from rotorgear.errors import Problem
+from rotorgear.model.layout.bevel import meeting
+from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.tables import Tables
 
 # Base radii come rounded to a few digits, so a loop of lumped gears closes only to this; loops with teeth close exactly.
@@ -65,7 +68,7 @@ def links(model: Tables) -> list[Link]:
             continue
         ratio: Ratio
         if pinion.teeth and gear.teeth:
-            ratio = -Fraction(pinion.teeth, gear.teeth)
+            ratio = -Fraction(pinion.teeth, gear.teeth) * _sides(model, pinion, gear)
         elif pinion.base_radius and gear.base_radius:
             ratio = -pinion.base_radius / gear.base_radius
         else:
@@ -75,6 +78,16 @@ def links(model: Tables) -> list[Link]:
         if coupling.turns_both:
             found.append((f"couplings.{name}", coupling.from_shaft, coupling.to_shaft, Fraction(1)))
     return [link for link in found if link[1] in model.shafts and link[2] in model.shafts]
+
+
+def _sides(model: Tables, pinion: Gear, gear: Gear) -> int:
+    """-1 for bevel gears of which one axis leads to the apex and the other away from it, else 1."""
+    known = pinion.is_bevel and gear.is_bevel and pinion.shaft in model.shafts and gear.shaft in model.shafts
+    if not known:
+        return 1
+    first, second = (model.shafts[one.shaft] for one in (pinion, gear))
+    met = meeting((first, second), (first.station(pinion.at), second.station(gear.at)))
+    return 1 if met is None else met.sides[0] * met.sides[1]
 
 
 def walk(model: Tables) -> tuple[Train, list[Problem]]:

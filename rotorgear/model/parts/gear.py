@@ -1,4 +1,4 @@
-"""Gears: spur, helical or herringbone, by their teeth, or by base radius and transverse angle for lumped models.
+"""Gears: spur, helical, herringbone or bevel, by their teeth, or by base radius and transverse angle for lumped models.
 
 Their flanks may deviate from the involute helicoid, by modifications and by errors.
 """
@@ -94,17 +94,28 @@ class GearBody(Part):
 
 
 class Gear(Part):
-    """A cylindrical external gear on a shaft."""
+    """A gear on a shaft: a cylindrical external one, or a bevel gear."""
 
     shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the gear's middle")
-    kind: Literal["spur", "helical", "herringbone"] = Field(description="spur, helical or herringbone")
+    at: Station = Field(description="z of the gear's middle; of a bevel gear the foot of its mean point on the axis")
+    kind: Literal["spur", "helical", "herringbone", "bevel"] = Field(
+        description="spur, helical, herringbone or bevel (straight, Zerol and spiral)"
+    )
     teeth: Whole | None = Field(None, description="number of teeth")
     normal_module: si.PositiveLength | None = Field(None, description="normal module m_n")
     normal_pressure_angle: si.Angle = Field(0.3490658503988659, description="normal pressure angle alpha_n")
+    outer_module: si.PositiveLength | None = Field(
+        None, description="bevel: transverse module at the outer cone distance, m_et"
+    )
+    mean_normal_module: si.PositiveLength | None = Field(
+        None, description="bevel: normal module at the mean cone distance, m_mn, in place of the outer one"
+    )
+    spiral_angle: si.Angle = Field(
+        0.0, description="bevel: spiral angle at the mean cone distance, positive; 0: straight or Zerol"
+    )
     helix_angle: si.Angle | None = Field(None, description="helix angle beta at the reference circle, positive")
     hand: Literal["right", "left"] | None = Field(
-        None, description="hand of the helix; of a herringbone: of the helix at the smaller z"
+        None, description="hand of the helix or spiral; of a herringbone: of the helix at the smaller z"
     )
     width: si.PositiveLength | None = Field(None, description="face width (of one helix)")
     integral: Flag = Field(
@@ -159,10 +170,15 @@ class Gear(Part):
         """Whether the gear is given by its base radius instead of its teeth."""
         return self.base_radius is not None
 
+    @property
+    def is_bevel(self) -> bool:
+        """Whether it is a bevel gear."""
+        return self.kind == "bevel"
+
     @cached_property
     def geometry(self) -> GearGeometry | None:
-        """ISO 21771 geometry of a gear given by its teeth; None for a lumped gear or one with missing data."""
-        if self.lumped or self.teeth is None or self.normal_module is None:
+        """ISO 21771 geometry of a cylindrical gear given by its teeth; None for others or one with missing data."""
+        if self.lumped or self.is_bevel or self.teeth is None or self.normal_module is None:
             return None
         return GearGeometry(
             teeth=self.teeth,
