@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from rotorgear.cli.console import say
-
 # Command -> former option -> option.
 OPTIONS: dict[str, dict[str, str]] = {
     "new": {"--from": "--source"},
@@ -47,4 +45,6 @@ def current(args: list[str]) -> list[str]:
 
 
 def _warn(old: str, new: str) -> None:
+    from rotorgear.cli.console import say  # here: help, which comes this way too, needs no bars of progress
+
     say(f"Warning: {old} is now {new}; the old name is read for the last time in this version", err=True)

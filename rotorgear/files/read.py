@@ -5,7 +5,6 @@ A device or a pipe has no end, or waits for ever; it is refused by what it is, b
 
 from __future__ import annotations
 
-import hashlib
 import io
 import os
 import stat
@@ -135,6 +134,8 @@ def text_lines(path: str | Path, most_bytes: int, kinds: Collection[str] = ()) -
 
 def digest_of_named(path: str | Path, most_bytes: int) -> str:
     """SHA-256 of what a named file holds; errors as of `opened`."""
+    import hashlib  # here: help needs none
+
     with opened(path, most_bytes) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()  # type: ignore[arg-type]
 
