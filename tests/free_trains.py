@@ -1,4 +1,4 @@
-"""Torsional trains that nothing holds: at random, and chains of given inertias with errors in all their meshes."""
+"""Torsional trains that nothing holds: at random, chains of given inertias with errors in all meshes, and an idler under load."""
 
 from __future__ import annotations
 
@@ -134,4 +134,27 @@ def chain(inertias: list[float], mass: float = 1.0, **mesh: Any) -> rg.Model:
             },
             "meshes": {f"m{i}": common | {"pinion": f"g{i}", "gear": f"g{i + 1}"} | mesh for i in range(count - 1)},
         }
+    )
+
+
+def train(**mesh: Any) -> rg.Model:
+    """Three gears in a row, in torsion only."""
+
+    def gear(teeth: int, shaft: str) -> dict[str, Any]:
+        sizes = {"teeth": teeth, "base_radius": 1e-3 * teeth, "mass": 1.0}
+        inertias = {"polar_inertia": 1e-6 * teeth**2, "diametral_inertia": 5e-7 * teeth**2}
+        return {"shaft": shaft, "at": "start", "kind": "spur", **sizes, **inertias}
+
+    shared = {"centre_line_angle": 0.3, "pressure_angle": 0.349, "phase": 0.4, "damping_ratio": 0.05, "backlash": 1e-4}
+    shared |= {"transmission_error": [{"harmonic": 1, "amplitude": 1e-6}]}
+    return rg.Model(
+        schema_version=1,
+        motions=["torsion"],
+        operation={"input_shaft": "a", "output_shaft": "c", "speed": 120.0, "power": 5e3},
+        shafts={name: {} for name in "abc"},
+        gears={"pinion": gear(23, "a"), "idler": gear(31, "b"), "wheel": gear(57, "c")},
+        meshes={
+            "one": {"pinion": "pinion", "gear": "idler", "stiffness": 3e8, **shared, **mesh},
+            "two": {"pinion": "idler", "gear": "wheel", "stiffness": 4e8, **shared, **mesh},
+        },
     )

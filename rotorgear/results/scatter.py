@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -14,10 +14,9 @@ from rotorgear.results.table import Block, Column, Form, Line, Table, grid, tabl
 # Ends of the bands that are written, as shares of the samples below.
 LOW = 0.05
 HIGH = 0.95
-
-
 # Of the Sobol indices a table shows this many numbers a mode.
 _RANKED = 3
+_SAMPLED = ", by the number of samples: from blocks of them"
 
 
 class ScatteredNumber(Record):
@@ -48,6 +47,12 @@ class FrequencyBand(Record):
     found: float = of("share of the samples that have a mode of this shape")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
     leading_share: float = of("share of that number in the variance", note=", to first order")
+    low_error_hz: float = of(
+        "standard error of the 5 % quantile", "Hz", note=_SAMPLED, default=float("nan"), kw_only=True
+    )
+    high_error_hz: float = of(
+        "standard error of the 95 % quantile", "Hz", note=_SAMPLED, default=float("nan"), kw_only=True
+    )
 
 
 class GroupBand(Record):
@@ -57,6 +62,8 @@ class GroupBand(Record):
     modes: tuple[int, ...] = of("numbers of its nominal modes", "", "mode", note=", from 1")
     lowest_hz: float = of("5 % quantile of the lowest frequency of the group", "Hz")
     highest_hz: float = of("95 % quantile of the highest frequency of the group", "Hz")
+    lowest_error_hz: float = of("standard error of that 5 % quantile", "Hz", note=_SAMPLED, default=float("nan"))
+    highest_error_hz: float = of("standard error of that 95 % quantile", "Hz", note=_SAMPLED, default=float("nan"))
 
 
 class MarginBand(Record):
@@ -70,6 +77,7 @@ class MarginBand(Record):
     low: float = of("5 % quantile of the size of the margin", form=".4f", column="5 % have under")
     median: float = of("median of the size of the margin", form=".4f", column="median")
     below: float = of("share of the samples whose margin is too small", form=".3f", column="below")
+    low_error: float = of("standard error of the 5 % quantile", note=_SAMPLED, default=float("nan"), kw_only=True)
 
 
 class ShareBand(Record):
@@ -86,6 +94,8 @@ class ShareBand(Record):
     high: float = of("95 % quantile", form=".4f", column="95 % under")
     leading: str = of("address of the number that makes most of the variance", note=", to first order")
     leading_share: float = of("share of that number in the variance", note=", to first order")
+    low_error: float = of("standard error of the 5 % quantile", note=_SAMPLED, default=float("nan"))
+    high_error: float = of("standard error of the 95 % quantile", note=_SAMPLED, default=float("nan"))
 
 
 class ScatterResult(ModelResult, kind="scatter"):
@@ -172,9 +182,26 @@ class ScatterResult(ModelResult, kind="scatter"):
         if lost:
             modes = ", ".join(f"{row.mode_number} ({100 * row.found:.0f} %)" for row in lost)
             yield f"found again in fewer than 95 % of the samples: modes {modes}"
+        if errors := self._quantile_errors():
+            yield f"standard errors of the quantiles by the number of samples: {', '.join(errors)}"
         if self.failed:
             yield f"{counted(self.failed, 'samples')} with numbers that the model can't have"
         yield from self.remarks()
+
+    def _quantile_errors(self) -> list[str]:
+        """The largest standard errors of quantiles in words: of frequencies relative to them, of the others as they are."""
+
+        def largest(values: Iterable[float]) -> float:
+            known = [value for value in values if np.isfinite(value)]
+            return max(known, default=0.0)
+
+        of_modes = [(row.low_error_hz / row.nominal_hz, row.high_error_hz / row.nominal_hz) for row in self.bands]
+        sizes = {
+            "frequencies": largest(value for row in of_modes for value in row),
+            "margins": largest(row.low_error for row in self.margins),
+            "shares": largest(value for row in self.shares for value in (row.low_error, row.high_error)),
+        }
+        return [f"{name} up to {100.0 * size:.2g} %" for name, size in sizes.items() if size > 0.0]
 
     def _margins(self) -> Table:
         def percent(name: str, words: Form, without: str = "-", head: str = "") -> Column:

@@ -12,32 +12,7 @@ import numpy as np
 import rotorgear as rg
 from tests.bar_casing import write_bar
 from tests.extreme.forced_errors import mass_on_spring
-from tests.unit.casings.blocks import block, write_inp
-
-_BOX = """
-[materials.own]
-youngs_modulus = {modulus!r}
-poisson_ratio = {nu!r}
-density = {density!r}
-
-[casings.box]
-mesh = "box.inp"
-unit = "m"
-material = "own"
-held = ["low"]
-seats = {{ left = "high" }}
-
-[shafts.rotor]
-position = [{x!r}, {y!r}]
-start = {z!r}
-sections = [{{ length = {x!r}, outer_diameter = {d!r}, rigid = true }}]
-
-[bearings.left]
-shaft = "rotor"
-at = "start"
-stiffness = {{ radial = "5e8 N/m", axial = "5e8 N/m", tilt = "1e6 N m/rad" }}
-casing = "box"
-"""
+from tests.unit.casings.blocks import block_model
 
 
 def block_modes(
@@ -49,12 +24,8 @@ def block_modes(
     kind: str = "hexahedron20",
 ) -> rg.CasingResult:
     """Modes of a block of 100 x 60 x 200 mm times a factor, held at its foot."""
-    size = (0.1 * scale, 0.06 * scale, 0.2 * scale)
     with tempfile.TemporaryDirectory() as folder:
-        write_inp(Path(folder) / "box.inp", block(size, counts, kind))
-        places = {"x": 0.5 * size[0], "y": 0.5 * size[1], "z": size[2], "d": 0.02 * scale}
-        text = _BOX.format(modulus=modulus, nu=nu, density=density, **places)
-        return rg.casing(rg.loads(text, folder=Path(folder)), modes=8)
+        return rg.casing(block_model(Path(folder), scale, modulus, nu, density, counts, kind), modes=8)
 
 
 def scaled_block(scale: float, modulus: float = 1.0, density: float = 1.0) -> float:

@@ -13,7 +13,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.common.pool import in_order
 from rotorgear.cpu import Clock, cpu_seconds
-from tests.models import overhung_disk
+from tests.overhung import overhung_disk
 
 
 def burn(seconds: float) -> float:

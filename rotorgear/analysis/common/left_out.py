@@ -386,9 +386,15 @@ def _load_matters(system: System) -> bool:
 
 
 def is_about_equilibrium(system: System) -> bool:
-    """Whether a linear analysis depends on the mean load beyond the flanks that work: laws, faces or loaded teeth."""
+    """Whether a linear analysis depends on the mean load beyond the flanks that work: laws, faces or loaded teeth.
+
+    A face of constant stiffness that presses all over is linear, and the same about any such state.
+    """
     state = system.state
-    return bool(state.tangents or state.faces or state.cycle)
+    linear = all(
+        face.peak_pressure is None and face.line_load.min() > 0.0 for faces in state.faces.values() for face in faces
+    )
+    return bool(state.tangents or state.cycle or not linear)
 
 
 def _of_load(system: System, load: ExternalLoad, analysis: Analysis) -> Iterator[Note]:

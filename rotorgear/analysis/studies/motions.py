@@ -19,7 +19,7 @@ from rotorgear.analysis.sweep.classify import period_in
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.cpu import cpu_seconds
-from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.progress import Progress, part_of, silent
@@ -83,10 +83,12 @@ def transient_convergence_study(
     system = flow_system(model, plan_in_time())
     fixed: dict[str, Any] = {"speed": speed, "discard": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
     if time is None:
-        # Any transient knows its mesh frequencies: the shortest one, without modal damping, which Newmark can't take.
-        bare = fixed | {"modal_damping": 0.0, "time": 1e-4}
-        short = transient(system, method="newmark", steps=_RECORDS, error_estimate=False, **bare)
-        time = _PERIODS / min(short.mesh_frequency.values())
+        given = needed_speed(speed, model)
+        once = [model.layout.mesh_frequency(name, abs(given)) for name in model.meshes]
+        turning = [frequency for frequency in once if frequency]
+        if not turning:
+            raise AnalysisError("nothing turns that says how long to run: give a time, and a speed")
+        time = _PERIODS / min(turning)
     fixed["time"] = time
     fine: dict[str, Any] = {"steps": _REFERENCE_STEPS, "error_estimate": False, **fixed}
     damped = model.damping.modal_ratio if modal_damping is None else modal_damping
@@ -378,7 +380,7 @@ def orbits_convergence_study(
 
     Raises:
         AnalysisError: no speed, nothing that tells motions apart, fewer than 5 instants a harmonic, or no periodic motions.
-        ConvergenceError: the static state does not lead to a motion at this speed.
+        ConvergenceError: neither the static state nor a transient leads to a motion at this speed.
     """
     given = needed_speed(speed, model)
     if min(densities, default=INSTANTS) < 5:
@@ -393,10 +395,14 @@ def orbits_convergence_study(
     scale = scale_of(plant)
 
     def solved(n: int, instants: int, begin: np.ndarray | None) -> tuple[HarmonicOrbits, np.ndarray]:
-        """The motion of n harmonics, found from that of given coefficients (harmonics + 1, m), or from the static state."""
+        """The motion of n harmonics, found from that of given coefficients (harmonics + 1, m), else from the static state or the
+        end of a transient."""
         equations = HarmonicOrbits(family.plant, HarmonicGrid(n, instants, order), scale)
         if begin is None:
-            return equations, at_value(equations, equations.start(0.0), 0.0).y
+            try:
+                return equations, at_value(equations, equations.start(0.0), 0.0).y
+            except ConvergenceError:
+                return equations, at_value(equations, settled(equations, family, 0.0, progress), 0.0).y
         c = np.pad(begin[: n + 1], ((0, max(0, n + 1 - len(begin))), (0, 0)))
         return equations, at_value(equations, equations.unknowns(c), 0.0).y
 

@@ -16,7 +16,7 @@ from rotorgear.analysis.accuracy import STUDIES
 from rotorgear.analysis.common.study import Judged, Setting, Study, measured
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, ConvergenceError
-from tests.models import overhung_disk
+from tests.overhung import overhung_disk
 
 ROOT = Path(__file__).parents[3]
 SHORT: dict[str, Any] = {"elements": (2, 4), "accuracies": (1e-3,), "repeat": 0}

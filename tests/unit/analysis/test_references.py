@@ -22,7 +22,7 @@ from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.errors import ConvergenceError, Interrupted
 from rotorgear.model.parts.operation import ModelDamping
 from rotorgear.system.system import flow_system
-from tests.models import overhung_disk
+from tests.overhung import overhung_disk
 from tests.unit.analysis.impact_oscillator import ImpactOscillator
 
 SHORT: dict[str, Any] = {"elements": (2, 4), "accuracies": (1e-3,), "repeat": 0}

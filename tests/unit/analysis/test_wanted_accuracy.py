@@ -10,7 +10,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
-from tests.models import overhung_disk
+from tests.overhung import overhung_disk
 from tests.paths import MODELS
 
 

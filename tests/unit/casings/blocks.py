@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+import rotorgear as rg
 from rotorgear.casings.elements import element
 from rotorgear.casings.file_mesh import FileMesh, NamedSet
 
@@ -80,3 +81,45 @@ def write_msh(path: Path, mesh: FileMesh, low: np.ndarray) -> Path:
     lines += [f"{i + 1} {kind} " + " ".join(str(n + 1) for n in cell) for i, (kind, cell) in enumerate(cells)]
     path.write_text("\n".join([*lines, "$EndElements", ""]), encoding="utf-8")
     return path
+
+
+_BOX = """
+[materials.own]
+youngs_modulus = {modulus!r}
+poisson_ratio = {nu!r}
+density = {density!r}
+
+[casings.box]
+mesh = "box.inp"
+unit = "m"
+material = "own"
+held = ["low"]
+seats = {{ left = "high" }}
+
+[shafts.rotor]
+position = [{x!r}, {y!r}]
+start = {z!r}
+sections = [{{ length = {x!r}, outer_diameter = {d!r}, rigid = true }}]
+
+[bearings.left]
+shaft = "rotor"
+at = "start"
+stiffness = {{ radial = "5e8 N/m", axial = "5e8 N/m", tilt = "1e6 N m/rad" }}
+casing = "box"
+"""
+
+
+def block_model(
+    folder: Path,
+    scale: float = 1.0,
+    modulus: float = 200e9,
+    nu: float = 0.3,
+    density: float = 7800.0,
+    counts: tuple[int, int, int] = (2, 1, 3),
+    kind: str = "hexahedron20",
+) -> rg.Model:
+    """That block with a rotor on its top, its mesh in a folder."""
+    size = (0.1 * scale, 0.06 * scale, 0.2 * scale)
+    write_inp(folder / "box.inp", block(size, counts, kind))
+    places = {"x": 0.5 * size[0], "y": 0.5 * size[1], "z": size[2], "d": 0.02 * scale}
+    return rg.loads(_BOX.format(modulus=modulus, nu=nu, density=density, **places), folder=folder)

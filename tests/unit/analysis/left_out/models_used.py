@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+import numpy as np
+
 import rotorgear as rg
+from tests.free_trains import train
 from tests.models import cantilever, disk, disk_in_bearing, spur_pair
 from tests.paths import MODELS as SHIPPED
 
@@ -67,29 +71,6 @@ def rotor(**changes: Any) -> rg.Model:
     )
 
 
-def train(**mesh: Any) -> rg.Model:
-    """Three gears in a row, in torsion only."""
-
-    def gear(teeth: int, shaft: str) -> dict[str, Any]:
-        sizes = {"teeth": teeth, "base_radius": 1e-3 * teeth, "mass": 1.0}
-        inertias = {"polar_inertia": 1e-6 * teeth**2, "diametral_inertia": 5e-7 * teeth**2}
-        return {"shaft": shaft, "at": "start", "kind": "spur", **sizes, **inertias}
-
-    shared = {"centre_line_angle": 0.3, "pressure_angle": 0.349, "phase": 0.4, "damping_ratio": 0.05, "backlash": 1e-4}
-    shared |= {"transmission_error": [{"harmonic": 1, "amplitude": 1e-6}]}
-    return rg.Model(
-        schema_version=1,
-        motions=["torsion"],
-        operation={"input_shaft": "a", "output_shaft": "c", "speed": 120.0, "power": 5e3},
-        shafts={name: {} for name in "abc"},
-        gears={"pinion": gear(23, "a"), "idler": gear(31, "b"), "wheel": gear(57, "c")},
-        meshes={
-            "one": {"pinion": "pinion", "gear": "idler", "stiffness": 3e8, **shared, **mesh},
-            "two": {"pinion": "idler", "gear": "wheel", "stiffness": 4e8, **shared, **mesh},
-        },
-    )
-
-
 FILM = {"radius": "20 mm", "length": "20 mm", "clearance": "90 um", "viscosity": "0.01 Pa s"}
 ELEMENT = {"law": "journal_bearing", "shaft": "two", "at": "end", "parameters": FILM}
 
@@ -125,3 +106,74 @@ MODELS: dict[str, Callable[[], rg.Model]] = {
     "split torque": lambda: rg.load(SHIPPED / "split_torque.toml"),
     "backlash pair": lambda: rg.load(SHIPPED / "backlash_pair.toml"),
 }
+
+
+def at_random(seed: int) -> rg.Model:
+    """A pair or a row of three gears that holds some of all these keys, each with a number of its own."""
+    rng = np.random.default_rng(seed)
+    while True:
+        changes = _drawn(rng)
+        try:
+            if rng.random() < 0.3:
+                meshes = {
+                    key.removeprefix("meshes__pair__"): v for key, v in changes.items() if key.startswith("meshes")
+                }
+                kept = (
+                    "backlash",
+                    "stiffness_variation",
+                    "friction_coefficient",
+                    "application_factor",
+                    "corner_impact",
+                )
+                return train(**{key: value for key, value in meshes.items() if key in kept})
+            return spur_pair(**changes)
+        except rg.ModelError:  # keys that do not go together: draw others
+            continue
+
+
+def _drawn(rng: np.random.Generator) -> dict[str, Any]:
+    """Changes of the spur pair, each with even chances."""
+
+    def size(of: float) -> float:
+        return float(of * rng.uniform(0.5, 2.0))
+
+    teeth = {
+        "backlash": size(1e-5),
+        "stiffness_variation": [{"harmonic": int(rng.integers(1, 3)), "amplitude": size(0.1)}],
+        "corner_impact": {"force": size(40.0), "duration": 0.3, "at": 0.2},
+        "friction_coefficient": size(0.04),
+        "application_factor": size(1.0),
+        "misalignment": size(2e-6),
+        "index_error": size(3e-6),
+        "tilt": True,
+        "stiffness": ["iso", "potential_energy", [2.6e8, 3.4e8, 3.2e8, 2.8e8]][int(rng.integers(3))],
+        "damping_ratio": size(0.03),
+        "transmission_error": [],
+    }
+    load = {"shaft": "two", "at": 0.03, "force": [0.0, -size(300.0), size(50.0)]}
+    others = {
+        "operation__gravity": [0.0, -9.81, 0.0],
+        "operation__torque": None,
+        "damping__rayleigh_alpha": size(3.0),
+        "damping__rayleigh_beta": size(1e-7),
+        "damping__modal_ratio": size(0.01),
+        "shafts__one__internal_damping": size(1e-4),
+        "shafts__two__internal_damping": size(1e-5),
+        "unbalances": {"u": {"shaft": "one", "at": 0.02, "magnitude": size(3e-3)}},
+        "loads__push": load,
+        "loads__shake": {**load, "order": float(rng.integers(1, 3))},
+        "bearings__c": {"shaft": "two", "at": "start", "rolling": BALLS},
+        "nonlinear_elements": {"n": {**ELEMENT, "stiffness": {"radial": size(2e6)}}},
+        "supports": {"brake": {"shaft": "two", "at": "start", "stiffness": {"torsion": size(1e5)}}},
+        "motions": [["torsion"], ["bending", "torsion"]][int(rng.integers(2))],
+        "scatter": {"bearings.*.stiffness": {"sigma": 0.1}},
+        **{f"gears__wheel__{key}": value for key, value in RELIEVED.items() if key != "ball_diameter"},
+    }
+    found = {f"meshes__pair__{key}": value for key, value in teeth.items() if rng.random() < 0.4}
+    if isinstance(found.get("meshes__pair__stiffness"), str | list):
+        found["meshes__pair__stiffness_variation"] = []
+    return found | {key: value for key, value in others.items() if rng.random() < 0.25}
+
+
+RANDOM = 12
+MODELS |= {f"random {seed}": partial(at_random, seed) for seed in range(RANDOM)}

@@ -21,6 +21,9 @@ QUICK = {
     "sweep": ("plain", "backlash pair"),
     "orbits": ("plain", "rotor"),
 }
+# Of models drawn at random these verbs are quick, and all verbs of the others long.
+AT_RANDOM = ("modal", "modal at speed", "static", "frf")
+DRAWN = ("random 0", "random 1", "random 2")
 
 
 def cases() -> list[object]:
@@ -29,6 +32,7 @@ def cases() -> list[object]:
     for name in MODELS:
         for verb in (*VERBS, *LONG_VERBS):
             slow = (name, verb) in SLOW or name.startswith("loaded teeth") or name not in QUICK.get(verb, MODELS)
+            slow |= name.startswith("random") and not (name in DRAWN and verb in AT_RANDOM)
             found.append(pytest.param(name, verb, marks=pytest.mark.long if slow else ()))
     return found
 

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
 import rotorgear as rg
 from rotorgear.analysis.scatter.family import family_of
+from rotorgear.analysis.scatter.gather import quantile_error
 from rotorgear.analysis.sensitivity.forms import FormNames, forms_of, modes_of, overlaps
 from rotorgear.analysis.static import state_at
 from rotorgear.analysis.static.state_at import linear_system
@@ -20,6 +22,7 @@ from rotorgear.gears.geometry.flank_tolerance import cumulative_pitch_tolerance
 from rotorgear.model.numbers import numbers_of
 from rotorgear.model.parts.operation import Scatter
 from rotorgear.model.spreads import spreads_of
+from rotorgear.solvers.sampling import unit_points
 from rotorgear.system.plan import Plan
 from tests.models import STEEL
 from tests.paths import MODELS, ROOT
@@ -337,6 +340,27 @@ def test_load_shares_scatter_as_their_derivatives_say():
     for row, slope in zip(result.shares, np.array(statics.share_derivative)[j], strict=True):
         assert row.sigma_first_order == pytest.approx(2e-6 * abs(slope), rel=1e-3)
         assert row.sigma == pytest.approx(row.sigma_first_order, rel=0.1)
+
+
+@pytest.mark.parametrize(("sampling", "count"), [("sobol", 1), ("sobol", 4), ("random", 3), ("latin", 6)])
+def test_stated_errors_of_quantiles_are_those_of_samples_whose_quantile_is_known(sampling: str, count: int):
+    weight = np.linspace(0.5, 1.0, count) / np.linalg.norm(np.linspace(0.5, 1.0, count))
+    exact = np.exp(0.1 * ndtri(0.05))
+    true, stated = [], []
+    for seed in range(40):
+        y = np.exp(0.1 * ndtri(unit_points(sampling, 512, count, seed)) @ weight)
+        true.append(np.quantile(y, 0.05) - exact)
+        stated.append(quantile_error(y, 0.05))
+    assert 0.5 < np.sqrt(np.mean(np.square(stated)) / np.mean(np.square(true))) < 3.0
+
+
+def test_a_scatter_tells_the_standard_errors_of_its_quantiles():
+    found = pendulum()
+    band = found.bands[0]
+    exact = band.nominal_hz * math.exp(-1.6449 * 0.5 * math.hypot(0.10, 0.06))
+    assert 0.0 < band.low_error_hz < 0.01 * exact
+    assert abs(band.low_hz - exact) < 4.0 * band.low_error_hz
+    assert "standard errors of the quantiles by the number of samples: frequencies up to" in found.text()
 
 
 @pytest.mark.long
