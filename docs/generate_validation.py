@@ -17,7 +17,7 @@ from validation.runner import Row, run
 from validation.seeds import rows as seeds
 from validation.table import error, number, verdict
 
-# The five systems take hours where validation/seeds/.kept has not their values.
+# The cases and the extremes take minutes.
 LONG = True
 PAGE = Path(__file__).with_name("validation.md")
 
@@ -31,14 +31,15 @@ model share its solution, and its time on one thread of the machine that made th
 
 OF_SEEDS = """## Every row of the five systems
 
-Rows at "follows" are not printed in the account but follow from its data; rows at "equations" name misprints, each shown to
-fail by a test in [tests/validation/test_seeds.py](../tests/validation/test_seeds.py); rows at "claim" are statements and
-figures without a number. A row on a motion tells where it starts, how long it settles and counts, and how many of its starts
-end in it: the static equilibrium and random states about it (`--initial-conditions 8`, say). Numbers of chaotic motions are
-means over the starts that end in chaos, with Student's interval of 99.7 % (4.5 standard errors for 8 starts); another processor
-gives others within it. Chaos from one start beside a motion that repeats from another may be a transient, whatever its
-exponents: it reads "chaotic so far". `python -m validation.seeds.settling` runs every labelled motion again after ten times the
-settling and tells which labels change.
+Rows at "follows" are not printed in the account but follow from its data; rows at "equations" name misprints, by how much
+each breaks a law ([misprints](../validation/seeds/misprints.py)); rows at "claim" are statements without a number. The column
+*by* is the test of the row's rule that gave the verdict, with the values that it compares. A row on a motion tells where it
+starts, how long it settles and counts, and how many of its starts end in it: the static equilibrium and random states about
+it (`--initial-conditions 8`, say). Numbers of chaotic motions are means over the starts that end in chaos, with Student's
+interval of 99.7 % (4.5 standard errors for 8 starts); another processor gives others within it. Of extremes in chaos the
+lowest and highest of the starts stand: they come in bursts, and grow with the length of the run. Chaos from one start beside
+a motion that repeats from another may be a transient, whatever its exponents: it reads "chaotic so far". `python -m
+validation.seeds.settling` runs every labelled motion again after ten times the settling and tells which labels change.
 """
 
 SYSTEMS = {
@@ -200,13 +201,15 @@ def _seeds() -> Iterator[str]:
                 row.printed or "-",
                 row.shown.replace("+-", "±"),
                 row.unit or "-",
+                row.rule,
                 row.verdict,
+                row.by or "-",
                 row.reason or "-",
                 row.runs or "-",
             )
             for row in seeds.rows(name)
         ]
-        head = ("where", "what", "printed", "computed", "unit", "verdict", "reason", "motion")
+        head = ("where", "what", "printed", "computed", "unit", "rule", "verdict", "by", "reason", "motion")
         yield f"### {title}: rows\n\n{text}\n\n{_table([head, *lines])}"
 
 

@@ -1,7 +1,7 @@
 """What pictures and long tables were made from, and whether that is what stands here now.
 
-A picture of docs/pictures/ is drawn by the command that docs/made.toml names, which also names the command of verdicts that are
-judged by hand. A table that takes long is a console block of `$ python -m ...` marked `<!-- run long -->` or `<!-- made -->`.
+A picture of docs/pictures/ is drawn by the command that docs/made.toml names, which also names the commands of values that take
+hours. A table that takes long is a console block of `$ python -m ...` marked `<!-- run long -->` or `<!-- made -->`.
 Nobody repeats them at every commit, so docs/made.json keeps two words for each: the commit at which it was made, and a digest of
 what it shows:
 
@@ -56,7 +56,7 @@ class Made:
     """A picture or a long table.
 
     Attributes:
-        name: file of the picture, page and module of the table, or the file of verdicts (.csv) on what the command prints.
+        name: file of the picture, page and module of the table, or the file of values (.json) that the command writes.
         page: the name of the page whose blocks the command needs, or that shows the table.
         command: what makes it.
         left: for a picture, the file that the command leaves where it runs; "" where it writes the picture itself.
@@ -76,14 +76,14 @@ class Made:
 
 
 def pictures(root: Path = ROOT) -> list[Made]:
-    """The pictures that docs/made.toml tells how to draw, and the verdicts whose command it names."""
+    """The pictures that docs/made.toml tells how to draw, and the files of values whose command it names."""
     found = []
     for page, commands in tomllib.loads((root / COMMANDS).read_text(encoding="utf-8")).items():
         for command, drawn in commands.items():
             left = drawn if isinstance(drawn, dict) else dict.fromkeys(drawn, "")
             by_program = command.startswith(("rotorgear ", "python "))
             found += [
-                Made(name, page, command, file, name.endswith(".csv") or not by_program) for name, file in left.items()
+                Made(name, page, command, file, name.endswith(".json") or not by_program) for name, file in left.items()
             ]
     return found
 
@@ -113,10 +113,8 @@ def stale(root: Path = ROOT) -> list[str]:
             continue
         since = f"was made at {commit} from other" if commit else "has no record of being made from the present"
         again = f"python docs/update.py {made.name if made.is_picture else f'--long {made.page}'}"
-        if made.name.endswith(".csv"):
-            again = (
-                f"{made.command}, judge its rows in {made.name} anew, then  python docs/update.py --same {made.name}"
-            )
+        if made.name.endswith(".json"):
+            again = f"{made.command}, then  python docs/update.py --same {made.name}"
         elif made.by_hand:
             again = f"{made.command}, put what it shows on docs/{made.page}.md, then  python docs/update.py --same '{made.name}'"
         found.append(f"{made.name} {since} {', '.join(_changed(commit, made, root))}: run  {again}  and look at it")

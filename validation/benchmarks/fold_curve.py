@@ -20,7 +20,7 @@ from rotorgear.solvers.periodic.arclength import Walk, at_value
 from rotorgear.solvers.periodic.balance import HarmonicGrid
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 from rotorgear.solvers.sparse.factor import single_thread
-from validation.seeds.rows import loaded
+from validation.seeds.models import loaded
 
 TORQUES = ("20 N m", "24 N m")
 SPEEDS = ("5990 rpm", "6300 rpm")

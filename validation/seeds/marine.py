@@ -7,16 +7,17 @@ teeth carry on the back flanks.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
+
+import numpy as np
 
 import rotorgear as rg
 from rotorgear.analysis.sweep.classify import CHAOTIC, NOT_SETTLED
-from validation.seeds import kept
-from validation.seeds.motions import STARTS, ends, kinds, number, route
-from validation.seeds.rows import changed, loaded
+from validation.seeds import misprints
+from validation.seeds.models import changed, loaded
+from validation.seeds.motions import STARTS, ends, kinds, most, number, order, route, spread
 
 MODEL = "marine_dual_turbine"
 DRAG = 11.2e3
@@ -180,8 +181,10 @@ def indicators(result: rg.SweepResult, suffix: str, nominal: float = NOMINAL, se
     for p, name in enumerate(PRINTED):
         own = kinds(result, p)
         found |= {
+            f"motion_{name}{suffix}": most(own),
             f"le_{name}{suffix}": number(result.lyapunov[p, :, 0], own, 4),
-            f"am_{name}{suffix}": number(result.peak_to_peak[p, :, i] / nominal, own, 2),
+            f"am_{name}{suffix}": spread(result.peak_to_peak[p, :, i] / nominal, own, 2),
+            f"force_{name}{suffix}": spread(1e-3 * result.largest_force[p, :, i], own, 1),
             f"zeta_{name}{suffix}": number(result.back[p, :, i], own, 3),
             f"apart_{name}{suffix}": number(result.apart[p, :, i], own, 3),
             f"runs_{name}{suffix}": f"{_begin(settle)}; {ends(own)}",
@@ -263,7 +266,7 @@ def regions_of(result: rg.SweepResult) -> list[str]:
     return row
 
 
-def map_words(rows: Sequence[Sequence[str]], ratios: Sequence[float] = RATIOS) -> dict[str, str]:
+def map_words(rows: Sequence[Sequence[str]], ratios: Sequence[float] = RATIOS) -> dict[str, float | str]:
     """Load ratios of region II at each total torque, how many rows have all three regions in their order, and the rows."""
     spans = []
     in_order = 0
@@ -274,12 +277,29 @@ def map_words(rows: Sequence[Sequence[str]], ratios: Sequence[float] = RATIOS) -
         first = [kept.index(name) if name in kept else -1 for name in ("I", "II", "III")]
         in_order += -1 < first[0] < first[1] and "III" in kept[first[1] :]
     regions = {f"map_{total / 1e3:.0f}": " ".join(row) for total, row in zip(TOTALS, rows, strict=True)}
-    return {"map_chaos": ", ".join(spans), "map_order": f"{in_order} of {len(rows)}", **regions}
+    return {"map_chaos": ", ".join(spans), "map_order": float(in_order), **regions, **_slopes(rows, ratios)}
+
+
+def _slopes(rows: Sequence[Sequence[str]], ratios: Sequence[float]) -> dict[str, float]:
+    """Exponents n of gamma ~ T^n of both boundaries of region II, by least squares of logarithms over the totals that have it.
+
+    The upper boundary counts where region III follows within the ratios looked at.
+    """
+    ends = [
+        (total, [gamma for gamma, region in zip(ratios, row, strict=True) if region == "II"])
+        for total, row in zip(TOTALS, rows, strict=True)
+    ]
+    lower = [(total, chaos[0]) for total, chaos in ends if chaos]
+    upper = [(total, chaos[-1]) for total, chaos in ends if chaos and chaos[-1] < ratios[-1]]
+    return {
+        f"slope_{word}": float(np.polyfit(*np.log(np.array(points)).T, 1)[0])
+        for word, points in (("low", lower), ("high", upper))
+    }
 
 
 def _way_values(total: float, suffix: str) -> dict[str, str]:
     over = way(total)
-    return {f"way{suffix}": route(over, way_names(over), ".2f")}
+    return {f"way{suffix}": route(over, way_names(over), ".2f"), f"way_order{suffix}": order(way_names(over))}
 
 
 def at_printed(suffix: str, nominal: float = NOMINAL, settle: int = SETTLE, **options: Any) -> dict[str, str]:
@@ -293,11 +313,11 @@ def with_friction(suffix: str, settle: int = SETTLE) -> dict[str, str]:
 
 
 # What takes runs; see kept.py.
-PIECES: dict[str, Callable[[], dict[str, str]]] = {
+PIECES: dict[str, Callable[[], Mapping[str, Any]]] = {
     "torques": torque_indicators,
     "way_30": lambda: _way_values(30e3, ""),
     "way_35": lambda: _way_values(35e3, "_35"),
-    "regions": lambda: {"region": region(30e3), "region_35": region(35e3)},
+    "regions": lambda: region_values(30e3, "") | region_values(35e3, "_35"),
     "printed_stiffness": lambda: at_printed("_soft", 100.0 * NOMINAL, starts=1, table_stiffness=True),
     "friction": lambda: with_friction("_rub"),
     "film": lambda: at_printed("_film", starts=4, film=FILM),
@@ -305,20 +325,29 @@ PIECES: dict[str, Callable[[], dict[str, str]]] = {
 }
 
 
-@cache
-def values() -> dict[str, float | str]:
-    """What takes runs."""
-    return kept.values("marine", PIECES)
+def in_region(run: Contact) -> bool:
+    """Whether a motion is of region II: an exponent above 0.1 and an amplitude indicator above 3."""
+    return run.peak_to_peak > 3.0 * NOMINAL and run.exponent > 0.1
 
 
 def region(total: float, settle: int = SETTLE) -> str:
-    """Load ratios with an exponent above 0.1 and an amplitude indicator above 3, from the static start."""
-    large = [
-        gamma
-        for gamma, run in zip(RATIOS, contact(RATIOS, total, settle=settle), strict=True)
-        if run.peak_to_peak > 3.0 * NOMINAL and run.exponent > 0.1
-    ]
+    """Load ratios of region II, from the static start."""
+    found = zip(RATIOS, contact(RATIOS, total, settle=settle), strict=True)
+    large = [gamma for gamma, run in found if in_region(run)]
     return f"{large[0]:.2f} to {large[-1]:.2f}"
+
+
+def region_values(total: float, suffix: str) -> dict[str, float | str]:
+    """The load ratios of region II as a text, and its ends."""
+    text = region(total)
+    low, _, high = text.partition(" to ")
+    return {f"region{suffix}": text, f"region_low{suffix}": float(low), f"region_high{suffix}": float(high)}
+
+
+def derived(values: Mapping[str, Any]) -> dict[str, str]:
+    """Both ends of the way over the load ratio at 35 kN m, three motions each."""
+    way = values["way_order_35"].split(", ")
+    return {"way_in_35": ", ".join(way[:3]), "way_out_35": ", ".join(way[-3:])}
 
 
 def quick() -> dict[str, float | str]:
@@ -336,9 +365,20 @@ def quick() -> dict[str, float | str]:
         "rigid_modes": float(modes.rigid.sum()),
         "stage_ratio": hz["second_hp"] / hz["first_hp"],
         "deflection_table": 1e3 * 15e3 / PITCH_RADIUS / 1.2e8,
+        "deflection_over": 15e3 / PITCH_RADIUS / 1.2e8 / 40e-6,
+        "periodic_motions": ", ".join(STABLE),
         "deflection_set": 1e6 * 15e3 / PITCH_RADIUS / STIFFNESS,
         "first_elastic": float(modes.frequency_hz[1]),
         "ratio_low": RATIOS[0],
         "ratio_high": RATIOS[-1],
-        "hp_range": f"{30.0 / (1.0 + RATIOS[-1]):.3g} to {35.0 / (1.0 + RATIOS[0]):.3g}",
+        "hp_low": 1e-3 * TOTALS[0] / (1.0 + RATIOS[-1]),
+        "hp_high": 1e-3 * TOTALS[-1] / (1.0 + RATIOS[0]),
+        # T_ref that each printed boundary needs: eta = gamma sqrt(T_total/T_ref) at the printed load ratios and 30 kN m.
+        "reference_1": 30.0 * (0.4 / 0.25) ** 2,
+        "reference_2": 30.0 * (0.8 / 0.55) ** 2,
+        # Where the net torque of the LP branch changes its sign at 30 kN m.
+        "turn": DRAG / (30e3 - DRAG),
+        "unbalanced": misprints.marine_balance()[0],
+        "unbalanced_meant": misprints.marine_balance()[1],
+        "asymmetry": misprints.marine_stiffness(),
     }

@@ -62,6 +62,23 @@ def number(values: np.ndarray, found: Sequence[str], digits: int) -> str:
     return stated(float(own.mean()), _factor(len(own)) * float(own.std(ddof=1)) / math.sqrt(len(own)))
 
 
+def spread(values: np.ndarray, found: Sequence[str], digits: int) -> str:
+    """An extreme of the motion that most runs end in; of chaos its smallest and largest value over them, "4.9 to 5.6".
+
+    The largest value in chaos comes in bursts, so that neither its mean over a few runs nor an error of that is of use.
+    """
+    kind = most(found)
+    own = values[[one == kind for one in found]]
+    if kind != CHAOTIC:
+        return f"{np.median(own):.{digits}f}"
+    return f"{own.min():.{digits}f} to {own.max():.{digits}f}"
+
+
+def order(names: Sequence[str]) -> str:
+    """Names as they follow each other: "1T, 2T, chaotic"."""
+    return ", ".join(name for i, name in enumerate(names) if i == 0 or name != names[i - 1])
+
+
 def _factor(count: int) -> float:
     """Standard errors on either side of the mean in Student's interval of 99.73 %: 9.2 for 4 runs, 4.5 for 8, 3 for many."""
     return float(student.ppf(norm.cdf(3.0), count - 1))

@@ -9,8 +9,8 @@ import numpy as np
 import rotorgear as rg
 from rotorgear.plots.figure import COLOURS
 from validation.seeds import kept, marine
+from validation.seeds.models import loaded
 from validation.seeds.pictures import Picture, dots, draw
-from validation.seeds.rows import loaded
 
 
 def marine_ratio() -> tuple[np.ndarray, dict[float, rg.SweepResult]]:
@@ -91,7 +91,7 @@ def draw_marine_map(figure: Any) -> None:
         marine.OPEN: "open: weak chaos, not settled, or another region later",
         "III": "III: driving side",
     }
-    known = kept.piece("marine", "map", marine.PIECES)["values"]
+    known = kept.values("marine")
     rows = [known[f"map_{total / 1e3:.0f}"].split() for total in marine.TOTALS]
     for name, colour in colours.items():
         places = [

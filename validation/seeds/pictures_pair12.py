@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.plots.figure import COLOURS
-from validation.seeds import pair12
+from validation.seeds import kept, pair12
 from validation.seeds.pictures import Picture, draw
 
 
@@ -18,7 +18,7 @@ def draw_pair12_impact(figure: Any) -> None:
     left.plot(ratio, [row[2] for row in pair12.TABLE], "ks-", ms=4, mfc="none", lw=0.8, label="printed, reference")
     left.plot(ratio, [row[3] for row in pair12.TABLE], "k.--", ms=5, lw=0.8, label="printed, proposed")
     left.set_ylabel("impact force, kN")
-    known = pair12.values()
+    known = kept.values("pair12") | kept.values("pair12_trials")
     rows = [
         (
             pair12.TABLE[i - 1][1],

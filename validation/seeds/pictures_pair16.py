@@ -8,8 +8,8 @@ import numpy as np
 
 from rotorgear.plots.figure import COLOURS
 from validation.seeds import pair16
+from validation.seeds.models import loaded
 from validation.seeds.pictures import Picture, draw
-from validation.seeds.rows import loaded
 
 
 def draw_pair16_factors(figure: Any) -> None:
@@ -17,7 +17,7 @@ def draw_pair16_factors(figure: Any) -> None:
     axes = figure.subplots()
     printed = {"a": 1.23, "b": 1.18}
     for place, (name, (teeth, helix, impact)) in enumerate(pair16.PAIRS.items()):
-        sample = np.sort(pair16.spread(teeth, helix, impact))
+        sample = np.sort(pair16.spread(teeth, helix, 0.054, impact, 40))
         stated = pair16.run(loaded(pair16.FILES[name]))[0]
         share = (np.arange(sample.size) + 0.5) / sample.size
         axes.step(

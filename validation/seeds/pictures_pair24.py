@@ -10,8 +10,8 @@ import numpy as np
 import rotorgear as rg
 from rotorgear.plots.figure import COLOURS
 from validation.seeds import pair24
+from validation.seeds.models import changed, loaded
 from validation.seeds.pictures import Picture, dots, draw
-from validation.seeds.rows import changed, loaded
 
 
 def pair24_over(name: str) -> tuple[np.ndarray, rg.SweepResult]:

@@ -7,8 +7,8 @@ from typing import Any
 import rotorgear as rg
 from rotorgear.plots.figure import COLOURS
 from validation.cases.split_torque_lines.spectrum import run as split_torque
+from validation.seeds.models import loaded
 from validation.seeds.pictures import Picture, draw
-from validation.seeds.rows import loaded
 
 
 def draw_split_spectrum(figure: Any) -> None:

@@ -1,18 +1,16 @@
-"""The rows of a system: what its text prints, what rotorgear computes, and what that is worth.
+"""The rows of a system: what its text prints, what rotorgear computes, and what that is worth by a rule.
 
 Columns of NAME.csv:
 
-    where     table or place in the text
+    where     table or place in the text; "claim": a statement without a number; "follows": not printed; "equations": a misprint
     what      the quantity
-    printed   as the text prints it; empty for what follows from its data without being printed
+    printed   as the text prints it; empty for what is not printed
     unit      of both numbers
-    key       a value of NAME.py; or "@" and an address in the model file, "@gears.bull.teeth"; or "@file:address" for
-              another file of the system; empty where nothing can be computed
-    verdict   given (data of the source that the model holds: an input, no result), exact (follows from given data), assumed
-              (comes out with stated assumptions), trend (the direction agrees, not the number), or not reproducible
-    reason    why, in a sentence; must stand for every verdict but given and exact
-    runs      of a motion: where it starts, how long it settles and counts, and how many starts end in it; a text, or "@" and a
-              key of NAME.py
+    key       a value of the system's modules; or "@" and an address in the model file, "@gears.bull.teeth"; or "@file:address"
+              for another file of the system; empty where the rule alone has what is computed
+    rule      what gives the verdict, see rules.py
+    reason    what the number rests on, and what follows from it
+    runs      of a motion: where it starts, how long it settles and counts, how many starts end in it; a text, or "@" and a key
 """
 
 from __future__ import annotations
@@ -27,12 +25,19 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import rotorgear as rg
+from validation.seeds import kept
+from validation.seeds.models import loaded
+from validation.seeds.rules import VERDICTS, Value, bare, judged
 
 FOLDER = Path(__file__).resolve().parent
-MODELS = FOLDER.parents[1] / "models"
-SYSTEMS = ("marine", "pair24", "split", "pair12", "pair16")
-VERDICTS = ("given", "exact", "assumed", "trend", "not reproducible")
+# The modules of each system; the first has its MODEL.
+SYSTEMS = {
+    "marine": ("marine", "marine_trials"),
+    "pair24": ("pair24", "pair24_trials"),
+    "split": ("split", "split_trials"),
+    "pair12": ("pair12", "pair12_trials"),
+    "pair16": ("pair16", "pair16_trials"),
+}
 _SCALE = {
     "um": 1e-6,
     "mm": 1e-3,
@@ -47,25 +52,31 @@ _SCALE = {
 
 @dataclass(frozen=True)
 class Row:
-    """A line of a system's table; `computed` is None where nothing is computed."""
+    """A line of a system's table; `computed` is None where the rule alone has it, `because` is the test that gave the verdict."""
 
     where: str
     what: str
     printed: str
     unit: str
-    computed: float | str | None
+    computed: Value | None
+    rule: str
     verdict: str
+    because: str
     reason: str
     runs: str = ""
 
     @property
-    def agrees(self) -> bool:
-        """Whether the computed number is the printed one, to one unit of its last digit."""
-        if isinstance(self.computed, str) or self.computed is None:
-            return str(self.computed) == self.printed
-        mantissa, _, exponent = self.printed.lower().partition("e")
-        last = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
-        return abs(self.computed - float(self.printed)) < last
+    def by(self) -> str:
+        """The test that gave the verdict, or the last one that failed: "if 4.9 > 1", "trend only if 5 < 4"; "" for shown."""
+        word, with_condition, condition = self.because.partition(" if ")
+        if not with_condition:
+            if self.because == "shown":
+                return ""
+            gives = {"input": "given", "follows": "exact", "within": "assumed", "outside": "not reproducible"}
+            if gives[word.split(" ")[0]] == self.verdict:
+                return self.because
+            return "does not follow" if self.because == "follows" else f"not {self.because}"
+        return f"if {condition}" if word == self.verdict else f"{word} only if {condition}"
 
     @property
     def shown(self) -> str:
@@ -74,7 +85,8 @@ class Row:
             return "-"
         if isinstance(self.computed, str):
             return self.computed
-        digits = len(self.printed.lower().partition("e")[0].lstrip("+-0.").replace(".", ""))
+        is_number = not isinstance(bare(self.printed), str)
+        digits = len(self.printed.lower().partition("e")[0].lstrip("+-0.<>~ ").replace(".", "")) if is_number else 0
         return f"{self.computed:.{max(4, digits + 1)}g}"
 
 
@@ -88,73 +100,58 @@ def counts() -> str:
     """A line a system: its rows, and how many of them have each verdict."""
     lines = [f"{'':8}{'rows':>4}  {'  '.join(VERDICTS)}"]
     for system in SYSTEMS:
-        found = Counter(line["verdict"] for line in entries(system))
+        found = Counter(row.verdict for row in rows(system))
         cells = "  ".join(f"{found[verdict]:{len(verdict)}}" for verdict in VERDICTS)
-        lines.append(f"{system:8}{found.total():4}  {cells}")
+        lines.append(f"{system:8}{found.total():4}  {cells}".rstrip())
     return "\n".join(lines)
 
 
-def rows(system: str, *, quick: bool = False) -> list[Row]:
-    """Return the rows of a system; `quick`: those that are given or exact, which take no time.
+@cache
+def known(system: str) -> dict[str, Value]:
+    """All values of a system: those that take no time anew, the others as NAME.json has them."""
+    found: dict[str, Value] = {}
+    for name in SYSTEMS[system]:
+        module = import_module(f"validation.seeds.{name}")
+        derived = getattr(module, "derived", None)
+        found |= module.quick() | kept.values(name) | (derived(kept.values(name)) if derived else {})
+    return found
+
+
+def rows(system: str) -> list[Row]:
+    """Return the rows of a system.
 
     Raises:
-        KeyError: a key that neither the model nor NAME.py has.
+        KeyError: a key or name of a rule that neither the model nor the system's modules have.
     """
-    module = import_module(f"validation.seeds.{system}")
-    if quick:
-        lines = [line for line in entries(system) if line["verdict"] in ("given", "exact")]
-        return [_row(module.MODEL, module.quick(), line) for line in lines]
-    known = module.quick() | module.values()
-    return [_row(module.MODEL, known, line) for line in entries(system)]
+    model = import_module(f"validation.seeds.{system}").MODEL
+    return [_row(model, known(system), line) for line in entries(system)]
 
 
-def _row(model: str, known: Mapping[str, float | str], line: dict[str, str]) -> Row:
+def _row(model: str, names: Mapping[str, Value], line: dict[str, str]) -> Row:
     key = line["key"]
-    computed: float | str | None = None
-    if key.startswith("@"):
-        computed = _given(model, key[1:], line["unit"])
-    elif key:
-        computed = known[key]
+    computed: Value | None = None
+    if key:
+        computed = _given(model, key[1:], line["unit"]) if key.startswith("@") else names[key]
+    verdict, because = judged(line["rule"], line["printed"], computed, names)
+    runs = line["runs"]
     return Row(
         line["where"],
         line["what"],
         line["printed"],
         line["unit"],
         computed,
-        line["verdict"],
+        line["rule"],
+        verdict,
+        because,
         line["reason"],
-        _runs(known, line["runs"]),
+        str(names[runs[1:]]) if runs.startswith("@") else runs,
     )
 
 
-def _runs(known: Mapping[str, float | str], text: str) -> str:
-    return str(known[text[1:]]) if text.startswith("@") else text
-
-
-def _given(model: str, address: str, unit: str) -> float | str:
+def _given(model: str, address: str, unit: str) -> Value:
     """A value of the model file, in the unit of the row."""
     file, _, path = address.rpartition(":")
     value: Any = loaded(file or model)
     for name in path.split("."):
         value = value[int(name)] if name.isdigit() else value[name] if isinstance(value, dict) else getattr(value, name)
     return value if isinstance(value, str) else float(value) / _SCALE.get(unit, 1.0)
-
-
-@cache
-def loaded(name: str) -> rg.Model:
-    """A model of models/, by the name of its file."""
-    return rg.load(MODELS / f"{name}.toml")
-
-
-def changed(model: rg.Model, **tables: Mapping[str, Any]) -> rg.Model:
-    """A model with some keys changed: changed(model, meshes={"left": {"backlash": None}}); None takes a key out."""
-    data = model.model_dump(exclude_none=True)
-    for table, parts in tables.items():
-        for name, keys in parts.items():
-            target = data[table] if name == "" else data[table][name]
-            for key, value in keys.items():
-                if value is None:
-                    target.pop(key, None)
-                else:
-                    target[key] = value
-    return rg.Model(**data)

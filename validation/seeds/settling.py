@@ -18,6 +18,7 @@ import rotorgear as rg
 from rotorgear.analysis.sweep.classify import NOT_SETTLED
 from validation.seeds import kept, marine, pair24
 from validation.seeds.motions import SO_FAR, kinds_so_far
+from validation.seeds.rules import operand
 
 TIMES = 10
 TIMES_2 = 30
@@ -40,20 +41,15 @@ def changes(first: Mapping[str, float | str], later: Mapping[str, float | str]) 
 
 def agree(one: str, other: str) -> bool:
     """Whether two texts of values agree: within their errors, equal where they have none, texts word by word."""
-    numbers = [_number(text) for text in (one, other)]
-    if None in numbers:
+    a, b = operand(one), operand(other)
+    if isinstance(a, str) or isinstance(b, str):
         return one == other
-    (a, ea), (b, eb) = (number for number in numbers if number)
+    apart = 0.5 * abs(a.low + a.high - b.low - b.high)
+    halves = [0.5 * (number.high - number.low) for number in (a, b)]
     behind = min(len(text.split()[0].partition(".")[2]) for text in (one, other))
-    return abs(a - b) <= max(math.hypot(ea, eb), 1.01 * 10.0**-behind)
-
-
-def _number(text: str) -> tuple[float, float] | None:
-    value, _, error = text.partition(" +- ")
-    try:
-        return float(value), float(error or 0.0)
-    except ValueError:
-        return None
+    # Ends of several runs are no errors of a mean: their ranges need only meet.
+    allowed = sum(halves) if " to " in one or " to " in other else math.hypot(*halves)
+    return apart <= max(allowed, 1.01 * 10.0**-behind)
 
 
 def labels(name: str, times: int) -> dict[str, float | str]:

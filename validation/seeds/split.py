@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 
 import rotorgear as rg
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.pair import pair_geometry
 from validation.cases.split_torque_lines.spectrum import excited, run
-from validation.seeds import kept
-from validation.seeds.rows import entries, loaded
+from validation.seeds import misprints
+from validation.seeds.models import loaded
+from validation.seeds.pair16 import mean_stiffness
 
 MODEL = "split_torque"
 TOLERANCE = 0.07
 RANGE = 5000.0
-
-
-def printed_frequencies() -> list[float]:
-    """The 24 printed natural frequencies in Hz."""
-    return [float(line["printed"]) for line in entries("split") if line["what"].startswith("natural frequency ")]
+# The printed natural frequencies in Hz.
+PRINTED = (
+    27.1, 97.8, 138.5, 142.3, 285.1, 368.7, 559.6, 624.9, 695.8, 838.5, 897.4, 1023.0, 1194.1, 1452.3, 1818.0, 2003.0, 2262.0,
+    2414.0, 2881.0, 3213.0, 3896.0, 4410.0, 4657.0, 4957.3,
+)  # fmt: skip
+# Printed: rig, simulation (Hz).
+RIG = {"368": (361.0, 368.7), "838": (834.0, 838.5), "1818": (1818.0, 1818.0), "4410": (4415.0, 4410.0)}
+TONES = (4410.0, 4883.0, 5356.0)
 
 
 def quick() -> dict[str, float | str]:
@@ -39,15 +44,40 @@ def quick() -> dict[str, float | str]:
         "power": 2500.0,
     }
     turns = [abs(speeds[name]) / 60.0 for name in ("input", "branch_a", "output")]
-    for name, printed in (("97.8", 97.8), ("285.1", 285.1)):
-        nearest = min((n * f for f in turns for n in range(1, 21)), key=lambda f: abs(f - printed))
-        found[f"shaft_{name}"] = nearest
+    for name, printed in (("97", 97.8), ("285", 285.1), ("step", TONES[1] - TONES[0])):
+        found[f"shaft_{name}"] = min((n * f for f in turns for n in range(1, 21)), key=lambda f: abs(f - printed))
+        # An unbalance shakes its shaft once a turn.
+        found[f"once_{name}"] = min(turns, key=lambda f: abs(f - printed))
+    found |= {
+        # Nearest printed natural frequency to that of any shaft, in %.
+        "once_distance": 100.0 * min(abs(f / turn - 1.0) for f in PRINTED for turn in turns),
+        "step_1": TONES[1] - TONES[0],
+        "step_2": TONES[2] - TONES[1],
+        "tones_over_stage": hz["stage_1a"] / TONES[0],
+        "branch_torque": abs(torques["operation"]) * 113.0 / 29.0 / 2.0,
+        "dense_low": float(sum(f < 1000.0 for f in PRINTED)),
+        "dense_high": sum(f > 1000.0 for f in PRINTED) / 4.0,
+        "printed_modes": float(len(PRINTED)),
+    }
+    for name, (rig, simulated) in RIG.items():
+        found[f"printed_error_{name}"] = 100.0 * abs(simulated / rig - 1.0)
+    found["largest_printed_error"] = max(float(found[f"printed_error_{name}"]) for name in RIG)
     for item in excited().meshes["stage_2a"].transmission_error:
         found[f"ste_{item.harmonic}"] = 1e6 * item.amplitude
     for name, printed in (("4883", 4883.0), ("5356", 5356.0)):
         found[f"tone_{name}"] = _nearest_tone(printed, hz, turns)
+    stiffness = [_stiffness(helix) for helix in (30.0, 25.0)]
+    found["stiffness_change"] = 100.0 * (stiffness[1] / stiffness[0] - 1.0)
+    printed, ours = misprints.split_tilt()
+    found |= {"tilt_printed": printed, "tilt": ours}
     found["axial_fall"] = 100.0 * (1.0 - math.tan(math.radians(25.0)) / math.tan(math.radians(30.0)))
     return found
+
+
+def _stiffness(helix_deg: float) -> float:
+    """Mean stiffness of a helix of the second stage by the rule of the 16-dof pairs, at its face width."""
+    gears = (GearGeometry(z, 4.25e-3, math.radians(25.0), math.radians(helix_deg)) for z in (26, 125))
+    return mean_stiffness(helix_deg, pair_geometry(*gears, 0.085), 0.085)
 
 
 def _nearest_tone(printed: float, hz: dict[str, float], turns: list[float]) -> float:
@@ -59,7 +89,7 @@ def _nearest_tone(printed: float, hz: dict[str, float], turns: list[float]) -> f
 def _modes() -> dict[str, float | str]:
     """Modes beside the printed frequencies and chance."""
     result = rg.modal(loaded(MODEL), fmax=RANGE)
-    printed = printed_frequencies()
+    printed = list(PRINTED)
     beside = rg.compare(result, printed, tolerance=TOLERANCE, known_to_hz=RANGE)
     found: dict[str, float | str] = {f"mode_{i}": "none within 7 %" for i in range(1, len(printed) + 1)}
     for match in beside.matches:
@@ -71,14 +101,23 @@ def _modes() -> dict[str, float | str]:
         "modes": float(np.count_nonzero(elastic < RANGE)),
         "matched": float(len(beside.matches)),
         "random": round(beside.chance.expected_random_matches, 1),
-        "as_many": f"{100.0 * beside.chance.probability_as_many:.0f} %",
+        "as_many": round(100.0 * beside.chance.probability_as_many, 1),
         "branches": _branches(result, near[0]),
+        "branch_ratio": _branch_ratio(result, near[0]),
+        "branch_ratio_rig": _branch_ratio(result, int(np.argmin(np.abs(result.frequency_hz - 361.0)))),
+        "dense_low_found": float(np.count_nonzero(elastic < 1000.0)),
+        "dense_high_found": float(np.count_nonzero((elastic > 1000.0) & (elastic < RANGE))) / 4.0,
         "output_share": round(100.0 * _share(result, near[1], "output"), 0),
     }
     for number, name in ((6, "368"), (10, "838"), (15, "1818"), (22, "4410")):
-        value = found[f"mode_{number}"]
-        rig = {"368": 361.0, "838": 834.0, "1818": 1818.0, "4410": 4415.0}[name]
-        found[f"error_{name}"] = abs(round(100.0 * (float(value) / rig - 1.0), 1))
+        rig = RIG[name][0]
+        nearest = float(elastic[np.argmin(np.abs(elastic - rig))])
+        found |= {
+            f"error_{name}": abs(100.0 * (float(found[f"mode_{number}"]) / rig - 1.0)),
+            f"nearest_{name}": nearest,
+            f"nearest_error_{name}": abs(100.0 * (nearest / rig - 1.0)),
+            f"partners_{name}": float(np.count_nonzero(np.abs(elastic / rig - 1.0) < TOLERANCE)),
+        }
     return found
 
 
@@ -95,7 +134,7 @@ def _lines() -> dict[str, float | str]:
         largest = int(np.argmax(size)) + 1
         found |= {
             f"fourth_{model}": size[3] / size[0],
-            f"largest_{model}": f"harmonic {largest}, {largest * hz:.0f} Hz, {size[largest - 1] / size[0]:.3g} times",
+            f"largest_{model}": largest * hz,
         }
     return found
 
@@ -108,6 +147,12 @@ def _share(result: rg.ModalResult, mode: int, shaft: str) -> float:
     return float(sum(values[mode] for name, values in result.kinetic_energy.items() if name in on_shaft))
 
 
+def _branch_ratio(result: rg.ModalResult, mode: int) -> float:
+    """Kinetic energy of the branch that moves more over that of the other."""
+    shares = [_share(result, mode, f"branch_{side}") for side in "ab"]
+    return max(shares) / min(shares)
+
+
 def _branches(result: rg.ModalResult, mode: int) -> str:
     """Kinetic energies of both branches in the mode, in %."""
     shares = [100.0 * _share(result, mode, f"branch_{side}") for side in "ab"]
@@ -116,9 +161,3 @@ def _branches(result: rg.ModalResult, mode: int) -> str:
 
 # What takes runs; see kept.py.
 PIECES: dict[str, Callable[[], dict[str, float | str]]] = {"modes": _modes, "lines": _lines}
-
-
-@cache
-def values() -> dict[str, float | str]:
-    """What takes runs."""
-    return kept.values("split", PIECES)

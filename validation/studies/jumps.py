@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import rotorgear as rg
-from validation.seeds.rows import loaded
+from validation.seeds.models import loaded
 
 # Change of ln(peak to peak) from one speed to the next that is a jump: along the branches it is less between the speeds below.
 JUMP = 0.3
