@@ -24,7 +24,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.response.frequency_response import frf as model_frf  # the verb's own argument is called frf
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.rig.likeness import frac
-from rotorgear.analysis.rig.measured import MeasuredFrf, read_rig_frf
+from rotorgear.analysis.rig.measured import MeasuredFrf, frf_of
 from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.analysis.rig.sensor_table import read_sensor_table
 from rotorgear.errors import AnalysisError, ModelError, Problem
@@ -79,7 +79,7 @@ def compare_frf(
     Raises:
         ModelError: a file that can't be read. AnalysisError: no frequency responses, places that the model has not.
     """
-    given = frf if isinstance(frf, MeasuredFrf) else read_rig_frf(frf, points, model, frf_motion)
+    given = frf_of(frf, points, model, frf_motion)
     inputs = list(dict.fromkeys(given.references))
     outputs = list(dict.fromkeys(given.responses))
     settings: dict[str, Any] = {

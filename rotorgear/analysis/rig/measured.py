@@ -229,6 +229,17 @@ def read_rig_frf(
     )
 
 
+def frf_of(
+    frf: str | Path | MeasuredFrf | None, points: str | Path | None, model: Model, motion: str | None
+) -> MeasuredFrf:
+    """Frequency responses as they were measured, or those of a file, as `read_rig_frf` reads it."""
+    if frf is not None and not isinstance(frf, MeasuredFrf):
+        return read_rig_frf(frf, points, model, motion)
+    if frf is None or motion is not None:
+        raise AnalysisError("--frf-motion says what the responses in a file are: give it with --frf rig.uff")
+    return frf
+
+
 def _sensor(freedom: tuple[int, int], sensors: dict[tuple[int, int], Sensor]) -> tuple[Sensor | None, float]:
     """The sensor at a signed degree of freedom, and the sign of both together."""
     node, direction = freedom
@@ -288,9 +299,9 @@ class Campaign:
         if not given.points:
             refuse_repeated(given.lines)
         given.check_points(model)
-        if self.frf is None or isinstance(self.frf, MeasuredFrf):
-            return given, self.frf
-        return given, read_rig_frf(self.frf, self.points, model, self.frf_motion)
+        if self.frf is None and self.frf_motion is None:
+            return given, None
+        return given, frf_of(self.frf, self.points, model, self.frf_motion)
 
 
 def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:

@@ -69,9 +69,11 @@ def test_a_circular_whirl_is_not_overlooked() -> None:
 
 
 @pytest.mark.parametrize("whirl", [1.0, -1.0])
-@pytest.mark.parametrize("turned", [0.0, 0.25, 0.9])
+@pytest.mark.parametrize(
+    ("turned", "rough_plan"), [(0.0, Plan(16)), (0.25, Plan(16)), (0.9, Plan(16)), (0.9, Plan(4, 2))]
+)
 def test_a_whirl_of_a_shaft_that_damps_inside_and_turns_is_known_without_a_finer_mesh(
-    whirl: float, turned: float
+    whirl: float, turned: float, rough_plan: Plan
 ) -> None:
     """Rotating load f on a rotor alike in all directions, at eta times the speed = `turned`: the change of f^H q."""
     speed = 1500.0
@@ -89,7 +91,7 @@ def test_a_whirl_of_a_shaft_that_damps_inside_and_turns_is_known_without_a_finer
         found = [Dynamics(system.mass, D, K).solve(float(w), f[:, None]) for w in ws]
         return system, np.array([f.conj() @ q[:, 0] for q in found]), found
 
-    coarse, rough, moved = solved(Plan(16))
+    coarse, rough, moved = solved(rough_plan)
     error = np.abs(rough - solved(Plan(6, 5))[1])
     changes = ForcedChanges.of(coarse)
     told = [changes.change(speed, np.array([w]), q, turning=True)[0] for w, q in zip(ws, moved, strict=True)]

@@ -174,6 +174,11 @@ def test_a_response_without_type_and_unit_is_refused_with_the_option_that_names_
     found = rg.read_rig_frf(tmp_path / "untold.uff", table, motion="acceleration")
     np.testing.assert_allclose(found.receptance, expected, rtol=1e-12)
     assert any("taken as acceleration" in note for note in found.notes)
+    model = rg.load(MODELS / "geared_pair.toml")
+    with pytest.raises(AnalysisError, match="give it with --frf"):
+        rg.update(model, [20.0], frf_motion="velocity")
+    with pytest.raises(AnalysisError, match="give it with --frf"):
+        rg.compare_frf(model, found, frf_motion="velocity")
 
 
 def test_a_shape_that_moves_nowhere_is_a_line_without_shape(tmp_path):
