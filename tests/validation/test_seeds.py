@@ -15,7 +15,7 @@ import pytest
 import rotorgear as rg
 from validation.seeds import corner, kept, marine, misprints, motions, pair12, pair16, pair24, rules, settling
 from validation.seeds.models import MODELS, loaded
-from validation.seeds.rows import SYSTEMS, counts, entries, known, rows
+from validation.seeds.rows import SYSTEMS, Row, counts, entries, known, rows
 from validation.seeds.rules import VERDICTS
 
 VERDICT_OF = {
@@ -101,6 +101,22 @@ def test_a_rule_gives_its_verdict_by_the_first_test_that_holds() -> None:
     found = {key: rules.judged(*key, names)[0] for key in cases}
     assert found == cases
     assert rules.judged("trend if b < a", "", None, names)[1] == "trend if 1.9 +- 0.3 < 2"
+
+
+@pytest.mark.parametrize(
+    ("rule", "verdict", "because", "by"),
+    [
+        ("follows", "inconsistent", "follows", "does not follow"),
+        ("follows", "exact", "follows", "follows"),
+        ("within 2 %", "differs", "within 2 %", "not within 2 %"),
+        ("trend if a < b", "differs", "trend if 3 < 2", "trend only if 3 < 2"),
+        ("trend if a < b", "trend", "trend if 1 < 2", "if 1 < 2"),
+        ("outside a .. b", "not reproducible", "outside 1 .. 2", "outside 1 .. 2"),
+        ("shown", "shown", "shown", ""),
+    ],
+)
+def test_a_row_says_by_what_it_was_judged(rule: str, verdict: str, because: str, by: str) -> None:
+    assert Row("text", "a", "3", "", 2.0, rule, verdict, because, "").by == by
 
 
 @pytest.mark.parametrize(

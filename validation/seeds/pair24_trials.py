@@ -102,7 +102,7 @@ def _windows() -> dict[str, str]:
 
 def _doubling() -> dict[str, float | str]:
     """Where the motion of one period of set 1 loses its stability, how, and where with a little less ripple."""
-    own, weaker = (_first_loss(ripple) for ripple in (0.15, 0.14))
+    own, weaker = (_first_loss(ripple) for ripple in (0.15, 0.1))
     return {
         "doubling_kind": own[0],
         "doubling_rpm": own[1],
