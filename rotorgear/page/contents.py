@@ -30,10 +30,9 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.critical import CriticalResult
 from rotorgear.results.standards import StandardsResult
 
-# Modes of the table where no rig asks for more, speeds of diagrams and run-ups, stiffnesses of the map.
+# Modes of the table where no rig asks for more, speeds of the diagram, stiffnesses of the map.
 MODES = 24
 CAMPBELL_SPEEDS = 31
-RUN_UP_SPEEDS = 33
 MAP_STIFFNESSES = 9
 MESH_ORDERS_OF_RUN_UP = 3
 _ABOVE_RIG = 1.15
@@ -99,7 +98,7 @@ def computed(model: Model, rig: Any, grade: float, run_up: dict[str, Any], progr
         else:
             found.missing["standards"] = found.missing["critical"]
         asked = run_up if run_up["fmax"] is not None else {**run_up, "fmax": _highest_order(model)}
-        found.run("response", 0.65, lambda: response(model, points=RUN_UP_SPEEDS, method="direct", **asked))
+        found.run("response", 0.65, lambda: response(model, **asked))
     else:
         for name in ("campbell", "critical", "critical_map", "standards"):
             found.missing[name] = _NO_SPEED

@@ -119,7 +119,8 @@ def critical(
             if limit > abs(low):
                 roots, confirmed = roots_of(system, family, line.order, np.copysign(limit, top), damped)
                 counted += confirmed
-                found += [(line, root) for root in roots]
+                # The pieces begin where tables do, which may be below the range.
+                found += [(line, root) for root in roots if root.speed >= abs(low)]
         clock.lap("critical speeds")
         ranges = list(affine_pieces(system, family, top, damped))
         errors = [_speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]

@@ -42,6 +42,8 @@ _SPEEDS_A_PEAK = 2.0
 _PUSHED = 1e-9
 # A width of a resonance below this share of the speed is rounding: nothing damps it.
 _UNDAMPED = 1e-12
+# Below this share of it a resonance is too narrow for any range of speeds: what lacks is damping, not points.
+_NARROW = 1e-4
 
 
 def meshed(
@@ -206,6 +208,13 @@ def speed_warnings(
     if width <= _UNDAMPED * top:
         why = f"its peak is as high as the nearest speed happens to be; {GIVE_DAMPING}, or --modal-damping"
         return [Note("", "nothing damps a resonance that is met", why)]
+    if width <= _NARROW * top:
+        what = f"the sharpest resonance met is {width * RPM_PER_RAD_S:.2g} rpm wide at half power"
+        why = (
+            "its peak is as high as the nearest speed happens to be; damping of meshes reaches a mode by its strain energy in "
+            f"them alone: {GIVE_DAMPING}, or --modal-damping (1 to 3 % is usual)"
+        )
+        return [Note("", what, why)]
     apart = f"speeds are {step * RPM_PER_RAD_S:.4g} rpm apart"
     wide = f"the sharpest resonance met is {width * RPM_PER_RAD_S:.2g} rpm wide at half power"
     why = "its peak may be higher than shown; more points or a narrower range show it"

@@ -48,7 +48,7 @@ def response(
     start: float | str | None = None,
     stop: float | str | None = None,
     points: int = POINTS,
-    speeds: Sequence[float] | Sequence[str] | None = None,
+    speeds: Sequence[float | str] | None = None,
     fmax: float | None = None,
     modal_damping: float = 0.0,
     method: str = "auto",
@@ -65,7 +65,7 @@ def response(
         start: lowest speed of the input shaft in rad/s or with its unit (default: 0.1 times the operating speed).
         stop: highest speed of the input shaft (default: 1.2 times the operating speed).
         points: number of speeds between them, evenly spaced.
-        speeds: these speeds, in place of an evenly spaced range.
+        speeds: these speeds of the input shaft, in rad/s or with their unit, in place of an evenly spaced range.
         fmax: leave out orders that are above this many Hz at the highest speed.
         modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside the damping of
             the model.
@@ -206,7 +206,7 @@ def _within(orders: list[Order], fastest: float, fmax: float | None) -> tuple[li
 
 def _speeds(
     model: Model,
-    given: Sequence[float] | Sequence[str] | None,
+    given: Sequence[float | str] | None,
     start: float | str | None,
     stop: float | str | None,
     points: int,

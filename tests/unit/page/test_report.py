@@ -145,7 +145,7 @@ def test_what_comes_from_a_model_is_no_markup(tmp_path: Path) -> None:
 def test_a_report_needs_a_page_s_name_a_folder_and_a_study(tmp_path: Path) -> None:
     with pytest.raises(rg.AnalysisError, match=r"ends in \.html"):
         rg.report(STAGE, tmp_path / "a.pdf")
-    with pytest.raises(rg.AnalysisError, match="there is no folder"):
+    with pytest.raises(rg.RotorgearError, match="there is no folder"):
         rg.report(STAGE, tmp_path / "none" / "a.html")
     rg.save(rg.check(rg.load(STAGE)), tmp_path / "a.h5")
     with pytest.raises(rg.AnalysisError, match="a convergence study was expected"):

@@ -96,3 +96,12 @@ def test_a_table_of_many_rows_loses_no_damped_critical_speed():
     assert found[0].speeds
     assert max(item.damping_ratio for item in found[0].speeds) > 0.03
     assert found[1].critical_speed_rpm == pytest.approx(found[0].critical_speed_rpm, rel=1e-9)
+
+
+def test_critical_speeds_of_shafts_and_meshes_below_the_range_are_left_out():
+    model = rg.load(MODELS / "helical_pair.toml")
+    lines = {"stop": "6000 rpm", "mesh_orders": (1, 2), "shaft_orders": (1.0, 2.0), "fmax": 1500.0}
+    whole = rg.critical(model, **lines).critical_speed_rpm
+    found = rg.critical(model, start="900 rpm", **lines).critical_speed_rpm
+    assert whole.min() < 900.0
+    assert found == pytest.approx(whole[whole >= 900.0], rel=1e-12)

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import rotorgear as rg
+from rotorgear.cli.main import app
 from rotorgear.results.response import ResponseResult
 from tests.paths import MODELS, ROOT
 
@@ -433,3 +435,10 @@ def test_results_come_back_from_their_files(tmp_path: Path) -> None:
         back = rg.read(rg.save(result, tmp_path / "result.h5"))
         assert back.to_dict() == result.to_dict()
     assert np.array_equal(rg.read(rg.save(run, tmp_path / "run.h5")).shapes, run.shapes)
+
+
+def test_speeds_on_the_command_line_have_units() -> None:
+    model = str(ROOT / "models" / "split_torque.toml")
+    said = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["response", model, "--speeds", "9000 rpm,1000 rad/s"])
+    assert said.exit_code == 0, said.output
+    assert "9000 to 9549.3 rpm" in " ".join(said.output.split())
