@@ -21,6 +21,8 @@ NOMINAL_SHARE = 0.2
 NOMINAL_DIAMETER = 0.02
 # A lumped gear without a width is shown this wide, relative to its pitch radius.
 LUMPED_WIDTH = 0.3
+# A ring is shown with this outer radius, relative to its pitch radius.
+RING = 1.15
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ def gear_size(model: Model, name: str) -> BodySize:
     """Tip cylinder of a gear over all its helices."""
     geometry = model.layout.gear(name).geometry
     diameter = geometry.effective_tip_diameter if geometry else 2.0 * pitch_radius(model, name)
+    diameter *= RING if model.layout.gear(name).part.internal else 1.0
     planes = model.layout.gear(name).planes
     half = 0.5 * helix_width(model, name)
     return BodySize(diameter, planes[0] - half, planes[-1] + half)
@@ -189,7 +192,9 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
             turn = math.pi if one == mesh.gear else 0.0
             given = mesh.centre_line_angle
             directions = _DIRECTIONS if given is None else (given + turn,)
-            distance = pitch_radius(model, one) + pitch_radius(model, other)
+            radii = pitch_radius(model, one), pitch_radius(model, other)
+            ring = model.layout.gear(mesh.gear).part.internal
+            distance = abs(radii[0] - radii[1]) if ring else sum(radii)
             x, y = axes[known]
             places = [(x + distance * math.cos(angle), y + distance * math.sin(angle)) for angle in directions]
             axes[new] = next((at for at in places if given is not None or _free(at, new, axes, envelopes)), places[0])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.export.attachment import Attachment, Skeleton
-from rotorgear.export.layout import ball_radius, disk_size, helix_width, hidden_hole, pitch_radius, shaft_diameter
+from rotorgear.export.layout import RING, ball_radius, disk_size, helix_width, hidden_hole, pitch_radius, shaft_diameter
 from rotorgear.export.surface import (
     Surface,
     ball,
@@ -120,6 +120,9 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
         for number, (plane, rate) in enumerate(zip(gear.planes, twist_rates(gear), strict=True)):
             if gear.part.is_bevel:
                 surface = _cone(model, gear, detail)
+            elif gear.part.internal:
+                inner, half = pitch_radius(model, gear.name), 0.5 * helix_width(model, gear.name)
+                surface = hollow_cylinder(RING * inner, inner, plane - half, plane + half, 2 * detail.segments)
             else:
                 surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
             placed = skeleton.placed(gear.shaft, surface)

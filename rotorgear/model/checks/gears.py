@@ -60,6 +60,13 @@ def gear_problems(model: Tables) -> Iterator[Problem]:
         if gear.is_bevel:
             yield from _bevel_gear(address, gear)
             continue
+        if gear.internal and (not gear.lumped or gear.body.mesh is not None or gear.integral):
+            got = "of a gear cut on its shaft" if gear.integral else "of a gear that is not given by its base radius"
+            wanted = "base_radius, transverse_pressure_angle, mass and moments of inertia (teeth may stand beside them)"
+            yield Problem(
+                f"{address}.internal", got, wanted, "teeth of rings by their module, and their bodies, are not built"
+            )
+            continue
         for key in not_default(gear, _OF_BEVELS):
             yield Problem(f"{address}.{key}", "a value", _NOTHING, "kind = 'bevel' has it")
         if not gear.lumped:

@@ -145,7 +145,12 @@ def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
             one, other = (f"{1e3 * x:.9g} mm" if key == "normal_module" else degrees(x) for x in (first, second))
             text = f"a {key.replace('_', ' ')} of {one} on the pinion and {other} on the gear"
             yield Problem(address, text, "the same on both")
-    if pinion.kind != "spur" and pinion.hand == gear.hand:
+    if pinion.internal:
+        yield Problem(address, "a ring as its pinion", "the ring as the gear: the external gear is the pinion")
+    elif pinion.kind != "spur" and gear.internal and pinion.hand != gear.hand:
+        text = f"a {pinion.hand}-hand pinion in a {gear.hand}-hand ring"
+        yield Problem(address, text, "the same hand of both", "an internal pair winds the same way")
+    elif pinion.kind != "spur" and not gear.internal and pinion.hand == gear.hand:
         hint = "external gears on parallel axes have opposite hands"
         yield Problem(address, f"two {pinion.hand}-hand gears", "a right-hand and a left-hand one", hint)
 
@@ -211,7 +216,7 @@ def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Probl
 
 def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]:
     """Axes that lie as far apart as the teeth want, so far as that may be missed."""
-    bases = mesh.pinion.base_radius + mesh.gear.base_radius
+    bases = abs(mesh.pinion.base_radius + mesh.gear_base_radius)
     first = mesh.pinion.geometry
     second = mesh.gear.geometry
     if first and second:
@@ -222,7 +227,7 @@ def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]
         wanted = bases / math.cos(angle) if angle else 0.0
         slack = LUMPED_TOLERANCE * wanted
     if given <= bases or (wanted and abs(given - wanted) > slack):
-        least = f"more than both base radii, {millimetres(bases)}"
+        least = f"more than {'the difference of' if mesh.is_internal else 'both'} base radii, {millimetres(bases)}"
         text = f"a centre distance of {millimetres(wanted)}" if wanted else least
         hint = "check the positions of the shafts, the teeth, the module and the profile shifts"
         yield Problem(address, f"axes {millimetres(given)} apart", text, "" if mesh.pinion.part.lumped else hint)

@@ -117,9 +117,9 @@ def _towards_pitch_point(mesh: MeshLayout, gear: GearLayout) -> float:
 
 
 def _side(mesh: MeshLayout, gear: GearLayout) -> int:
-    """-1 of a bevel gear whose z leads to the apex, else 1."""
+    """-1 of a gear whose teeth pass the pitch point the other way: a ring, and a bevel gear whose z leads to the apex; else 1."""
     if mesh.meeting is None:
-        return 1
+        return -1 if gear.part.internal else 1
     return mesh.meeting.sides[1 if gear is mesh.gear else 0]
 
 

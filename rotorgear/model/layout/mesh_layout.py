@@ -58,7 +58,7 @@ class Contact:
         pinion, gear: names of the gears; pinion_place, gear_place: of the two gear nodes.
         contact_z: z of the middle of the common face on the pinion's shaft; gear_contact_z: on the gear's.
         hand: +1 right, -1 left hand of the pinion's helix, 0 for a spur gear.
-        psi: direction from pinion to gear from +x of the pinion's shaft; gear_psi: that from gear to pinion from +x of its own.
+        psi: direction to the pitch point from +x of the pinion's shaft; gear_psi: the same of the gear's.
         pressure_angle: working transverse pressure angle.
         stiffness: along the flank normal; NaN where a contact stands for its geometry only.
         turn: rows of (3, 3), directions of the pinion's shaft in those of the gear's; None where both are the same.
@@ -92,7 +92,8 @@ class Contact:
     def levers(self) -> tuple[float, float]:
         """r_b of pinion and gear in m, by which a positive rotation of each about its own z presses one and the same flank.
 
-        That of a gear is negative where the axes of a bevel pair lead to the apex on one side and away from it on the other.
+        That of a gear is negative of a ring with its teeth inside, and where the axes of a bevel pair lead to the apex on one
+        side and away from it on the other.
         """
         side = self.cone.sides[0] * self.cone.sides[1] if self.cone else 1
         return self.pinion_base_radius, side * self.gear_base_radius
@@ -170,18 +171,29 @@ class MeshLayout:
 
     @property
     def psi(self) -> float:
-        """Direction from pinion to gear in rad, from +x of the pinion's shaft; of bevel gears to the pitch point."""
+        """Direction from the pinion's axis to the pitch point in rad, from +x of its shaft."""
         if self.meeting is not None:
             return self.meeting.directions[0]
-        return self.centre_line[1] if self.centre_line else (self.part.centre_line_angle or 0.0)
+        line = self.centre_line[1] if self.centre_line else (self.part.centre_line_angle or 0.0)
+        return line + math.pi if self.is_internal else line
 
     @property
     def gear_psi(self) -> float:
-        """Direction from gear to pinion in rad, from +x of the gear's shaft; of bevel gears to the pitch point."""
+        """Direction from the gear's axis to the pitch point in rad, from +x of its shaft."""
         if self.meeting is not None:
             return self.meeting.directions[1]
         x = self.gear_frame.axes[:, 0]
-        return self.psi + math.pi - math.atan2(x[1], x[0])
+        return self.psi + (0.0 if self.is_internal else math.pi) - math.atan2(x[1], x[0])
+
+    @property
+    def is_internal(self) -> bool:
+        """Whether its gear is a ring with its teeth inside."""
+        return self.gear.part.internal
+
+    @property
+    def gear_base_radius(self) -> float:
+        """r_b of the gear in m, negative of a ring with its teeth inside (ISO 21771)."""
+        return -self.gear.base_radius if self.is_internal else self.gear.base_radius
 
     @cached_property
     def pressure_angle(self) -> float:
@@ -189,7 +201,7 @@ class MeshLayout:
         if self.bevel is not None:
             return self.bevel.pressure_angle
         if self.centre_line is not None:
-            return math.acos(min((self.pinion.base_radius + self.gear.base_radius) / self.centre_line[0], 1.0))
+            return math.acos(min(abs(self.pinion.base_radius + self.gear_base_radius) / self.centre_line[0], 1.0))
         if self.part.pressure_angle is not None:
             return self.part.pressure_angle
         if self.pinion.geometry and self.gear.geometry:
@@ -295,7 +307,7 @@ class MeshLayout:
             pressure_angle=self.pressure_angle,
             base_helix_angle=self.pinion.base_helix_angle,
             pinion_base_radius=self.pinion.base_radius,
-            gear_base_radius=self.gear.base_radius,
+            gear_base_radius=self.gear_base_radius,
             stiffness=math.nan,
             contact_position=self.part.contact_position,
             turn=turn,

@@ -1,8 +1,8 @@
 """The gear train: speed and sense of every shaft, by a walk over meshes and couplings from the input shaft.
 
-An external mesh multiplies the speed by -z_1/z_2, and so does a bevel pair where both axes lead away from the apex (or both to
-it; +z_1/z_2 where one does), a coupling with torsional stiffness by 1. A closed loop (split torque)
-must give one ratio on every path; with whole numbers of teeth that is decided in exact fractions.
+An external mesh multiplies the speed by -z_1/z_2, an internal one by z_1/z_2, a coupling with torsional stiffness by 1. A bevel
+pair counts as an external one where both axes lead away from the apex, or both to it, else as an internal one. A closed loop
+(split torque) must give one ratio on every path; with whole numbers of teeth that is decided in exact fractions.
 """
 
 from __future__ import annotations
@@ -73,6 +73,8 @@ def links(model: Tables) -> list[Link]:
             ratio = -pinion.base_radius / gear.base_radius
         else:
             continue
+        if gear.internal:
+            ratio = -ratio
         found.append((f"meshes.{name}", pinion.shaft, gear.shaft, ratio))
     for name, coupling in model.couplings.items():
         if coupling.turns_both:

@@ -94,12 +94,15 @@ class GearBody(Part):
 
 
 class Gear(Part):
-    """A gear on a shaft: a cylindrical external one, or a bevel gear."""
+    """A gear on a shaft: a cylindrical one, external or internal, or a bevel gear."""
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the gear's middle; of a bevel gear the foot of its mean point on the axis")
     kind: Literal["spur", "helical", "herringbone", "bevel"] = Field(
         description="spur, helical, herringbone or bevel (straight, Zerol and spiral)"
+    )
+    internal: Flag = Field(
+        False, description="whether it is a ring with its teeth inside; of a gear that is given by its base radius"
     )
     teeth: Whole | None = Field(None, description="number of teeth")
     normal_module: si.PositiveLength | None = Field(None, description="normal module m_n")
