@@ -248,7 +248,8 @@ def _rung_of(
         scale[0] = size
         off = (_statistics(runs, worst)[kept] - truth) / scale
         error = float(np.nanmax(np.sqrt(np.mean(off**2, axis=0))))
-        estimate = float(np.nanmax(np.median(runs.statistics_error[0, kept, worst], axis=0) / scale))
+        told = runs.statistics_error[0, kept, worst][:, [runs.statistic.index(name) for name in STATISTICS]]
+        estimate = float(np.nanmax(np.median(told, axis=0) / scale))
     return SweepRung(
         *of,
         mean(exponents),
