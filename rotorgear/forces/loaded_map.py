@@ -33,7 +33,21 @@ _COPIES = 3.0
 _TOGETHER = 256
 
 
-def inverted(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tuple[float, np.ndarray]:
+def shape_of_rows(approach: np.ndarray, tilted: bool) -> tuple[int, int]:
+    """Positions, and numbers in a row, of an inverted map with approaches (k, p, l)."""
+    tilts, positions, _ = approach.shape
+    steps, node = (STEPS_OF_A_TILT, NODE_OF_A_TILT) if tilted else (STEPS, NODE)
+    return positions, 1 + node * tilts * (steps + 1)
+
+
+def is_large(approach: np.ndarray, tilted: bool) -> bool:
+    """Whether an inverted map is too large to stand in memory twice, such as one of many pitches."""
+    return 8 * int(np.prod(shape_of_rows(approach, tilted))) > _LARGE
+
+
+def inverted(
+    load: np.ndarray, approach: np.ndarray, moment: np.ndarray, into: np.ndarray | None = None
+) -> tuple[float, np.ndarray]:
     """Return the step of x in m and the rows of a map, (p, 1 + k (steps + 1) node), node being 3, or 5 where the flanks tilt.
 
     The steps reach from the first touch to the largest load at any tilt and position. The rows are read-only: laws of equal
@@ -43,24 +57,36 @@ def inverted(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tupl
         load: (l,) forces along the flank normal in N, rising from 0.
         approach: (k, p, l) approach in m at these loads, p positions and k tilts.
         moment: (k, p, l) about the middle of the face in N m; empty of one map without a tilt.
+        into: rows to fill; those of a large map are made nowhere else.
+
+    Raises:
+        AnalysisError: more memory is needed than is free.
     """
-    tilts, positions, _ = approach.shape
-    size = 8 * tilts * positions * (STEPS + 1) * NODE_OF_A_TILT
-    if size > _LARGE:
+    tilted = bool(moment.size)
+    shape = shape_of_rows(approach, tilted)
+    if is_large(approach, tilted):
         remedy = "give pitch errors to one gear only, or to fewer teeth"
-        require_memory(_COPIES * size, f"Loaded teeth over {positions} positions in time", remedy)
-        return _rows(load, approach, moment)
-    return _kept(load.tobytes(), approach.tobytes(), moment.tobytes(), approach.shape)
+        require_memory(_COPIES * 8 * shape[0] * shape[1], f"Loaded teeth over {shape[0]} positions in time", remedy)
+        rows = np.empty(shape) if into is None else into
+        return _put_rows(rows, load, approach, moment), rows
+    spacing, rows = _kept(load.tobytes(), approach.tobytes(), moment.tobytes(), approach.shape)
+    if into is not None:
+        into[:] = rows
+    return spacing, rows
 
 
 @lru_cache(maxsize=_KEPT)
 def _kept(load: bytes, approach: bytes, moment: bytes, shape: tuple[int, ...]) -> tuple[float, np.ndarray]:
     loads, approaches, moments = map(np.frombuffer, (load, approach, moment))
-    return _rows(loads, approaches.reshape(shape), moments.reshape(shape if moments.size else 0))
+    of_map = approaches.reshape(shape)
+    rows = np.empty(shape_of_rows(of_map, bool(moments.size)))
+    spacing = _put_rows(rows, loads, of_map, moments.reshape(shape if moments.size else 0))
+    rows.setflags(write=False)
+    return spacing, rows
 
 
-def _rows(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tuple[float, np.ndarray]:
-    """Spacing and rows: delta_0, then force and tangent where the curve of each tilt passes the steps of x, and integrals."""
+def _put_rows(found: np.ndarray, load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> float:
+    """Fill the rows, return the spacing: delta_0, then force and tangent where a curve passes the steps of x, and integrals."""
     steps = STEPS_OF_A_TILT if moment.size else STEPS
     node = NODE_OF_A_TILT if moment.size else NODE
     touch = approach[:, :, 0].min(axis=0)
@@ -69,15 +95,13 @@ def _rows(load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> tuple[f
     share = np.linspace(0.0, 1.0, _LOADS)
     loads = load[-1] * np.concatenate([0.02 * share[:-1], 0.02 + 0.98 * share])
     tilts, positions, _ = approach.shape
-    found = np.zeros((positions, 1 + node * tilts * (steps + 1)))
     found[:, 0] = touch
     nodes = found[:, 1:].reshape(positions, tilts, steps + 1, node)
     for first in range(0, positions, _TOGETHER):
         some = slice(first, first + _TOGETHER)
         lift = PchipInterpolator(load, moment[:, some], axis=2)(loads) if moment.size else None
         _fill(nodes[some], load, loads, approach[:, some], touch[some], spacing, lift)
-    found.setflags(write=False)
-    return spacing, found
+    return spacing
 
 
 def _fill(

@@ -29,6 +29,7 @@ from collections import namedtuple
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 
@@ -44,6 +45,8 @@ from rotorgear.forces.loaded_map import (
     STEPS_OF_A_TILT,
     TANGENT,
     inverted,
+    is_large,
+    shape_of_rows,
 )
 from rotorgear.forces.mesh_contact import DAMPINGS, pairs
 from rotorgear.solvers.batch.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
@@ -273,6 +276,9 @@ def _force(tilts):  # type: ignore[no-untyped-def]
     return force
 
 
+# Law -> its parameters, where they are large and some system holds them.
+_ALIVE: WeakKeyDictionary[LoadedTeeth, ref[np.ndarray]] = WeakKeyDictionary()
+
 press = _force(tilts=False)
 press_and_tilt = _force(tilts=True)
 
@@ -329,7 +335,7 @@ class LoadedTeeth(ForceLaw):
             raise refuse(self, "tilt", "at least two tilts, rising, or none")
         shape = self.approach.shape
         tilts = (len(self.tilt),) if self.tilt.size else ()
-        if shape != (*tilts, shape[-2], *self.load.shape) or np.any(np.diff(self.approach) <= 0.0):
+        if shape != (*tilts, shape[-2], *self.load.shape) or np.any(self.approach[..., 1:] <= self.approach[..., :-1]):
             raise refuse(self, "approach", "for each tilt and position an approach that rises with the load")
         if self.moment.shape != (shape if tilts else (0,)):
             raise refuse(self, "moment", "a moment for each approach at several tilts, and none without")
@@ -365,26 +371,57 @@ class LoadedTeeth(ForceLaw):
         return FLANK_STATE * (1 if self.coast is None else 2)
 
     @property
+    def _maps(self) -> np.ndarray:
+        """Approaches (k, p, l), also of one map without a tilt."""
+        return self.approach if self.tilt.size else self.approach[None]
+
+    @property
     def inverse(self) -> tuple[float, np.ndarray]:
         """Step of x in m and rows of the inverted map, as `inverted` has them."""
-        return inverted(self.load, self.approach if self.tilt.size else self.approach[None], self.moment)
+        return inverted(self.load, self._maps, self.moment)
 
     @cached_property
     def _parameters(self) -> np.ndarray:
-        # Kept: statics over a cycle evaluate one law a thousand times, and the whole map is copied into them.
-        spacing, rows = self.inverse
+        return self._made()
+
+    def _made(self) -> np.ndarray:
+        """The parameters; a large map is inverted in its place among them."""
         series = pairs(self.error_cos, self.error_sin)
         face = [self.place, len(self.tilt), *self.tilt] if self.tilt.size else []
-        coast = np.zeros(0) if self.coast is None else self.coast.parameters()
-        behind = SERIES + len(series) + rows.size + len(face) if coast.size else 0
+        shape = shape_of_rows(self._maps, bool(self.tilt.size))
+        first = SERIES + len(series)
+        behind = first + shape[0] * shape[1]
+        coast = behind + len(face)
+        found = np.empty(coast + (0 if self.coast is None else self.coast.parameter_count()))
+        spacing, _ = inverted(self.load, self._maps, self.moment, found[first:behind].reshape(shape))
         head = [self.damping / self.stiffness, self.damping, DAMPINGS[self.contact_damping], 1.0 / self.reference]
         head += [self.order, self.phase, self.path_phase, self.forward, self.periods, self.error_mean]
-        head += [spacing, *rows.shape, len(series) // 2, behind]
-        return np.concatenate([head, series, rows.ravel(), face, coast])
+        head += [spacing, *shape, len(series) // 2, 0 if self.coast is None else coast]
+        found[:first] = [*head, *series]
+        found[behind:coast] = face
+        if self.coast is not None:
+            found[coast:] = self.coast.parameters()
+        return found
+
+    def parameter_count(self) -> int:
+        """How many parameters there are."""
+        rows = shape_of_rows(self._maps, bool(self.tilt.size))
+        own = SERIES + len(pairs(self.error_cos, self.error_sin)) + rows[0] * rows[1]
+        own += 2 + len(self.tilt) if self.tilt.size else 0
+        return own + (0 if self.coast is None else self.coast.parameter_count())
 
     def parameters(self) -> np.ndarray:
         """Return head, series of e and rows of the map, place and tilts, and all these of the coast flanks behind."""
-        return self._parameters
+        # Kept: statics over a cycle evaluate one law a thousand times. Large ones live as long as a system that asked for them,
+        # for all systems of equal laws; of flanks without tilt statics ask the map itself.
+        if self.tilt.size or not is_large(self._maps, tilted=False):
+            return self._parameters
+        alive = _ALIVE.get(self)
+        found = alive() if alive else None
+        if found is None:
+            found = self._made()
+            _ALIVE[self] = ref(found)
+        return found
 
     def closed_stiffness(self) -> np.ndarray:
         """k at its place, and what resists a tilt about it."""

@@ -318,11 +318,11 @@ def teeth_law(
     at = np.arange(_FINER * (len(solved) - 1) + 1) / _FINER
     load = np.interp(at, np.arange(len(solved)), solved)
     # Between its loads the curve is the map's own, which knows its tangents.
-    approach = np.stack([one.approaches(load) for one in maps])
+    approaches = [one.approaches(load) for one in maps]
     given: dict[str, Any] = {"periods": teeth.periods, "error_mean": gap, **more}
     if isinstance(teeth, ContactMap):
-        return LoadedTeeth(load, approach[0], stiffness, **given)
+        return LoadedTeeth(load, approaches[0], stiffness, **given)
     if face is not None:
         given |= {"place": face.place, "tilt_stiffness": face.tilt_stiffness}
     moment = np.stack([PchipInterpolator(one.load, one.moment, axis=1)(load) for one in maps])
-    return LoadedTeeth(load, approach, stiffness, tilt=teeth.tilt, moment=moment, **given)
+    return LoadedTeeth(load, np.stack(approaches), stiffness, tilt=teeth.tilt, moment=moment, **given)

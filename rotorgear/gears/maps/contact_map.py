@@ -24,6 +24,8 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 # Points that are solved together: their loads and slopes take memory.
 _TOGETHER = 8192
+# Positions whose cubics are made together.
+_BLOCK = 512
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,12 @@ class ContactMap:
 
     def approaches(self, load: np.ndarray) -> np.ndarray:
         """Approach (p, n) in m at all positions of the map under n loads in N, from 0 to the largest load."""
-        return np.asarray(CubicHermiteSpline(self.load, self.approach, self._monotone, axis=1)(load))
+        found = np.empty((len(self.approach), len(load)))
+        # By blocks: the coefficients of all cubics take four times the map.
+        for first in range(0, len(found), _BLOCK):
+            some = slice(first, first + _BLOCK)
+            found[some] = CubicHermiteSpline(self.load, self.approach[some], self._monotone[some], axis=1)(load)
+        return found
 
     def curves(self, load: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Approach (r, n) in m at r positions u under n loads in N, from 0 to the largest load of the map."""

@@ -224,7 +224,8 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
         forces=tuple(pair[1] for pair in filled),
         kind=np.array([kinds.index(law.functions()) for law in laws], dtype=np.int64),
         first=_starts(sizes),
-        parameters=np.concatenate([*parameters, np.zeros(0)]),
+        # Of one law as they are: those of teeth with many pitches are large.
+        parameters=parameters[0] if len(parameters) == 1 else np.concatenate([*parameters, np.zeros(0)]),
         parameters_first=_starts([p.size for p in parameters]),
         state_first=_starts([law.state_size() for law in laws]),
         block_first=_starts([size**2 for size in sizes]),

@@ -44,6 +44,16 @@ def test_memory_goes_with_the_rows_alone() -> None:
     assert most < rows.nbytes + 60e6
 
 
+def test_a_map_that_is_inverted_among_parameters_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    given = teeth(30, 1)
+    spacing, rows = inverted(*given)
+    monkeypatch.setattr(loaded_map, "_LARGE", 0.0)
+    place = np.full(7 + rows.size, np.nan)
+    step, _ = inverted(*given, place[7:].reshape(rows.shape))
+    assert step == spacing
+    assert np.array_equal(place[7:].reshape(rows.shape), rows)
+
+
 def test_what_no_machine_holds_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(loaded_map, "_LARGE", 0.0)
     monkeypatch.setattr("rotorgear.memory.free_memory", lambda: 1e5)
