@@ -145,7 +145,7 @@ class SweepResult(ModelResult, kind="sweep"):
         "run",
         "contact",
         "statistic",
-        note=", each in its unit: by a run with half or twice the steps; where nothing repeats, by how much runs as long differ",
+        note=", each in its unit: by a run of a third of the step; where nothing repeats, by how much runs as long differ",
         default_factory=lambda: np.zeros((0, 0, 0, 0)),
     )
 

@@ -314,7 +314,7 @@ def _warnings(family: SystemFamily, branches: list[Branch], curves: tuple[Specia
 # Multipliers of a point that are kept.
 _MULTIPLIERS = 12
 # The finer solution is better by far, and its difference is the error; where that passes through zero, a share of the others'.
-_LUCK = 0.03
+_LUCK = 0.1
 
 
 def gathered(branches: list[Branch], outputs: Outputs, family: SystemFamily, harmonics: int) -> dict[str, object]:

@@ -27,7 +27,7 @@ from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.solvers.batch.run_block import BatchPlan, Orbit, Start, run_block
 from rotorgear.solvers.batch.small_system import steps_stable
-from rotorgear.solvers.time.statistics import compared, gain
+from rotorgear.solvers.time.statistics import compared
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
@@ -51,12 +51,20 @@ _OF_ORBIT = (
 _ROUNDS = 4
 # Least steps of the run that tells the error of exponents by half as many.
 _LEAST_HALF = 60
+# By how much smaller steps are that tell the errors of statistics; after so many periods a run has come to its motion in these
+# steps, and so many of them are looked at where it repeats.
+_FINER = 3
+_REACHED = 32
+_REPEATED = 8
 # Windows of a run that never repeats, records made of them, and standard deviations that nineteen of twenty values lie within.
 _WINDOWS = 8
 _DRAWS = 100
 _NINETEEN = 1.96
-# No statistic is said to be better than this share of what others are: extremes at steps may happen to be the same.
-_LUCK = 0.2
+# No statistic is said to be better than this share of what others are. Extremes are those of steps, whose errors are of chance:
+# they may be alike in both runs by luck, and then other extremes tell.
+_LUCK = 0.1
+_LUCK_OF_ENDS = 0.3
+_ENDS = [STATED.index(what) for what in ("largest force", "transmission error", "approach", "penetration")]
 
 
 @dataclass(frozen=True)
@@ -90,21 +98,25 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
 
 def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
     """Yield jobs that can run in one block."""
-    from rotorgear.solvers.contact.vectors import BATCH
-
     kinds: dict[Any, list[Job]] = {}
     for job in jobs:
         point = points[job.point]
         if point is not None:
             kinds.setdefault((point.kind, int(steps[job.point])), []).append(job)
     for (_, count), members in kinds.items():
-        own = [points[job.point] for job in members]
-        assert own[0] is not None
-        size = (2 * own[0].system.turns * count + 1) * len(own[0].system.columns.kind) * 4
-        same = len({p.shape for p in own if p}) == 1
-        width = BATCH if same else int(np.clip(_MOST_TABLE // size, 1, BATCH))
+        width = _width([p for job in members if (p := points[job.point])], count)
         for at in range(0, len(members), width):
             yield members[at : at + width]
+
+
+def _width(points: Sequence[Point], steps: int) -> int:
+    """How many of some points of one kind one block takes, with their tables."""
+    from rotorgear.solvers.contact.vectors import BATCH
+
+    system = points[0].system
+    size = (2 * system.turns * steps + 1) * len(system.columns.kind) * 4
+    same = len({point.shape for point in points}) == 1
+    return BATCH if same else int(np.clip(_MOST_TABLE // size, 1, BATCH))
 
 
 def run_jobs(
@@ -143,28 +155,48 @@ def run_jobs(
                 else:
                     orbits[i] = asked[i]
         onward, jumped = _certify(points, orbits, starts, chosen, plan, request, go_on)
-    # Errors of statistics by the same periods in other steps. Runge and Kutta's fourth order is not that of statistics: impacts
-    # begin between steps, and extremes are those of steps. One step more: of steps at the same instants, extremes are often the
-    # same.
+    # Errors of statistics by periods that follow, in smaller steps. Runge and Kutta's fourth order is not that of statistics:
+    # impacts begin between steps, extremes and sides are those of steps.
     unknown = np.full((len(points[0].contact), len(STATED)), np.nan)
     orbits = [replace(orbit, error=unknown) for orbit in orbits]
     sound = [i for i, orbit in enumerate(orbits) if bounded(orbit, points[i])]
     kinds = {i: judged(orbits[i], points[i], request) for i in sound}
     wild = [i for i in sound if not period_in(kinds[i][0]) and kinds[i][0] != QUASI_PERIODIC]
     sound = [i for i in sound if i not in wild]
-    steps, again = _in_other_steps(points, orbits, sound, replace(plan, tangents=0), go_on, more=1)
-    # Twice the steps are better by that much, half as many worse.
-    factor = gain(2.0) if steps < plan.steps else 1.0 - 1.0 / (1.0 + gain(2.0))
-    for i, orbit in zip(sound, again, strict=True):
+    for i, orbit in _in_finer_steps(points, orbits, {i: period_in(kinds[i][0]) for i in sound}, plan, go_on).items():
         counted = points[i].system.columns.counted
         (own, scales, by_count), (changed, _, _) = (judged_statistics(one, counted) for one in (orbits[i], orbit))
-        error = compared(own, changed, scales, factor, _LUCK)
+        better = 1.0 - _FINER**-2.0
+        error = compared(own, changed, scales, better, _LUCK)
+        ends = (own[:, _ENDS], changed[:, _ENDS], scales[:, _ENDS])
+        error[:, _ENDS] = compared(*ends, better, _LUCK_OF_ENDS)
         kind, stands = kinds[i]
         left = np.nan_to_num(orbits[i].away) if stands and period_in(kind) else 0.0
-        orbits[i] = replace(orbits[i], error=np.sqrt(error**2 + by_count**2 + (left * scales) ** 2))
+        orbits[i] = replace(orbits[i], error=np.sqrt(error**2 + (by_count / _FINER) ** 2 + (left * scales) ** 2))
     for i, windows in _windows(points, orbits, wild, replace(plan, tangents=0), go_on).items():
         orbits[i] = replace(orbits[i], error=_scatter(orbits[i], windows, points[i].system.columns.counted))
     return orbits
+
+
+def _in_finer_steps(
+    points: Sequence[Point],
+    orbits: Sequence[Orbit],
+    periods: dict[int, int],
+    plan: BatchPlan,
+    go_on: Callable[[], bool] | None,
+) -> dict[int, Orbit]:
+    """The periods that follow the end of some runs, in smaller steps: few where a run repeats after `periods` of them."""
+    found: dict[int, Orbit] = {}
+    counts = {i: k * -(-_REPEATED // k) if k else plan.count for i, k in periods.items()}
+    for count in sorted(set(counts.values())):
+        own = [i for i in periods if counts[i] == count]
+        finer = replace(plan, steps=_FINER * plan.steps + 1, settle=min(_REACHED, plan.settle), count=count, tangents=0)
+        width = _width([points[i] for i in own], finer.steps)
+        for at in range(0, len(own), width):
+            part = own[at : at + width]
+            again = _run([points[i] for i in part], [orbits[i].end for i in part], finer, go_on)
+            found.update(zip(part, again, strict=True))
+    return found
 
 
 def _windows(
@@ -179,7 +211,7 @@ def _windows(
     last = list(orbits)
     short = replace(plan, settle=0, count=max(plan.count // _WINDOWS, 1))
     for _ in range(_WINDOWS):
-        for i, orbit in zip(chosen, _in_other_steps(points, last, chosen, short, go_on, more=1)[1], strict=True):
+        for i, orbit in zip(chosen, _in_other_steps(points, last, chosen, short, go_on), strict=True):
             last[i] = orbit
             found[i].append(orbit)
     return found
@@ -193,21 +225,28 @@ def _scatter(own: Orbit, windows: Sequence[Orbit], counted: np.ndarray) -> np.nd
     """
     from rotorgear.solvers.batch import kernel_parts as k
 
-    sums = np.array([one.sums for one in windows])
-    extremes = np.array([one.extremes for one in windows])
+    contacts = int(counted.sum())
+    sums = np.array([one.sums[counted] for one in windows])
+    extremes = np.array([one.extremes for one in windows]).reshape(len(windows), 2, contacts, 2)
 
     def of(which: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        total = sums[which].sum(axis=0)
-        total[:, [k.D_MIN, k.X_MIN, k.F_MIN]] = sums[ends][:, :, [k.D_MIN, k.X_MIN, k.F_MIN]].min(axis=0)
-        total[:, [k.D_MAX, k.X_MAX, k.F_MAX]] = sums[ends][:, :, [k.D_MAX, k.X_MAX, k.F_MAX]].max(axis=0)
-        moved = np.column_stack([extremes[ends][:, :, 0].min(axis=0), extremes[ends][:, :, 1].max(axis=0)])
-        return np.asarray(judged_statistics(replace(own, sums=total, extremes=moved), counted)[0])
+        """Statistics (r, c, s) of r records, each of some windows, its least and largest values of some of them."""
+        total = sums[which].sum(axis=1)
+        for rows, end in (((k.D_MIN, k.X_MIN, k.F_MIN), np.min), ((k.D_MAX, k.X_MAX, k.F_MAX), np.max)):
+            total[:, :, rows] = end(sums[ends][..., rows], axis=1)
+        moved = np.stack([extremes[ends][..., 0].min(axis=1), extremes[ends][..., 1].max(axis=1)], axis=-1)
+        # Records beside each other, as if they were contacts.
+        side_by_side = replace(
+            own, sums=total.reshape(-1, total.shape[-1]), extremes=moved.transpose(1, 0, 2, 3).reshape(-1, 2)
+        )
+        found = judged_statistics(side_by_side, np.ones(len(which) * contacts, bool))[0]
+        return np.asarray(found.reshape(len(which), contacts, -1))
 
     draws = np.random.default_rng(1).integers(0, len(windows), (_DRAWS, len(windows)))
-    rows = np.array([of(drawn, drawn[: len(windows) // 4]) for drawn in draws])
-    every = np.arange(len(windows))
-    between = np.abs(judged_statistics(own, counted)[0] - of(every, every))
-    return np.asarray(np.maximum(between, _NINETEEN * np.sqrt(2.0) * rows.std(axis=0)))
+    scatter = of(draws, draws[:, : len(windows) // 4]).std(axis=0)
+    every = np.arange(len(windows))[None]
+    between = np.abs(judged_statistics(own, counted)[0] - of(every, every)[0])
+    return np.asarray(np.maximum(between, _NINETEEN * np.sqrt(2.0) * scatter))
 
 
 def _in_other_steps(
@@ -216,17 +255,15 @@ def _in_other_steps(
     chosen: Sequence[int],
     plan: BatchPlan,
     go_on: Callable[[], bool] | None,
-    more: int = 0,
-) -> tuple[int, list[Orbit]]:
+) -> list[Orbit]:
     """The periods that follow the end of some runs, in half as many steps, or twice as many where those would be unstable."""
     if not chosen:
-        return plan.steps, []
+        return []
     systems = [points[i] for i in chosen]
     half = plan.steps // 2
     enough = half >= max(_LEAST_HALF, *(steps_stable(point.system) for point in systems))
-    steps = (half if enough else 2 * plan.steps) + more
-    other = replace(plan, steps=steps, settle=min(plan.warm, plan.settle))
-    return steps, _run(systems, [orbits[i].end for i in chosen], other, go_on)
+    other = replace(plan, steps=half if enough else 2 * plan.steps, settle=min(plan.warm, plan.settle))
+    return _run(systems, [orbits[i].end for i in chosen], other, go_on)
 
 
 def _certify(
@@ -249,7 +286,7 @@ def _certify(
     from rotorgear.solvers.contact.vectors import BATCH
 
     parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
-    _, again = _in_other_steps(points, orbits, parting, plan, go_on)
+    again = _in_other_steps(points, orbits, parting, plan, go_on)
     for i, orbit in zip(parting, again, strict=True):
         change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
         orbits[i] = replace(orbits[i], doubt=change)

@@ -88,8 +88,7 @@ def stated(found: Histories, task: Task, integrator: Integrator, grid: Grid, pro
         source = "the scatter of the record and of runs of other steps, which part from it: the motion is chaotic"
         if np.all(np.isnan(scatter)):
             source = "the largest difference of runs of other steps, which part from this one"
-        errors = np.where(np.isnan(scatter), _NINE, 1.0) * off.max(axis=0)
-        errors = np.fmax(errors, scatter)
+        errors = np.fmax(_NINE * off.max(axis=0), scatter)
     if isinstance(integrator, Exponential) and integrator.modes is not None:
         more = Exponential(int(1.5 * integrator.modes), integrator.modal_ratio)
         fuller = _run(task, more, grid, progress, "more modes")
