@@ -59,6 +59,8 @@ def _timed(model: rg.Model, *, pruning: bool) -> tuple[rg.ModalResult, float]:
 
 
 def _section(study: Study) -> str:
+    if not isinstance(study.result, rg.ConvergenceStudy):
+        return f"### {study.name}, {study.analysis}{study.at}\n\n```text\n{study.result.text()}\n```\n"
     rows = [["discretisation", "dofs", "CPU time", "memory", "error", "estimate", "ratio", "order"]]
     for row in study.result.rungs:
         noise = " (noise)" if "time is noise" in row.notes else ""

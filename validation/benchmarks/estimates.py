@@ -1,14 +1,17 @@
 """What the stated error estimates are worth: estimate over true error of all models and all analyses.
 
 python -m validation.benchmarks.estimates models      natural frequencies, a line a model
-python -m validation.benchmarks.estimates analyses    a line an analysis, and the ratios outside of bounds with their reasons
+python -m validation.benchmarks.estimates analyses    a line an analysis, and the ratios outside of bounds
+python -m validation.benchmarks.estimates analyses sweep orbits    the same of some analyses
+python -m validation.benchmarks.estimates quantiles   stated errors of the quantiles of a scatter beside those of many samples
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,6 +22,10 @@ import rotorgear as rg
 from rotorgear.analysis.accuracy import STUDIES
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 from rotorgear.analysis.studies.meshes import REFERENCE
+from tests.free_trains import chain, train
+from tests.overhung import overhung_disk
+from tests.unit.analysis.impact_oscillator import ImpactOscillator
+from tests.unit.casings.blocks import block_model
 
 ROOT = Path(__file__).resolve().parents[2]
 # What the tables are made from, for docs/machinery/made.py.
@@ -43,8 +50,31 @@ SHOWN = (
 
 MESHES: dict[str, Any] = {"elements": (1, 2, 4, 8), "accuracies": (1e-2, 1e-4, 1e-6), "repeat": 1}
 STEPS: dict[str, Any] = {"steps": (40, 80, 160), "accuracies": (1e-2,), "repeat": 1}
+POINT: dict[str, Any] = {"steps": (50, 100, 200), "counts": (50,), "starts": 8}
+MOTION: dict[str, Any] = {"harmonics": (10, 20, 40), "densities": (8, 16), "repeat": 1}
 FEW: dict[str, Any] = {"modes": 12, **MESHES}
 DAMPED: dict[str, Any] = {"modal_damping": 0.01, **MESHES}
+PARTING = ImpactOscillator(W=0.7, ripple=1.4, z=0.05)
+LIGHT = ImpactOscillator(W=1.6, ripple=0.3, z=0.003)
+
+
+def _block() -> rg.Model:
+    """A block as a casing, from a mesh of a few bricks."""
+    return block_model(Path(tempfile.mkdtemp()), counts=(2, 1, 3))
+
+
+# Models that are not among the shipped ones: unequal inertias, an idler, light damping, flanks that part, balls, a casing.
+OWN: dict[str, Callable[[], rg.Model]] = {
+    "overhung disk": overhung_disk,
+    "unequal chain": lambda: chain([2e-3, 3e-2, 8e-3]),
+    "idler": lambda: train(stiffness_variation=[{"harmonic": 1, "amplitude": 0.15}]),
+    "parting pair": PARTING.model,
+    "lightly damped pair": LIGHT.model,
+    "balls": lambda: rg.load(ROOT / "models" / "jeffcott.toml").with_(
+        {"bearings.left.rolling": {"designation": "6204"}, "operation.gravity": [0.0, -9.81, 0.0]}
+    ),
+    "block": _block,
+}
 # Model, analysis, and what it is asked for besides the series: some minutes in all.
 CASES: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("jeffcott", "modal", FEW),
@@ -75,6 +105,29 @@ CASES: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("split_torque", "critical", MESHES),
     ("split_torque", "static", MESHES),
     ("web_wheel", "modal", {"speed": "1000 rpm", **FEW}),
+    ("overhung disk", "modal", {"speed": 700.0, **FEW}),
+    ("overhung disk", "campbell", {**MESHES, "modes": 5}),
+    ("overhung disk", "critical", MESHES),
+    ("overhung disk", "response", DAMPED),
+    ("overhung disk", "state-space", {"speed": 700.0, **MESHES}),
+    ("jeffcott", "state-space", DAMPED),
+    ("flexible_pair", "state-space", MESHES),
+    ("unequal chain", "transient", STEPS),
+    ("idler", "transient", STEPS),
+    ("parting pair", "transient", STEPS),
+    ("lightly damped pair", "transient", STEPS),
+    ("parting pair", "sweep", {"speed": PARTING.speed(PARTING.W), **POINT}),
+    ("lightly damped pair", "sweep", {"speed": LIGHT.speed(LIGHT.W), **POINT}),
+    ("unequal chain", "sweep", {"speed": 450.0, **POINT}),
+    ("backlash_pair", "sweep", {"speed": "4000 rpm", **POINT}),
+    ("backlash_pair", "orbits", {"speed": "4000 rpm", **MOTION}),
+    ("parting pair", "orbits", {"speed": PARTING.speed(PARTING.W), **MOTION}),
+    ("idler", "orbits", {"speed": 110.0, **MOTION}),
+    ("relieved_pair", "mesh", {}),
+    ("split_torque_journals", "bearing", {"bearing": "input_left", "repeat": 1}),
+    ("split_torque_journals", "bearing", {"bearing": "branch_a_left", "repeat": 1}),
+    ("balls", "bearing", {"speed": "1500 rpm", "repeat": 1}),
+    ("block", "casing", {"modes": 6, "finest": 20_000, "fixed": (5, 10), "repeat": 1}),
 )
 
 
@@ -84,7 +137,7 @@ class Study(NamedTuple):
     name: str
     analysis: str
     at: str
-    result: rg.ConvergenceStudy
+    result: rg.ConvergenceStudy | rg.MeshConvergenceStudy | rg.SweepConvergenceStudy
     effectivity: tuple[float, float]
 
 
@@ -113,13 +166,14 @@ def study_of(name: str) -> Study:
 
 
 @cache
-def of_analyses() -> list[Study]:
-    """Studies of all analyses."""
+def of_analyses(*names: str) -> list[Study]:
+    """Studies of some analyses by their names; of all without."""
     found = []
-    for name, analysis, options in CASES:
-        result = STUDIES[analysis](rg.load(ROOT / "models" / f"{name}.toml"), **options)
-        assert isinstance(result, rg.ConvergenceStudy)
-        at = f" at {options['speed']}" if "speed" in options else ""
+    for name, analysis, options in [case for case in CASES if not names or case[1] in names]:
+        model = OWN[name]() if name in OWN else rg.load(ROOT / "models" / f"{name}.toml")
+        result = STUDIES[analysis](model, **options)
+        speed = options.get("speed", options.get("bearing", ""))
+        at = f" at {speed if isinstance(speed, str) else f'{speed:.4g} rad/s'}" if speed else ""
         found.append(Study(name, analysis, at, result, (math.nan, math.nan)))
     return found
 
@@ -173,33 +227,93 @@ def models() -> Iterator[str]:
     yield f"over all {len(spans)} models of the repository and its validation cases: {span(all_of_them)}"
 
 
-def analyses() -> Iterator[str]:
-    """The lines of the analyses, and what is outside."""
-    yield "analysis   studies  ratios  smallest  largest  within  both below    error  CPU time  of"
+class Judged(NamedTuple):
+    """A row of a study: what ran, its true and its stated error and their ratio, seconds, and below what nothing is told."""
+
+    method: str
+    error: float
+    estimate: float
+    ratio: float | None
+    seconds: float
+    resolution: float = 0.0
+
+
+def judged(result: rg.ConvergenceStudy | rg.MeshConvergenceStudy | rg.SweepConvergenceStudy) -> Iterator[Judged]:
+    """The rows of a study of any kind that state an error."""
+    if isinstance(result, rg.ConvergenceStudy):
+        for row in result.rungs:
+            if row.dofs:
+                yield Judged(row.method, row.error, row.estimate, row.effectivity, row.seconds, result.resolution)
+    elif isinstance(result, rg.SweepConvergenceStudy):
+        for point in result.rungs:
+            method = f"{point.steps} steps, {point.count} periods"
+            yield Judged(method, point.error, point.estimate, point.effectivity, point.seconds)
+    else:
+        for mesh in result.rungs:
+            for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
+                if mesh.estimate is not None:
+                    error, estimate = (getattr(one, name) for one in (mesh.error, mesh.estimate))
+                    seconds = mesh.fe_seconds + mesh.contact_seconds
+                    method = f"{mesh.method}, {name.replace('_', ' ')}"
+                    yield Judged(method, error, estimate, estimate / error if error else None, seconds)
+
+
+def analyses(*names: str) -> Iterator[str]:
+    """The lines of some analyses by their names, of all without, and what is outside."""
+    yield "analysis     studies  ratios  smallest  largest  within  both below    error  CPU time  of"
     outside: list[str] = []
-    for analysis in dict.fromkeys(study.analysis for study in of_analyses()):
-        mine = [study for study in of_analyses() if study.analysis == analysis]
+    total = inside = 0
+    for analysis in dict.fromkeys(study.analysis for study in of_analyses(*names)):
+        mine = [study for study in of_analyses(*names) if study.analysis == analysis]
         ratios: list[float] = []
         below: list[bool] = []
         for study in mine:
-            known = [(row.method, row.effectivity) for row in study.result.rungs if row.effectivity is not None]
+            rows = list(judged(study.result))
+            known = [(row.method, row.ratio) for row in rows if row.ratio is not None and math.isfinite(row.ratio)]
             ratios += [ratio for _, ratio in known]
-            small = [row for row in study.result.rungs if row.error <= study.result.resolution and row.dofs]
-            below += [row.estimate <= HIGH * study.result.resolution for row in small]
+            small = [row for row in rows if row.error <= row.resolution]
+            below += [row.estimate <= HIGH * row.resolution for row in small]
             missed = [f"{method} ({ratio:.2f})" for method, ratio in known if not LOW <= ratio <= HIGH]
             if missed:
                 outside += [f"outside: {study.name}, {analysis}{study.at}", *(f"  {one}" for one in missed)]
         within = sum(LOW <= ratio <= HIGH for ratio in ratios)
+        total, inside = total + len(ratios), inside + within
         ends = [f"{min(ratios):.2f}", f"{max(ratios):.2f}"] if ratios else ["", ""]
         both = f"{sum(below)} of {len(below)}" if below else ""
-        finest = mine[0].result.rungs[-1]
+        finest = list(judged(mine[0].result))[-1]
         yield (
-            f"{analysis:9}  {len(mine):7}  {len(ratios):6}  {ends[0]:>8}  {ends[1]:>7}  {within:6}  {both:>10}  "
+            f"{analysis:11}  {len(mine):7}  {len(ratios):6}  {ends[0]:>8}  {ends[1]:>7}  {within:6}  {both:>10}  "
             f"{finest.error:7.1e}  {finest.seconds:6.3f} s  {mine[0].name}"
         )
+    yield f"within: {inside} of {total} ({100.0 * inside / total:.0f} %)"
     yield from outside
 
 
+# Of a scatter: samples of a run, runs, and samples that are taken for the truth.
+SAMPLES = 256
+SEEDS = 6
+MANY = 8192
+
+
+def quantiles() -> Iterator[str]:
+    """Both quantiles of all frequencies of some models, sampled several times."""
+    yield "model             sampling  quantiles  stated over true  within two stated errors"
+    for name in ("geared_pair", "jeffcott"):
+        model = rg.load(ROOT / "models" / f"{name}.toml")
+        free = "bearings.*.stiffness" + (", meshes.*.stiffness" if model.meshes else "")
+        truth = rg.scatter(model, free, modes=6, samples=MANY, seed=99).bands
+        for sampling in ("sobol", "random"):
+            off, stated = [], []
+            for seed in range(1, SEEDS + 1):
+                found = rg.scatter(model, free, modes=6, samples=SAMPLES, seed=seed, sampling=sampling).bands
+                for row, exact in zip(found, truth, strict=True):
+                    off += [row.low_hz / exact.low_hz - 1.0, row.high_hz / exact.high_hz - 1.0]
+                    stated += [row.low_error_hz / exact.low_hz, row.high_error_hz / exact.high_hz]
+            ratio = np.sqrt(np.mean(np.square(stated)) / np.mean(np.square(off)))
+            near = np.mean(np.abs(off) <= 2.0 * np.array(stated))
+            yield f"{name:16}  {sampling:8}  {len(off):9}  {ratio:16.2f}  {100.0 * near:20.0f} %"
+
+
 if __name__ == "__main__":
-    for line in {"models": models, "analyses": analyses}[sys.argv[1]]():
+    for line in {"models": models, "analyses": analyses, "quantiles": quantiles}[sys.argv[1]](*sys.argv[2:]):
         print(line, flush=True)
