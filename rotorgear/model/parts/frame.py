@@ -42,6 +42,8 @@ class Frame:
 
     def sees(self, other: Frame) -> Frame:
         """Another frame in the coordinates of this one."""
+        if not self.is_turned:
+            return Frame(other.origin - self.origin, other.axes)
         return Frame(self.inside(other.origin), self.axes.T @ other.axes)
 
     @cached_property
@@ -81,6 +83,10 @@ def frame_along(
     Raises:
         ValueError: both directions are the same.
     """
+    place = np.zeros(3)
+    place[: len(origin)] = origin
+    if x_axis is None and axis == (0.0, 0.0, 1.0):
+        return Frame(place, np.eye(3))
     z = np.array(axis) / np.linalg.norm(axis)
     if x_axis is None:
         x_axis = (1.0, 0.0, 0.0) if np.hypot(z[1], z[2]) > _ALONG else (0.0, 1.0, 0.0)
@@ -90,8 +96,6 @@ def frame_along(
     if size <= _ALONG:
         raise ValueError("x_axis lies along the axis")
     x /= size
-    place = np.zeros(3)
-    place[: len(origin)] = origin
     return Frame(place, np.column_stack([x, np.cross(z, x), z]))
 
 

@@ -122,10 +122,11 @@ class Shaft(Part):
 
     @model_validator(mode="after")
     def _has_two_directions(self) -> Self:
-        try:
-            _ = self.frame
-        except ValueError:
-            raise refuse("an x_axis that is not along the axis") from None
+        if self.x_axis is not None:
+            try:
+                _ = self.frame
+            except ValueError:
+                raise refuse("an x_axis that is not along the axis") from None
         return self
 
     @cached_property
