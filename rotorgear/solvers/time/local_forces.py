@@ -224,7 +224,7 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
         forces=tuple(pair[1] for pair in filled),
         kind=np.array([kinds.index(law.functions()) for law in laws], dtype=np.int64),
         first=_starts(sizes),
-        # Of one law as they are: those of teeth with many pitches are large.
+        # Of one law as they are: maps over a long cycle are large.
         parameters=parameters[0] if len(parameters) == 1 else np.concatenate([*parameters, np.zeros(0)]),
         parameters_first=_starts([p.size for p in parameters]),
         state_first=_starts([law.state_size() for law in laws]),
