@@ -137,6 +137,6 @@ def test_a_model_without_meshes_and_a_loose_shaft_run_too() -> None:
         unbalances={"u": {"shaft": "rotor", "at": "0.25 m", "magnitude": "1 g mm"}},
         points={"end": {"shaft": "rotor", "at": "end", "direction": "x"}},
     )
-    result = transient(loose, time=0.1)
+    result = transient(loose, time=0.1, steps=1200)
     assert result.status == "success"
     assert np.all(np.isfinite(result.values))
