@@ -93,7 +93,8 @@ class Call:
 
     def asked(self, name: str) -> Any:
         """The value of an option as the verb takes it; None where it was not given."""
-        option, given = self.command.choices[name], self[name]
+        option = self.command.choices[name]
+        given = self[name]
         default = None if option.default is REQUIRED else option.default
         if given is None or given in (default, []) or (given is False and default is None):
             return None

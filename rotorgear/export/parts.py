@@ -121,7 +121,8 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
             if gear.part.is_bevel:
                 surface = _cone(model, gear, detail)
             elif gear.part.internal:
-                inner, half = pitch_radius(model, gear.name), 0.5 * helix_width(model, gear.name)
+                inner = pitch_radius(model, gear.name)
+                half = 0.5 * helix_width(model, gear.name)
                 surface = hollow_cylinder(RING * inner, inner, plane - half, plane + half, 2 * detail.segments)
             else:
                 surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
@@ -145,14 +146,16 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
 def _cone(model: Model, gear: GearLayout, detail: Detail) -> Surface:
     """The pitch cone of a bevel gear about its own axis, over its face."""
     mesh = next((mesh for mesh in model.layout.meshes if gear in mesh.gears), None)
-    radius, half, rise, z = 0.5 * helix_width(model, gear.name), 0.5 * helix_width(model, gear.name), 0.0, gear.z
+    z = gear.z
+    half = 0.5 * helix_width(model, gear.name)
+    radius = half
+    rise = 0.0
     if mesh is not None and mesh.bevel is not None and mesh.meeting is not None:
         number = mesh.gears.index(gear)
         delta = mesh.bevel.pitch_angles[number]
         radius = mesh.bevel.mean_radii[number]
-        rise = half * math.sin(delta)
+        rise = mesh.meeting.sides[number] * half * math.sin(delta)
         half *= math.cos(delta)
-        rise *= mesh.meeting.sides[number]
     hole = _hole(model, gear.shaft, z - half, z + half, None, radius - abs(rise))
     ends = [(radius - rise, z - half), (radius + rise, z + half), (hole, z + half), (hole, z - half)]
     return revolve(np.array(ends), detail.segments, closed=True)

@@ -13,11 +13,14 @@ from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Line, Table, grid
 
-# Shares of the least participation. From the first on a mode may come to count; from the second on it has a weight in the
-# penalty, which so has a slope at the least one; from the third on the search does not end while such a mode is within the
-# margin; from the fourth on it forbids the margin. So just below the least participation is no way out, and the mesh of the
-# search may differ a little from the finer one that judges it.
-NEARLY, WEIGHS_FROM, SOUGHT_FROM, COUNTS_FROM = 0.5, 0.6, 0.63, 0.7
+# Shares of the least participation, so that just below it is no way out. From here on a mode may come to count.
+NEARLY = 0.5
+# It has a weight in the penalty, which so has a slope at the least participation.
+WEIGHS_FROM = 0.6
+# The search does not end while such a mode is within the margin; the finer mesh that judges it may differ a little.
+SOUGHT_FROM = 0.63
+# It forbids the margin.
+COUNTS_FROM = 0.7
 # Modes within the margin are named where their participation is this near to the least one.
 _NEAR_LEAST = (NEARLY, 1.3)
 

@@ -157,8 +157,9 @@ class _Elements:
             self._depth = len(path)
             number = _needed(tag, given, "id")
             if place in _COMPONENT:
-                kind, own = given.get("type", ""), given.get("name", "")
-                self.components.append(Component(number, kind, own, self._attributes))
+                self.components.append(
+                    Component(number, given.get("type", ""), given.get("name", ""), self._attributes)
+                )
             else:
                 self.cases[-1][1][number] = self._attributes
         elif place == ("model", "relations", "relation"):

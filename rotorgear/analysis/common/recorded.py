@@ -59,7 +59,8 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         try:
             result = analysis(*args, **kwargs)
         except Interrupted as stop:
-            result, stopped = stop.result, True
+            result = stop.result
+            stopped = True
         except MemoryError as error:
             words = " ".join(str(error).split()) or "it is full"
             raise AnalysisError(f"{analysis.__name__}: not enough memory ({words}); ask for less at a time") from None

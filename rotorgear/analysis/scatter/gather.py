@@ -132,7 +132,8 @@ def _group_bands(study: Study, values: Values) -> tuple[results.GroupBand, ...]:
         hz = values["hz"][:, own]
         there = hz[np.isfinite(hz).all(axis=1)]
         if len(there):
-            least, most = there.min(axis=1), there.max(axis=1)
+            least = there.min(axis=1)
+            most = there.max(axis=1)
             low = float(np.quantile(least, results.LOW))
             high = float(np.quantile(most, results.HIGH))
             errors = quantile_error(least, results.LOW), quantile_error(most, results.HIGH)

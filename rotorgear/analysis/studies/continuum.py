@@ -91,7 +91,9 @@ class Continuum:
     @property
     def _pieces(self) -> list[tuple[ElementGroup, ShaftElements, float]]:
         """Groups of elastic pieces, their sizes, and the internal damping of their shaft."""
-        model, nodes, train = self.system.model, self.system.nodes, self.system.train
+        model = self.system.model
+        nodes = self.system.nodes
+        train = self.system.train
         return [
             (
                 ElementGroup(f"shafts.{name}", name, ElementMatrices(), dofs, train.ratio(name)),
@@ -213,7 +215,9 @@ def piece_stiffness(data: ShaftElements, s: complex, spin: float, given: ModelDa
 def _two_ends(data: ShaftElements, square: complex, tilting: complex, loss: complex, rod: str = "") -> np.ndarray:
     """Stiffness of both ends in one plane of bending (e, 4, 4), or of a rod (e, 2, 2), by the transfer matrix."""
     L = data.length
-    E, G, rho = data.youngs_modulus, data.shear_modulus, data.density
+    E = data.youngs_modulus
+    G = data.shear_modulus
+    rho = data.density
 
     def slope_of(place: float) -> np.ndarray:
         """Matrix A (e, k, k) of z' = A z at a share of the length."""
@@ -241,7 +245,9 @@ def _two_ends(data: ShaftElements, square: complex, tilting: complex, loss: comp
     if rod:
         unit[:, 1] = (E * area if rod == "axial" else 2.0 * G * inertia) / L
     else:
-        unit[:, 1], unit[:, 2], unit[:, 3] = 1.0 / L, E * inertia / L**3, E * inertia / L**2
+        unit[:, 1] = 1.0 / L
+        unit[:, 2] = E * inertia / L**3
+        unit[:, 3] = E * inertia / L**2
 
     def scaled(place: float) -> np.ndarray:
         return np.asarray(L[:, None, None] * slope_of(place) * unit[:, None, :] / unit[:, :, None])
@@ -258,11 +264,13 @@ def _two_ends(data: ShaftElements, square: complex, tilting: complex, loss: comp
             len(L), _POINTS, k, k
         )
         T = np.eye(k) + np.einsum("j,ejab,ejbc->eac", weights, A, z)
-    a, b, c, d = T[:, :half, :half], T[:, :half, half:], T[:, half:, :half], T[:, half:, half:]
+    # Motions and forces of the right end by those of the left one, T = [a b; c d].
+    a = T[:, :half, :half]
+    b = T[:, :half, half:]
+    c = T[:, half:, :half]
+    d = T[:, half:, half:]
     inverse = np.linalg.inv(b)
-    top = np.concatenate([inverse @ a, -inverse], axis=2)
-    bottom = np.concatenate([c - d @ inverse @ a, d @ inverse], axis=2)
-    D = np.concatenate([top, bottom], axis=1)
+    D = np.block([[inverse @ a, -inverse], [c - d @ inverse @ a, d @ inverse]])
     # Forces (V, M) on the ends do work on (w, θ): those on the left end are minus those inside.
     force = np.concatenate([unit[:, half:]] * 2, axis=1)
     motion = np.concatenate([unit[:, :half]] * 2, axis=1)
@@ -275,7 +283,8 @@ def held_frequency(data: ShaftElements) -> np.ndarray:
     area, inertia, ratio = section(data.stiffness_diameters, places)
     mass, rotary, _ = section(data.mass_diameters, places)
     kappa = np.minimum(data.kappa(ratio), 1.0)
-    rho, L = data.density, data.length
+    rho = data.density
+    L = data.length
     shear = np.pi / L * np.sqrt(data.shear_modulus * (kappa * area).min(axis=1) / (rho * mass.max(axis=1)))
     bend = 22.37 / L**2 * np.sqrt(data.youngs_modulus * inertia.min(axis=1) / (rho * mass.max(axis=1)))
     tilt = 2.0 * np.pi / L * np.sqrt(data.youngs_modulus * inertia.min(axis=1) / (rho * rotary.max(axis=1)))

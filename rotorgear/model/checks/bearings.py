@@ -23,13 +23,18 @@ def one_sided(layout: Layout) -> Iterator[Note]:
     model = layout.model
     if not model.has("axial"):
         return
-    for shaft in model.shafts:
+    gravity = (model.operation and model.operation.gravity) or (0.0, 0.0, 0.0)
+    for shaft, part in model.shafts.items():
         own = {name: bearing for name, bearing in model.bearings.items() if bearing.shaft == shaft}
         taken = {name: bearing.geometry.takes for name, bearing in own.items() if bearing.geometry}
         sides = {side for takes in taken.values() for side in takes}
         if len(sides) != 1 or shaft in _held_otherwise(layout):
             continue
-        side, other = ("+z", "-z") if "+z" in sides else ("-z", "+z")
+        sign = 1.0 if "+z" in sides else -1.0
+        # The weight of an upright shaft keeps it where its bearing carries.
+        if sign * float(part.frame.axes[:, 2] @ gravity) > 0.0:
+            continue
+        side, other = ("+z", "-z") if sign > 0.0 else ("-z", "+z")
         pressing = [name for name, takes in taken.items() if takes]
         rolling = own[pressing[-1]].rolling
         remedy = f"give one that acts against {other}"

@@ -54,9 +54,11 @@ def _settings(address: str, mesh: Mesh) -> Iterator[Problem]:
 
 def _mates(address: str, both: MeshLayout) -> Iterator[Problem]:
     """Two gears of one module, pressure and spiral angle, and of opposite hands."""
-    pinion, gear = both.pinion.part, both.gear.part
+    pinion = both.pinion.part
+    gear = both.gear.part
     for key in _SAME:
-        first, second = getattr(pinion, key), getattr(gear, key)
+        first = getattr(pinion, key)
+        second = getattr(gear, key)
         if (first is None) != (second is None) or (first and not math.isclose(first, second, rel_tol=1e-9)):
             one, other = (
                 "none" if x is None else millimetres(x) if key.endswith("module") else degrees(x)
@@ -70,7 +72,8 @@ def _mates(address: str, both: MeshLayout) -> Iterator[Problem]:
 
 
 def _places(address: str, both: MeshLayout) -> Iterator[Problem]:
-    met, pair = both.meeting, both.bevel
+    met = both.meeting
+    pair = both.bevel
     if both.pinion.shaft_part.position is None or both.gear.shaft_part.position is None:
         yield Problem(address, "bevel gears on shafts without a position", "positions of both shafts")
         return

@@ -280,9 +280,11 @@ class MeshLayout:
         places = (0.5 * (low + high), 0.5 * (low + high) - self._shift)
         cone = None
         if self.meeting is not None and self.bevel is not None:
-            met, pair = self.meeting, self.bevel
-            first, second = zip(met.apex, met.sides, pair.mean_distances, strict=True)
-            places = (first[0] + first[1] * first[2], second[0] + second[1] * second[2])
+            met = self.meeting
+            pair = self.bevel
+            # From the apex along each axis to the foot of the mean point.
+            far = pair.mean_distances
+            places = (met.apex[0] + met.sides[0] * far[0], met.apex[1] + met.sides[1] * far[1])
             cone = Cone(pair.pitch_angles[0], pair.shaft_angle, met.sides)
         pinion_place = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
         gear_place = self.gear.places[helix if len(self.gear.places) == 2 else 0]

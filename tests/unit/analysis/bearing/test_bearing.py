@@ -91,8 +91,11 @@ def test_bearings_that_take_one_push_only_are_named_with_the_angle_that_turns_on
         model.with_("bearings.right.rolling.contact_angle", -angle),
         model.with_("supports.thrust", {"shaft": "spindle", "at": "start", "stiffness": {"axial": "1e7 N/m"}}),
         model.with_("bearings.middle", {"shaft": "spindle", "at": "70 mm", "rolling": {"designation": "6010"}}),
+        model.with_("operation.gravity", ["0 m/s^2", "0 m/s^2", "9.81 m/s^2"]),
     ):
         assert not any("push towards" in text for text in rg.check(held).warnings)
+    upside_down = model.with_("operation.gravity", ["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"])
+    assert any("push towards -z" in text for text in rg.check(upside_down).warnings)
 
 
 @pytest.mark.parametrize(
