@@ -206,6 +206,10 @@ def test_a_train_in_torsion_alone_may_stand_anywhere_along_z():
         rg.loads('motions = ["bending", "torsion"]\n' + text)
 
 
+SHORT = {"time": 1e-3, "steps": 50, "error_estimate": False}
+FEW = {"discard": 2, "sample": 2, "modes": 2}
+
+
 @pytest.mark.parametrize(
     ("ask", "argument"),
     [
@@ -213,8 +217,8 @@ def test_a_train_in_torsion_alone_may_stand_anywhere_along_z():
         (lambda model, speed: rg.static(model, speed=-speed), "speed"),
         (lambda model, speed: rg.campbell(model, stop=speed, points=3, modes=2), "stop"),
         (lambda model, speed: rg.response(model, speeds=[100.0, speed], modal_damping=0.02), "speeds"),
-        (lambda model, speed: rg.transient(model, speed=[(0.0, 100.0), (1e-3, speed)], time=1e-3), "speed"),
-        (lambda model, speed: rg.sweep(model, {"operation.speed": [speed]}, discard=2, sample=2), "operation.speed"),
+        (lambda model, speed: rg.transient(model, speed=[(0.0, 100.0), (1e-3, speed)], **SHORT), "speed"),
+        (lambda model, speed: rg.sweep(model, {"operation.speed": [speed]}, **FEW), "operation.speed"),
     ],
     ids=["modal", "static", "campbell", "response", "transient", "sweep"],
 )

@@ -16,10 +16,10 @@ from tests.unit.analysis.left_out.used import LONG_VERBS, VERBS, used
 SLOW = {("split torque", "transient"), ("journal", "transient")}
 QUICK = {
     "campbell": ("full", "rotor"),
-    "critical": ("full", "rotor", "balls", "journal"),
+    "critical": ("full", "rotor"),
     "state space": ("full", "tilting", "element", "journal"),
     "sweep": ("plain", "backlash pair"),
-    "orbits": ("plain", "rotor"),
+    "orbits": ("plain",),
 }
 # Of models drawn at random these verbs are quick, and all verbs of the others long.
 AT_RANDOM = ("modal", "modal at speed", "static", "frf")

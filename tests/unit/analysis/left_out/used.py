@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -97,14 +96,11 @@ VERBS: dict[str, Verb] = {
 
 
 def _sweep(model: rg.Model) -> Any:
-    """One point, a turn or some periods of the mesh: what moves it does so there. Without too short steps: with few modes."""
+    """One point in few modes, a turn or some periods of the mesh: what moves it does so there."""
     turns = bool(model.unbalances or model.loads)
     periods = {"discard": 0, "sample": 1} if turns else {"discard": 20, "sample": 10}
-    run = partial(rg.sweep, over={"as given": [0.0]}, change=lambda same, _: same, exponents=0, **periods)
-    try:
-        return run(model)
-    except rg.RotorgearError:
-        return run(model, modes=2)
+    as_given = {"over": {"as given": [0.0]}, "change": lambda same, _: same}
+    return rg.sweep(model, **as_given, exponents=0, modes=4, **periods)
 
 
 def _orbits(model: rg.Model) -> Any:

@@ -183,7 +183,7 @@ def test_friction_does_not_run_the_shafts_down() -> None:
     model = free_pair_that_rubs()
     soon, late = (
         rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=discard, sample=10, exponents=0)
-        for discard in (60, 500)
+        for discard in (60, 200)
     )
     for name in ("mean_force", "largest_force", "peak_to_peak_approach"):
         assert getattr(late, name) == pytest.approx(getattr(soon, name), rel=1e-9)
@@ -197,7 +197,7 @@ def test_a_light_drag_does_not_let_friction_run_the_shafts_down() -> None:
     model = free_pair_that_rubs(supports=supports)
     soon, late = (
         rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=discard, sample=10, exponents=0)
-        for discard in (60, 300)
+        for discard in (60, 150)
     )
     assert late.largest_force == pytest.approx(soon.largest_force, rel=1e-9)
     assert any("the drive makes up for it" in text for text in late.warnings)
