@@ -27,7 +27,7 @@ from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.solvers.batch.run_block import BatchPlan, Orbit, Start, run_block
 from rotorgear.solvers.batch.small_system import steps_stable
-from rotorgear.solvers.time.statistics import compared
+from rotorgear.solvers.time.statistics import FINER, OF_ERROR, WINDOWS, compared, scatter_of_two
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
@@ -51,15 +51,12 @@ _OF_ORBIT = (
 _ROUNDS = 4
 # Least steps of the run that tells the error of exponents by half as many.
 _LEAST_HALF = 60
-# By how much smaller steps are that tell the errors of statistics; after so many periods a run has come to its motion in these
-# steps, and so many of them are looked at where it repeats.
-_FINER = 3
+# In steps that tell the errors of statistics a run has come to its motion after so many periods, and so many of them are looked
+# at where it repeats.
 _REACHED = 32
 _REPEATED = 8
-# Windows of a run that never repeats, records made of them, and standard deviations that nineteen of twenty values lie within.
-_WINDOWS = 8
+# Records made of the windows of a run that never repeats.
 _DRAWS = 100
-_NINETEEN = 1.96
 # No statistic is said to be better than this share of what others are. Extremes are those of steps, whose errors are of chance:
 # they may be alike in both runs by luck, and then other extremes tell.
 _LUCK = 0.1
@@ -166,13 +163,12 @@ def run_jobs(
     for i, orbit in _in_finer_steps(points, orbits, {i: period_in(kinds[i][0]) for i in sound}, plan, go_on).items():
         counted = points[i].system.columns.counted
         (own, scales, by_count), (changed, _, _) = (judged_statistics(one, counted) for one in (orbits[i], orbit))
-        better = 1.0 - _FINER**-2.0
-        error = compared(own, changed, scales, better, _LUCK)
+        error = compared(own, changed, scales, OF_ERROR, _LUCK)
         ends = (own[:, _ENDS], changed[:, _ENDS], scales[:, _ENDS])
-        error[:, _ENDS] = compared(*ends, better, _LUCK_OF_ENDS)
+        error[:, _ENDS] = compared(*ends, OF_ERROR, _LUCK_OF_ENDS)
         kind, stands = kinds[i]
         left = np.nan_to_num(orbits[i].away) if stands and period_in(kind) else 0.0
-        orbits[i] = replace(orbits[i], error=np.sqrt(error**2 + (by_count / _FINER) ** 2 + (left * scales) ** 2))
+        orbits[i] = replace(orbits[i], error=np.sqrt(error**2 + (by_count / FINER) ** 2 + (left * scales) ** 2))
     for i, windows in _windows(points, orbits, wild, replace(plan, tangents=0), go_on).items():
         orbits[i] = replace(orbits[i], error=_scatter(orbits[i], windows, points[i].system.columns.counted))
     return orbits
@@ -190,7 +186,7 @@ def _in_finer_steps(
     counts = {i: k * -(-_REPEATED // k) if k else plan.count for i, k in periods.items()}
     for count in sorted(set(counts.values())):
         own = [i for i in periods if counts[i] == count]
-        finer = replace(plan, steps=_FINER * plan.steps + 1, settle=min(_REACHED, plan.settle), count=count, tangents=0)
+        finer = replace(plan, steps=FINER * plan.steps + 1, settle=min(_REACHED, plan.settle), count=count, tangents=0)
         width = _width([points[i] for i in own], finer.steps)
         for at in range(0, len(own), width):
             part = own[at : at + width]
@@ -209,8 +205,8 @@ def _windows(
     """The periods that follow the end of some runs, in other steps, as windows one after the other."""
     found: dict[int, list[Orbit]] = {i: [] for i in chosen}
     last = list(orbits)
-    short = replace(plan, settle=0, count=max(plan.count // _WINDOWS, 1))
-    for _ in range(_WINDOWS):
+    short = replace(plan, settle=0, count=max(plan.count // WINDOWS, 1))
+    for _ in range(WINDOWS):
         for i, orbit in zip(chosen, _in_other_steps(points, last, chosen, short, go_on), strict=True):
             last[i] = orbit
             found[i].append(orbit)
@@ -243,10 +239,10 @@ def _scatter(own: Orbit, windows: Sequence[Orbit], counted: np.ndarray) -> np.nd
         return np.asarray(found.reshape(len(which), contacts, -1))
 
     draws = np.random.default_rng(1).integers(0, len(windows), (_DRAWS, len(windows)))
-    scatter = of(draws, draws[:, : len(windows) // 4]).std(axis=0)
+    scatter = scatter_of_two(of(draws, draws[:, : len(windows) // 4]))
     every = np.arange(len(windows))[None]
     between = np.abs(judged_statistics(own, counted)[0] - of(every, every)[0])
-    return np.asarray(np.maximum(between, _NINETEEN * np.sqrt(2.0) * scatter))
+    return np.asarray(np.maximum(between, scatter))
 
 
 def _in_other_steps(

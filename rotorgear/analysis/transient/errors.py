@@ -22,17 +22,12 @@ from rotorgear.progress import Progress
 from rotorgear.solvers.time.explicit import Explicit
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator
-from rotorgear.solvers.time.statistics import gain
+from rotorgear.solvers.time.statistics import FINER, OF_ERROR, gain, scatter_of_two
 
-# By how much smaller steps are that tell the error. Where errors have a part of chance, a run of half the step says less than
-# .3 of them one time in 30, at 3 times the cost of the run alone; a third of it one time in 50, at 4 times.
-FINER = 3
 # Share of the error by twice the step that an error is not below.
 _BY_LUCK = 0.35
 # By what the larger one of two differences to other runs has to be multiplied to be more than nine of ten others.
 _NINE = 2.2
-# Standard deviations that nineteen of twenty values lie within.
-_NINETEEN = 1.96
 # Motions of two steps have parted that differ by more than this share of their size, and by more than this share of what the
 # motions of steps twice as large differ by.
 _PARTED = 0.3
@@ -75,7 +70,7 @@ def stated(found: Histories, task: Task, integrator: Integrator, grid: Grid, pro
     rough = _run(task, integrator, double, progress, "twice the step")
     runs = [run for run in (finer, rough) if run is not None]
     off = np.array([np.abs(own.value - quantities_of(run, task).value) for run in runs])
-    errors = off[0] / (1.0 - FINER**-2.0)
+    errors = off[0] / OF_ERROR
     source = "a run of a third of the step"
     if rough is not None:
         errors = np.maximum(errors, _BY_LUCK * off[1] / (ratio**2 - 1.0))
@@ -133,7 +128,7 @@ def _scatter(runs: list[Histories], task: Task) -> np.ndarray:
     if rows is None:
         return np.full(quantities_of(runs[0], task).value.size, np.nan)
     # Both runs scatter.
-    return np.asarray(_NINETEEN * np.sqrt(2.0) * rows.std(axis=0))
+    return scatter_of_two(rows)
 
 
 _HALVINGS = 6

@@ -10,7 +10,14 @@ import numpy as np
 from rotorgear.analysis.transient.histories import Histories
 from rotorgear.analysis.transient.request import Task
 from rotorgear.results.transient import TransientResult, is_shown
-from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, Statistics, compared, largest_relative
+from rotorgear.solvers.time.statistics import (
+    STATISTICS,
+    WINDOWS,
+    MotionStatistics,
+    Statistics,
+    compared,
+    largest_relative,
+)
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
@@ -18,8 +25,7 @@ _STILL = 1e-8
 _SMALL = 0.01
 # What is stated of a channel.
 _OF_CHANNELS = ("mean", "rms", "largest", "smallest")
-# Windows that a record is cut into, the fewest records in each, and how many records are made of them.
-_WINDOWS = 8
+# The fewest records in a window, and how many records are made of them.
 _LEAST = 64
 _DRAWS = 200
 # Which statistics of both halves are compared: those of how far forces and flanks move. One impact makes a largest force.
@@ -125,10 +131,10 @@ def resampled(runs: Sequence[Histories], task: Task) -> np.ndarray | None:
     for run in runs:
         t = run.table("t")
         counted = np.flatnonzero(t > t[-1] - int(run.state.gathered.steps[0]) * run.h * (1.0 - 1e-9))
-        long = counted.size // _WINDOWS
+        long = counted.size // WINDOWS
         if long < _LEAST:
             continue
-        which = counted[-_WINDOWS * long :].reshape(_WINDOWS, long)
+        which = counted[-WINDOWS * long :].reshape(WINDOWS, long)
         F = run.table("F")[:, columns]
         d = run.table("d")[:, columns] / task.local.transverse
         tables = (F, run.table("values"), run.table("watched"), d)
@@ -138,7 +144,7 @@ def resampled(runs: Sequence[Histories], task: Task) -> np.ndarray | None:
     if not forces:
         return None
     rows = []
-    for drawn in np.random.default_rng(1).integers(0, len(forces), (_DRAWS, _WINDOWS)):
+    for drawn in np.random.default_rng(1).integers(0, len(forces), (_DRAWS, WINDOWS)):
         moved = [np.column_stack([x.least, x.largest]) for x in (_joined(watched, drawn), _joined(approach, drawn))]
         share = np.mean([shares[i] for i in drawn], axis=0)
         contacts = MotionStatistics(_joined(forces, drawn), share, *moved)
