@@ -10,6 +10,7 @@ of substructures for dynamic analyses, AIAA J. 6, 1968). What holds the body to 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
@@ -78,10 +79,30 @@ class Surface:
 
     def normal_motion(self) -> np.ndarray:
         """W (n, n) with q^H W q = sum of |n.u|^2 A over the triangles, u that of their middles, for coordinates q (n,)."""
+        across = self._across()
+        return np.asarray(across.T @ across)
+
+    @cached_property
+    def motion_of_sides(self) -> np.ndarray:
+        """The parts (6, n, n) of W of the walls that stand at -x, +x, -y, +y, -z and +z of the body.
+
+        Both faces of a wall belong to the side where it stands, whichever way they look: by the axis that their normal is
+        nearest to, and by the half of the body that they are in.
+        """
+        normals, _ = self.normals_and_areas()
+        centres = self.points[self.triangles].mean(axis=1)
+        middle = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
+        axis = np.argmax(np.abs(normals), axis=1)
+        far = centres[np.arange(len(axis)), axis] > middle[axis]
+        across = self._across()
+        walls = [across[2 * axis + far == side] for side in range(6)]
+        return np.array([wall.T @ wall for wall in walls])
+
+    def _across(self) -> np.ndarray:
+        """Motion along the normals of the triangles, times the roots of their areas, (t, n)."""
         normals, areas = self.normals_and_areas()
         middle = self.basis[self.triangles].mean(axis=1)
-        across = np.sqrt(areas)[:, None] * np.einsum("tx,txn->tn", normals, middle)
-        return np.asarray(across.T @ across)
+        return np.asarray(np.sqrt(areas)[:, None] * np.einsum("tx,txn->tn", normals, middle))
 
 
 @dataclass(frozen=True)

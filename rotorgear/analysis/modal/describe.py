@@ -103,16 +103,8 @@ def _casing_words(body: ReducedBody, shape: np.ndarray) -> str:
     if body.surface is None:
         return "bending"
     # The velocity along the normals decides, as it does for the sound: a wall that only slides does not bend.
-    normals, areas = body.surface.normals_and_areas()
-    corners = body.surface.triangles
-    moved = (body.surface.basis @ shape)[corners].mean(axis=1)
-    across = areas * np.abs(np.einsum("tx,tx->t", normals, moved)) ** 2
-    centres = body.surface.points[corners].mean(axis=1)
-    middle = 0.5 * (body.surface.points.min(axis=0) + body.surface.points.max(axis=0))
-    axis = np.argmax(np.abs(normals), axis=1)
-    # Both faces of a wall belong to the side of the casing where it stands, whichever way they look.
-    far = centres[np.arange(len(axis)), axis] > middle[axis]
-    side = int(np.argmax(np.bincount(2 * axis + far, across, 6)))
+    across = np.einsum("i,sij,j->s", shape.conj(), body.surface.motion_of_sides, shape, optimize=True).real
+    side = int(np.argmax(across))
     return f"wall at {'-+'[side % 2]}{_AXES[side // 2]} bending"
 
 
