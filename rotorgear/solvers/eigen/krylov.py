@@ -18,7 +18,8 @@ from rotorgear.solvers.sparse.entries import stretches
 Apply = Callable[[np.ndarray], np.ndarray]
 _DEPENDENT = 1e-13  # a direction this much shorter than its block is rounding of the others
 _ROOM = 200  # columns reserved at first
-_CLEAN = 2.0 * float(np.finfo(float).eps)  # overlap of blocks after a pass over the whole basis
+_EPS = float(np.finfo(float).eps)
+_CLEAN = 2.0 * _EPS  # overlap of blocks after a pass over the whole basis
 _SEMI = 1e-9  # overlap that costs Ritz pairs nothing yet: below the root of eps they are those of an orthogonal basis
 _WELL_SPREAD = 3.0  # log of the ratio of singular values up to which one pass leaves an orthonormal block
 
@@ -105,6 +106,20 @@ class BlockKrylov:
         self.size = held
         self._block = np.hstack([self._block, fresh])
         self._weighted_block = np.hstack([self._weighted_block, weighted])
+
+    def ritz(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Largest eigenvalues θ (k,) of a symmetric T, falling, their coordinates (m, k), and residuals relative to θ (k,).
+
+        No more than `count`; those that are rounding of the largest are left out.
+        """
+        H = self.projection
+        theta, Y = np.linalg.eigh(0.5 * (H + H.T))
+        theta = theta[::-1][:count]
+        Y = Y[:, ::-1][:, :count]
+        keep = theta > _EPS * theta[:1].max(initial=0.0)
+        theta = theta[keep]
+        Y = Y[:, keep]
+        return theta, Y, self.residuals(Y) / theta
 
     def residuals(self, Y: np.ndarray) -> np.ndarray:
         """Norms ||T v - theta v||_W of the Ritz vectors v = V Y, with Y (m, k) eigenvectors of H."""

@@ -65,14 +65,8 @@ class ShiftInvert:
 
     def ritz(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Lowest eigenvalues (k,), their coordinates in the Krylov basis (m, k), and relative residuals (k,)."""
-        H = self.krylov.projection
-        theta, Y = np.linalg.eigh(0.5 * (H + H.T))
-        theta = theta[::-1][:count]
-        Y = Y[:, ::-1][:, :count]
-        keep = theta > EPS * theta[:1].max(initial=0.0)
-        theta = theta[keep]
-        Y = Y[:, keep]
-        return self.sigma + 1.0 / theta, Y, self.krylov.residuals(Y) / theta
+        theta, Y, residuals = self.krylov.ritz(count)
+        return self.sigma + 1.0 / theta, Y, residuals
 
 
 def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = None) -> ShiftInvert:
