@@ -77,7 +77,7 @@ def _kept(kind: type[Body], settings: CasingSettings, modes_to: float | None, pr
             body = reduce(fe, modes_to, tell)[0] if kind is ReducedBody else reduce_wheel(fe, modes_to, tell)
             values = {one.name: getattr(body, one.name) for one in fields(body) if one.name != "surface"}
             assert body.surface is not None, "a body of a mesh has a surface"
-            values |= {_SURFACE + name: value for name, value in vars(body.surface).items()}
+            values |= {_SURFACE + one.name: getattr(body.surface, one.name) for one in fields(Surface)}
             write_entry("bodies", kind.__name__, key, values)
         else:
             surface = Surface(*(stored.pop(_SURFACE + one.name) for one in fields(Surface)))
