@@ -51,11 +51,13 @@ def helix_width(model: Model, name: str) -> float:
 
 
 def gear_size(model: Model, name: str) -> BodySize:
-    """Tip cylinder of a gear over all its helices."""
-    geometry = model.layout.gear(name).geometry
+    """Tip cylinder of a gear over all its helices, of a ring its outer surface."""
+    gear = model.layout.gear(name)
+    geometry = gear.geometry
     diameter = geometry.effective_tip_diameter if geometry else 2.0 * pitch_radius(model, name)
-    diameter *= RING if model.layout.gear(name).part.internal else 1.0
-    planes = model.layout.gear(name).planes
+    if gear.part.internal:
+        diameter = gear.ring_diameter or RING * abs(geometry.root_diameter if geometry else diameter)
+    planes = gear.planes
     half = 0.5 * helix_width(model, name)
     return BodySize(diameter, planes[0] - half, planes[-1] + half)
 

@@ -9,7 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.export.attachment import Attachment, Skeleton
-from rotorgear.export.layout import RING, ball_radius, disk_size, helix_width, hidden_hole, pitch_radius, shaft_diameter
+from rotorgear.export.layout import (
+    RING,
+    ball_radius,
+    disk_size,
+    gear_size,
+    helix_width,
+    hidden_hole,
+    pitch_radius,
+    shaft_diameter,
+)
 from rotorgear.export.surface import (
     Surface,
     ball,
@@ -120,7 +129,7 @@ def gear_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[
         for number, (plane, rate) in enumerate(zip(gear.planes, twist_rates(gear), strict=True)):
             if gear.part.is_bevel:
                 surface = _cone(model, gear, detail)
-            elif gear.part.internal:
+            elif gear.part.internal and gear.geometry is None:
                 inner = pitch_radius(model, gear.name)
                 half = 0.5 * helix_width(model, gear.name)
                 surface = hollow_cylinder(RING * inner, inner, plane - half, plane + half, 2 * detail.segments)
@@ -168,6 +177,9 @@ def _helix(model: Model, name: str, plane: float, rate: float, phase: float, det
     angles, radii = contour_of(model, name, pitch_radius(model, name), detail.flank_points, detail.arc_points)
     steps = max(math.ceil(abs(rate) * 2.0 * half / detail.twist_step), 1)
     z = plane + np.linspace(-half, half, steps + 1)
+    if gear.internal:
+        outer = 0.5 * gear_size(model, name).diameter
+        return twisted_prism(angles + phase, radii, z, rate * (z - plane), outer)
     hole = _hole(model, gear.shaft, plane - half, plane + half, gear.body.bore, float(radii.min()))
     geometry = gear.geometry
     body = gear.body

@@ -97,14 +97,14 @@ def hollow_cylinder(outer_radius: float, inner_radius: float, low: float, high: 
 
 
 def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: np.ndarray, inner: float) -> Surface:
-    """A closed prism whose star-shaped contour turns along z, around a hole.
+    """A closed prism whose star-shaped contour turns along z, around a hole or, of a ring with its teeth inside, in a cylinder.
 
     Args:
         angles: (n, c) of the contour of n equal teeth with c points each, counter-clockwise.
         radii: (n, c) of the contour.
         z: (s,) places along the axis, rising.
         twist: (s,) the contour's rotation there.
-        inner: radius of the hole, with one point a tooth; 0 for none.
+        inner: radius of the hole, with one point a tooth, 0 for none; beyond the contour that of the cylinder around it.
     """
     count, corners = angles.shape
     s = len(z)
@@ -141,6 +141,9 @@ def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: n
     if inner > 0.0:
         low, high = core
         quads.append(np.stack([low, high, np.roll(high, -1), np.roll(low, -1)], -1))
+    if inner > radii.max():  # what was outside is inside
+        quads = [cells[..., ::-1] for cells in quads]
+        triangles = [cells[..., ::-1] for cells in triangles]
     return make_surface(np.concatenate([side.reshape(-1, 3), hole]), quads, triangles)
 
 

@@ -31,16 +31,17 @@ def toothed_contour(geometry: GearGeometry, flank_points: int) -> tuple[np.ndarr
         angles and radii, each (teeth, 2 flank_points), counter-clockwise; flanks are involutes down to the base circle, and
         radial from there to the root circle.
     """
-    tip = 0.5 * geometry.effective_tip_diameter
-    root = 0.5 * geometry.root_diameter
-    pitch = 2.0 * math.pi / geometry.teeth
+    tip = 0.5 * abs(geometry.effective_tip_diameter)
+    root = 0.5 * abs(geometry.root_diameter)
+    teeth = abs(geometry.teeth)
+    pitch = 2.0 * math.pi / teeth
     radius = np.linspace(root, tip, flank_points)
-    involute = np.maximum(radius, geometry.base_radius)
-    half = np.array([geometry.transverse_thickness(2.0 * r) / (2.0 * r) for r in involute])
+    involute = np.maximum(radius, abs(geometry.base_radius))
+    half = np.array([geometry.transverse_thickness(geometry.sign * 2.0 * r) / (2.0 * r) for r in involute])
     # Pointed teeth and closed gaps are refused elsewhere, not in a picture: keep a land.
     half = np.clip(half, _LEAST_LAND * pitch, (0.5 - _LEAST_LAND) * pitch)
-    angles = np.concatenate([-half, half[::-1]]) + pitch * np.arange(geometry.teeth)[:, None]
-    return angles, np.tile(np.concatenate([radius, radius[::-1]]), (geometry.teeth, 1))
+    angles = np.concatenate([-half, half[::-1]]) + pitch * np.arange(teeth)[:, None]
+    return angles, np.tile(np.concatenate([radius, radius[::-1]]), (teeth, 1))
 
 
 def grooved_contour(radius: float, grooves: int, arc_points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -73,13 +74,18 @@ def tooth_phases(model: Model, frames: dict[str, Frame]) -> dict[str, float]:
             names = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
             known, new = (model.layout.gear(name) for name in names)
             places = {contact.pinion: contact.contact_z, contact.gear: contact.gear_contact_z}
-            out = _direction(frames[known.shaft], frames[new.shaft].at(new.z))
-            back = _direction(frames[new.shaft], frames[known.shaft].at(known.z))
+            out, back = (
+                # The pinion in a ring has its pitch point away from the ring's axis.
+                _direction(frames[one.shaft], frames[mate.shaft].at(mate.z)) + (math.pi if mate.part.internal else 0.0)
+                for one, mate in ((known, new), (new, known))
+            )
             pitch, mate_pitch = (2.0 * math.pi / (gear.part.teeth or 1) for gear in (known, new))
             ahead = (out - phases[known.name] - _turn(known, places[known.name])) / pitch
 
-            # The mate turns the other way: what lies a share of the pitch back here lies the same share ahead there.
-            gap = back + ahead * mate_pitch
+            # The mate turns the other way, in a ring the same way: what lies a share of the pitch back here lies the same share
+            # ahead there, or back as well.
+            sense = -1.0 if known.part.internal or new.part.internal else 1.0
+            gap = back + sense * ahead * mate_pitch
             phases[new.name] = gap + 0.5 * mate_pitch - _turn(new, places[new.name])
     return phases
 

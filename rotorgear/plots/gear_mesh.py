@@ -1,6 +1,7 @@
 """Draws two gears in mesh in the transverse plane: both outlines, pitch and base circles, line of action, contact points.
 
-The pinion stands left and drives counter-clockwise; a tooth pair touches at the pitch point.
+The pinion drives counter-clockwise with its axis at the origin, the gear's axis is right of it, that of a ring left; a tooth
+pair touches at the pitch point.
 """
 
 from __future__ import annotations
@@ -11,27 +12,41 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.plots.figure import BLUE, ORANGE, figure_for, name_axes
 from rotorgear.results.gear_sheet import GearSheet
 
 _POINTS = 40
+# A ring is drawn with so much rim, in normal modules.
+_RIM = 1.5
 
 
 def gear_contour(teeth: ToothPair, gear: int) -> np.ndarray:
-    """Closed contour (n, 2) in m of gear 1 or 2, the pinion's axis at the origin, the gear's at (a_w, 0)."""
+    """Closed contour (n, 2) in m of gear 1 or 2, the pinion's axis at the origin, the gear's at (a_w, 0), of a ring a_w < 0."""
     g = teeth.first if gear == 1 else teeth.second
     outline = tooth_outline(g)
     radii, angles = outline.tooth(_POINTS)
-    working = g.base_radius / math.cos(teeth.pair.working_transverse_pressure_angle)
-    half = float(outline.involute(math.sqrt(working**2 - g.base_radius**2))[1])
-    middle = -half if gear == 1 else math.pi - half
-    turned = middle + angles[:-1] + 2.0 * math.pi / g.teeth * np.arange(g.teeth)[:, None]
+    half = float(outline.involute(g.base_radius * math.tan(teeth.pair.working_transverse_pressure_angle))[1])
+    # The flanks that touch are the pinion's upper one and the gear's lower one; a ring is on the pinion's side of the gap.
+    middle = -half if gear == 1 else half if g.is_internal else math.pi - half
+    count = abs(g.teeth)
+    turned = middle + angles[:-1] + 2.0 * math.pi / count * np.arange(count)[:, None]
     radius = np.broadcast_to(radii[:-1], turned.shape)
     xy = np.stack([radius * np.cos(turned), radius * np.sin(turned)], axis=-1).reshape(-1, 2)
     xy = np.vstack([xy, xy[:1]])
     return xy if gear == 1 else xy + np.array([teeth.pair.centre_distance, 0.0])
+
+
+def _filled(contour: np.ndarray, centre: tuple[float, float], g: GearGeometry) -> np.ndarray:
+    """What of a gear is solid: inside its contour, of a ring between the contour and a circle around its roots."""
+    if not g.is_internal:
+        return contour
+    turn = np.linspace(2.0 * math.pi, 0.0, len(contour))
+    around = 0.5e3 * abs(g.root_diameter) + _RIM * 1e3 * g.normal_module
+    circle = np.column_stack([centre[0] + around * np.cos(turn), centre[1] + around * np.sin(turn)])
+    return np.vstack([contour, circle, contour[:1]])
 
 
 def contact_points(teeth: ToothPair) -> np.ndarray:
@@ -79,9 +94,12 @@ def gear(result: GearSheet, fig: Any = None, *, mesh: str | None = None) -> np.n
         gears = ((1, row.pinion, teeth.first, BLUE), (2, row.gear, teeth.second, ORANGE))
         for (number, gear_name, g, colour), centre in zip(gears, centres, strict=True):
             xy = 1e3 * gear_contour(teeth, number)
-            axis.fill(*xy.T, facecolor=colour, alpha=0.16)
+            axis.fill(*_filled(xy, centre, g).T, facecolor=colour, alpha=0.16)
             axis.plot(*xy.T, color=colour, lw=1.2, label=gear_name)
-            circles = {"working pitch circles": g.base_radius / math.cos(angle), "base circles": g.base_radius}
+            circles = {
+                "working pitch circles": abs(g.base_radius) / math.cos(angle),
+                "base circles": abs(g.base_radius),
+            }
             for (circle, radius), style in zip(circles.items(), ("-.", ":"), strict=True):
                 x = 1e3 * radius * np.cos(turn) + centre[0]
                 y = 1e3 * radius * np.sin(turn)

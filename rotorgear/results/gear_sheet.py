@@ -32,7 +32,10 @@ class GearRow(Record):
     name: str = of("name")
     kind: str = of("kind", note=': `"spur"`, `"helical"` or `"herringbone"`')
     hand: str | None = of("hand of the helix", note=': `"right"`, `"left"`, or `null` for a spur gear')
-    teeth: int = of("number of teeth z", column="teeth z")
+    internal: bool = of("whether it is a ring with its teeth inside")
+    teeth: int = of(
+        "number of teeth z", note="; of a ring, too, a positive number, and so are its diameters", column="teeth z"
+    )
     normal_module_m: float = of("normal module m_n", "m", form=".4f", column="normal module mm")
     normal_pressure_angle_deg: float = of(
         "normal pressure angle α_n", "deg", form=".4f", column="normal pressure angle deg"
@@ -68,16 +71,26 @@ class GearRow(Record):
     tip_thickness_m: float = of("normal tip thickness s_an", "m", form=".4f", column="tip thickness s_an mm")
     upper_thickness_allowance_m: float = of("upper thickness allowance E_sns", "m")
     lower_thickness_allowance_m: float = of("lower thickness allowance E_sni", "m")
-    span_teeth: int = of("number of teeth k within the base tangent", column="span over teeth k")
-    span_m: float = of(
+    span_teeth: int | None = of(
+        "number of teeth k within the base tangent", note="; `null` for a ring", column="span over teeth k"
+    )
+    span_m: float | None = of(
         "base tangent length W_k", "m", note=", without allowance", form=".4f", column="base tangent W_k mm"
     )
-    span_upper_m: float = of("base tangent length with the upper allowance", "m", form=".4f", column="  upper mm")
-    span_lower_m: float = of("base tangent length with the lower allowance", "m", form=".4f", column="  lower mm")
-    span_least_width_m: float = of("face width that the measurement needs at least", "m")
+    span_upper_m: float | None = of(
+        "base tangent length with the upper allowance", "m", form=".4f", column="  upper mm"
+    )
+    span_lower_m: float | None = of(
+        "base tangent length with the lower allowance", "m", form=".4f", column="  lower mm"
+    )
+    span_least_width_m: float | None = of("face width that the measurement needs at least", "m")
     ball_diameter_m: float = of("ball diameter D_M", "m", form=".4f", column="ball diameter D_M mm")
     over_balls_m: float = of(
-        "dimension over balls or pins M_dK", "m", note=", without allowance", form=".4f", column="over balls M_dK mm"
+        "dimension over balls or pins M_dK",
+        "m",
+        note=", without allowance; of a ring between them",
+        form=".4f",
+        column="over balls M_dK mm",
     )
     over_balls_upper_m: float = of(
         "dimension over balls with the upper allowance", "m", form=".4f", column="  upper mm"

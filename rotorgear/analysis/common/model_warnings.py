@@ -74,5 +74,6 @@ def _faces(system: System) -> Iterator[str]:
                 yield f"gears.{first[2]} and gears.{second[2]} stand in one another on shaft '{shaft}' ({where}); check their at"
         for start, end, name in found:
             beyond = max(part.start - start, end - part.end)
-            if part.sections and beyond > _TOUCH * (end - start):
+            # A ring stands around what it meshes with, on an arm at the end of its shaft.
+            if part.sections and beyond > _TOUCH * (end - start) and not system.model.layout.gear(name).part.internal:
                 yield f"gears.{name}: its face hangs over the end of shaft '{shaft}' by {millimetres(beyond)}; check its at"

@@ -11,6 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.cutter import cutter
 from rotorgear.gears.geometry.flank_tolerance import base_pitch_deviation, profile_form_deviation
 from rotorgear.gears.geometry.geometry import GearGeometry, check_gear
 from rotorgear.gears.geometry.line_of_action import generated_line
@@ -53,13 +54,14 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
     teeth = mesh.teeth
     # The pinion of the standard is the gear with fewer teeth.
     order, geometry = zip(
-        *sorted(zip(mesh.gears, (teeth.first, teeth.second), strict=True), key=lambda item: item[1].teeth), strict=True
+        *sorted(zip(mesh.gears, (teeth.first, teeth.second), strict=True), key=lambda item: abs(item[1].teeth)),
+        strict=True,
     )
     pinion, wheel = geometry
     spin = abs(model.layout.train.ratio(order[0].shaft) * speed)
     line_load = mesh.part.application_factor * base_force * math.cos(pinion.transverse_pressure_angle) / teeth.width
     velocity = 0.5 * pinion.reference_diameter * spin
-    ratio = wheel.teeth / pinion.teeth
+    ratio = abs(wheel.teeth / pinion.teeth)
     inertias = [gear.body.polar_inertia / mesh.helices for gear in order]
     try:
         if min(inertias) <= 0.0:
@@ -136,42 +138,44 @@ def _gear(name: str, gear: Gear) -> GearRow:
     outline = tooth_outline(g)
     allowance = gear.allowance
     ball = ball_diameter(gear, g)
-    k = best_span(g)
+    # A span needs flanks that face away from each other: those of a ring don't.
+    k = None if g.is_internal else best_span(g)
     thick = with_allowance(g, allowance.upper)
     thin = with_allowance(g, allowance.lower)
     return GearRow(
         name=name,
         kind=gear.kind,
         hand=gear.hand,
-        teeth=g.teeth,
+        internal=g.is_internal,
+        teeth=abs(g.teeth),
         normal_module_m=g.normal_module,
         normal_pressure_angle_deg=math.degrees(g.normal_pressure_angle),
         helix_angle_deg=math.degrees(g.helix_angle),
         profile_shift=g.profile_shift,
         addendum_factor=g.addendum_factor,
         dedendum_factor=g.dedendum_factor,
-        root_radius_factor=g.tool_tip_radius_factor,
+        root_radius_factor=cutter(g).tip_rounding / g.normal_module if g.is_internal else g.tool_tip_radius_factor,
         face_width_m=gear.width or 0.0,
         transverse_module_m=g.transverse_module,
         transverse_pressure_angle_deg=math.degrees(g.transverse_pressure_angle),
         base_helix_angle_deg=math.degrees(g.base_helix_angle),
         lead_m=g.lead if g.helix_angle else None,
-        reference_diameter_m=g.reference_diameter,
-        base_diameter_m=2.0 * g.base_radius,
-        tip_diameter_m=g.effective_tip_diameter,
-        root_diameter_m=g.root_diameter,
+        reference_diameter_m=abs(g.reference_diameter),
+        base_diameter_m=2.0 * abs(g.base_radius),
+        tip_diameter_m=abs(g.effective_tip_diameter),
+        root_diameter_m=abs(g.root_diameter),
         form_diameter_m=2.0 * outline.form_radius,
         undercut=outline.undercut,
-        virtual_teeth=g.virtual_teeth,
+        virtual_teeth=abs(g.virtual_teeth),
         normal_thickness_m=normal_thickness(g),
         tip_thickness_m=g.normal_tip_thickness,
         upper_thickness_allowance_m=allowance.upper,
         lower_thickness_allowance_m=allowance.lower,
         span_teeth=k,
-        span_m=g.base_tangent_length(k),
-        span_upper_m=thick.base_tangent_length(k),
-        span_lower_m=thin.base_tangent_length(k),
-        span_least_width_m=span_width(g, k),
+        span_m=k and g.base_tangent_length(k),
+        span_upper_m=k and thick.base_tangent_length(k),
+        span_lower_m=k and thin.base_tangent_length(k),
+        span_least_width_m=k and span_width(g, k),
         ball_diameter_m=ball,
         over_balls_m=over_balls(g, ball),
         over_balls_upper_m=over_balls(thick, ball),
@@ -212,13 +216,14 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         ]
     speed = model.operating_speed
     cosine = math.cos(pair.working_transverse_pressure_angle)
+    active = pair.active_root_diameters(g1, g2)
     return MeshSheetRow(
         name=mesh.name,
         pinion=mesh.pinion.name,
         gear=mesh.gear.name,
-        ratio=g2.teeth / g1.teeth,
-        centre_distance_m=pair.centre_distance,
-        reference_centre_distance_m=standard_centre_distance(g1, g2),
+        ratio=abs(g2.teeth / g1.teeth),
+        centre_distance_m=abs(pair.centre_distance),
+        reference_centre_distance_m=abs(standard_centre_distance(g1, g2)),
         profile_shift_sum=profile_shift_sum(g1, g2, pair.centre_distance),
         common_width_m=teeth.width,
         helices=mesh.helices,
@@ -233,8 +238,8 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         approach_length_m=-pair.start_of_contact,
         recess_length_m=pair.end_of_contact,
         # d_w = d_b / cos a_wt
-        working_pitch_diameter_m=(2.0 * g1.base_radius / cosine, 2.0 * g2.base_radius / cosine),
-        active_root_diameter_m=pair.active_root_diameters(g1, g2),
+        working_pitch_diameter_m=(2.0 * g1.base_radius / cosine, 2.0 * abs(g2.base_radius) / cosine),
+        active_root_diameter_m=(active[0], abs(active[1])),
         tip_clearance_m=(_clearance(g1, g2, pair.centre_distance), _clearance(g2, g1, pair.centre_distance)),
         transverse_backlash_m=pair.transverse_backlash,
         normal_backlash_least_m=backlash.least,
@@ -265,5 +270,5 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
 
 
 def _clearance(g: GearGeometry, mate: GearGeometry, distance: float) -> float:
-    """c (m) between the tip circle of a gear and the root circle of its mate."""
+    """c (m) between the tip circle of a gear and the root circle of its mate, signs as of ISO 21771."""
     return distance - 0.5 * (g.effective_tip_diameter + mate.root_diameter)

@@ -18,7 +18,7 @@ FLANK_CLASSES = 11
 def base_pitch_deviation(g: GearGeometry, grade: int) -> float:
     """f_pb (m) of a gear in a tolerance class."""
     # The standard's formulas give um for d and m_n in mm: 1e3 and 1e-6 are those units.
-    pitch = 0.001 * 1e3 * g.reference_diameter + 0.4 * 1e3 * g.normal_module + 5.0
+    pitch = 0.001 * 1e3 * abs(g.reference_diameter) + 0.4 * 1e3 * g.normal_module + 5.0
     return 1e-6 * pitch * _step(grade) * math.cos(g.transverse_pressure_angle)
 
 
@@ -29,7 +29,7 @@ def profile_form_deviation(g: GearGeometry, grade: int) -> float:
 
 def cumulative_pitch_tolerance(g: GearGeometry, grade: int) -> float:
     """F_pT (m) of a gear in a tolerance class: total cumulative pitch deviation, along the reference circle."""
-    d = 1e3 * g.reference_diameter
+    d = 1e3 * abs(g.reference_diameter)
     return 1e-6 * (0.002 * d + 0.55 * math.sqrt(d) + 0.7 * 1e3 * g.normal_module + 12.0) * _step(grade)
 
 

@@ -1,6 +1,7 @@
-"""Involute geometry of one external cylindrical gear, and the involute function inv(a) = tan a - a with its inverse.
+"""Involute geometry of one cylindrical gear, and the involute function inv(a) = tan a - a with its inverse.
 
 tan a_t = tan a_n / cos b,  m_t = m_n / cos b,  r_b = z m_t cos a_t / 2,  sin b_b = sin b cos a_n.
+A ring with its teeth inside has z < 0, and with it all its diameters and roll lengths: the formulas are then the same.
 Reference: ISO 21771-1, Cylindrical involute gears and gear pairs. Lengths in m, angles in rad. Hand and torque
 sense have no place here: helix_angle >= 0 always, and the mesh element adds the sign.
 """
@@ -62,21 +63,23 @@ THIN_TIP = 0.2
 
 @dataclass(frozen=True)
 class GearGeometry:
-    """Tooth data of one external gear (one helix of a herringbone gear); ISO 21771-1.
+    """Tooth data of one gear (one helix of a herringbone gear); ISO 21771-1.
 
     Values without meaning raise AnalysisError; `check_gear` tells which meaningful values make a bad or an impossible tooth.
 
     Attributes:
-        teeth: z.
+        teeth: z, negative of a ring.
         normal_module: m_n (m).
         normal_pressure_angle: a_n (rad).
         helix_angle: b (rad) at the reference cylinder, 0 or positive.
-        profile_shift: x in normal modules.
+        profile_shift: x in normal modules; positive makes teeth thicker and tips higher, of a ring as well.
         addendum_factor: h_aP of the basic rack in normal modules.
         dedendum_factor: h_fP of the basic rack in normal modules.
-        tip_diameter: d_a (m) as given; None means d + 2 m_n (h_aP + x). `effective_tip_diameter` is the one in force.
+        tip_diameter: d_a (m) as given, negative of a ring; None means d + 2 m_n (h_aP + x). `effective_tip_diameter` is the one
+            in force.
         root_radius_factor: rho_fP in normal modules as given; None means that of ISO 53. `tool_tip_radius_factor` is the
-            one in force.
+            one in force of an external gear; a ring has that of its `cutter`.
+        cutter_teeth: of the pinion-type cutter that makes a ring; None for the `cutter`'s own choice.
     """
 
     teeth: int
@@ -88,11 +91,13 @@ class GearGeometry:
     dedendum_factor: float = 1.25
     tip_diameter: float | None = None
     root_radius_factor: float | None = None
+    cutter_teeth: int | None = None
 
     def __post_init__(self) -> None:
-        if self.teeth < 1 or self.teeth != int(self.teeth):
+        if self.teeth == 0 or self.teeth != int(self.teeth):
             raise AnalysisError(f"A gear needs a whole number of teeth, at least one, not {self.teeth}.")
-        lengths = {"normal module": self.normal_module, "tip diameter": self.tip_diameter}
+        tip = self.tip_diameter
+        lengths = {"normal module": self.normal_module, "tip diameter": -tip if tip and self.is_internal else tip}
         factors = {"addendum factor": self.addendum_factor, "dedendum factor": self.dedendum_factor}
         for name, value in (lengths | factors).items():
             if value is not None and not 0.0 < value < math.inf:
@@ -109,6 +114,16 @@ class GearGeometry:
             )
         if not math.isfinite(self.profile_shift):
             raise AnalysisError(f"The profile shift must be a finite number, not {self.profile_shift:g}.")
+
+    @property
+    def is_internal(self) -> bool:
+        """Whether it is a ring with its teeth inside."""
+        return self.teeth < 0
+
+    @property
+    def sign(self) -> int:
+        """z / |z|: -1 of a ring, else 1."""
+        return -1 if self.is_internal else 1
 
     @property
     def transverse_module(self) -> float:
@@ -154,13 +169,13 @@ class GearGeometry:
 
     @property
     def virtual_teeth(self) -> float:
-        """z_n = z / (cos^2 b_b cos b): teeth of the equivalent spur gear in the normal section."""
+        """z_n = z / (cos^2 b_b cos b), with the sign of z: teeth of the equivalent spur gear in the normal section."""
         return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
     @property
     def lead(self) -> float:
-        """p_z = pi d / tan b (m); infinite for a spur gear."""
-        return math.pi * self.reference_diameter / math.tan(self.helix_angle) if self.helix_angle else math.inf
+        """p_z = pi |d| / tan b (m); infinite for a spur gear."""
+        return math.pi * abs(self.reference_diameter) / math.tan(self.helix_angle) if self.helix_angle else math.inf
 
     @property
     def full_radius_factor(self) -> float:
@@ -199,8 +214,8 @@ class GearGeometry:
 
     @property
     def is_undercut(self) -> bool:
-        """Whether the profile shift is below `minimum_profile_shift`."""
-        return self.profile_shift < self.minimum_profile_shift
+        """Whether the profile shift is below `minimum_profile_shift`; no rack cuts a ring."""
+        return not self.is_internal and self.profile_shift < self.minimum_profile_shift
 
     def transverse_thickness(self, diameter: float) -> float:
         """s_yt (m): arc between the two flanks of a tooth at a diameter; negative where they have crossed.
@@ -211,10 +226,10 @@ class GearGeometry:
             AnalysisError: a diameter below the base circle, where there is no involute.
         """
         base = 2.0 * self.base_radius
-        if not base <= diameter < math.inf:
+        if not abs(base) <= self.sign * diameter < math.inf:
             raise AnalysisError(
-                f"There is no involute at diameter {1e3 * diameter:g} mm: give one of at least the base diameter, "
-                f"{1e3 * base:g} mm."
+                f"There is no involute at diameter {1e3 * abs(diameter):g} mm: give one of at least the base diameter, "
+                f"{1e3 * abs(base):g} mm."
             )
         shift = 2.0 * self.profile_shift * math.tan(self.normal_pressure_angle)
         half_angles = (math.pi / 2 + shift) / self.teeth + involute(self.transverse_pressure_angle)
@@ -241,6 +256,17 @@ class GearGeometry:
 def impossible_teeth(g: GearGeometry) -> list[str]:
     """Sentences on circles in the wrong order; any of them means that there is no tooth to speak of."""
     tip, root, base = (1e3 * d for d in (g.effective_tip_diameter, g.root_diameter, 2.0 * g.base_radius))
+    if g.is_internal:
+        if root >= tip:
+            return [
+                f"The tip diameter of {-tip:.6g} mm is not below the root diameter of {-root:.6g} mm: there is no tooth."
+            ]
+        if tip >= base:
+            return [
+                f"The tip diameter of {-tip:.6g} mm is not above the base diameter of {-base:.6g} mm, where the involutes of a "
+                f"ring end: give a larger tip_diameter, more teeth, or less addendum or profile shift."
+            ]
+        return []
     if g.full_radius_factor < 0.0:
         return [
             f"The basic rack is pointed before it is {g.dedendum_factor:.6g} normal modules deep: "
@@ -262,7 +288,8 @@ def check_gear(g: GearGeometry) -> list[str]:
     thickness = g.normal_tip_thickness
     if thickness <= 0.0:
         sentences.append(
-            f"The teeth are pointed below the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm: "
+            f"The teeth are pointed {'above' if g.is_internal else 'below'} the tip diameter of "
+            f"{1e3 * abs(g.effective_tip_diameter):.6g} mm: "
             "reduce the tip diameter, the addendum or the profile shift."
         )
     elif thickness < THIN_TIP * g.normal_module:

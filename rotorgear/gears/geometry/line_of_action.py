@@ -22,6 +22,9 @@ from rotorgear.gears.geometry.pair import PairGeometry
 class LineOfAction:
     """Line of action of a pair in the transverse plane; index 0 is the pinion, 1 the gear.
 
+    Radii, roll lengths and distances of a ring with its teeth inside are negative, as in ISO 21771: T1T2 too, and the same
+    formulas hold.
+
     Attributes:
         base_radius: r_b of both gears.
         form: roll lengths of both gears where the involute begins.
@@ -69,7 +72,7 @@ class LineOfAction:
     def interference(self) -> bool:
         """Whether a tip reaches below the involute of its mate."""
         # A tip that ends at the form circle, as many are designed to, must not count as interference by rounding.
-        slack = 1e-9 * self.length
+        slack = 1e-9 * abs(self.length)
         return self.length - self.tip[1] < self.form[0] - slack or self.length - self.form[1] < self.tip[0] - slack
 
     def corner(self, gear: int, excess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

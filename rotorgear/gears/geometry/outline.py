@@ -1,7 +1,8 @@
-"""Transverse outline of a tooth cut by a rack (tip arc, involute, trochoid of the tool's tip, root arc), and its root section.
+"""Transverse outline of a tooth (tip arc, involute, trochoid of the tool's tip, root arc), and its root section.
 
-The tool's tip is a circle of rho_fP in the normal section, an ellipse in the transverse one. A point of it with the normal n
-cuts when n passes through the pitch point: the rack has then moved by u = Y n_x / n_y - X and the gear has turned by u / r.
+A rack cuts external teeth, a pinion-type cutter those of a ring (`cutter.py`). The rack's tip is a circle of rho_fP in the normal
+section, an ellipse in the transverse one. A point of it with the normal n cuts when n passes through the pitch point: the rack
+has then moved by u = Y n_x / n_y - X and the gear has turned by u / r.
 Where the straight flank ends above the base circle, the trochoid begins there; below it the tooth is undercut, and the
 trochoid begins where it crosses the involute. Reference: F. L. Litvin, A. Fuentes, Gear Geometry and Applied Theory,
 chapter on involute gears; ISO 53 for the rack. Lengths in m, angles in rad.
@@ -25,6 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.cutter import cutter
 from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
 
 TANGENT = math.radians(30.0)
@@ -103,16 +105,17 @@ LEAST_TIP = 0.02
 class ToothOutline:
     """One flank of a tooth from its tip to the middle of the gap, in polar coordinates about the gear's axis.
 
-    Angles are measured from the middle of the tooth, positive on the flank that is described; the other one mirrors it.
+    Angles are measured from the middle of the tooth, positive on the flank that is described; the other one mirrors it. Radii
+    are positive; roll lengths of a ring are negative as its base radius is, so that they rise from form circle to tip, too.
 
     Attributes:
         geometry: the gear.
         tip_radius: r_a.
         root_radius: r_f.
         form_radius: where involute and trochoid meet.
-        form_roll_length: xi_F along the line of action from the base tangent point, sqrt(r_F^2 - r_b^2).
+        form_roll_length: xi_F along the line of action from the base tangent point, sqrt(r_F^2 - r_b^2), with the sign of z.
         base_half_angle: half the tooth's angle at the base circle.
-        form_tool_angle: angle of the tool's tip normal that cuts the form circle; pi/2 cuts the root circle.
+        form_tool_angle: angle of the rack's tip normal that cuts the form circle; pi/2 cuts the root circle.
         undercut: whether the trochoid cuts away involute.
     """
 
@@ -127,8 +130,8 @@ class ToothOutline:
 
     @property
     def tip_roll_length(self) -> float:
-        """xi_a (m)."""
-        return math.sqrt(self.tip_radius**2 - self.geometry.base_radius**2)
+        """xi_a (m), with the sign of z."""
+        return self.geometry.sign * math.sqrt(self.tip_radius**2 - self.geometry.base_radius**2)
 
     @property
     def rounding_share(self) -> float:
@@ -146,23 +149,27 @@ class ToothOutline:
         Along the flank the rounding takes off the arc (xi_a^2 - xi_Fa^2)/(2 r_b).
         """
         base = self.geometry.base_radius
-        radius = self.tip_radius - chamfer
+        sign = self.geometry.sign
+        radius = self.tip_radius - sign * chamfer
         square = (radius - base) * (radius + base) - 2.0 * base * rounding * self.rounding_share
-        return math.sqrt(max(square, 0.0))
+        return sign * math.sqrt(max(square, 0.0))
 
     @property
     def root_half_angle(self) -> float:
-        """Angle at which the trochoid reaches the root circle; pi/z where no root arc is left."""
+        """Angle at which the trochoid reaches the root circle; pi/|z| where no root arc is left."""
         return float(self.fillet(1.0)[1])
 
     def involute(self, roll_length: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-        """Radii (n,) and angles (n,) of flank points by their roll length xi = sqrt(r^2 - r_b^2), shape (n,)."""
+        """Radii (n,) and angles (n,) of flank points by their roll length xi = sqrt(r^2 - r_b^2), with the sign of z, (n,)."""
         roll = np.asarray(roll_length, float)
         turned = roll / self.geometry.base_radius
-        return np.hypot(roll, self.geometry.base_radius), self.base_half_angle - (turned - np.arctan(turned))
+        opening = self.geometry.sign * (turned - np.arctan(turned))
+        return np.hypot(roll, self.geometry.base_radius), self.base_half_angle - opening
 
     def fillet(self, share: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
         """Radii (n,) and angles (n,) of the trochoid; share (n,) runs from 0 at the form circle to 1 at the root circle."""
+        if self.geometry.is_internal:
+            return cutter(self.geometry).fillet(share)
         first = self.form_tool_angle
         return trochoid(self.geometry, first + (0.5 * math.pi - first) * np.asarray(share, float))
 
@@ -172,7 +179,7 @@ class ToothOutline:
         flank = self.involute(roll)
         fillet = self.fillet(np.linspace(0.0, 1.0, points)[1:])
         tip = np.linspace(0.0, flank[1][0], 5)[:-1]
-        root = np.linspace(fillet[1][-1], math.pi / self.geometry.teeth, 5)[1:]
+        root = np.linspace(fillet[1][-1], math.pi / abs(self.geometry.teeth), 5)[1:]
         radii = np.concatenate([np.full(4, self.tip_radius), flank[0], fillet[0], np.full(4, self.root_radius)])
         return radii, np.concatenate([tip, flank[1], fillet[1], root])
 
@@ -214,15 +221,13 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
     """
     if wrong := impossible_teeth(g):
         raise AnalysisError(wrong[0])
+    if g.is_internal:
+        return _ring_outline(g)
     tip = 0.5 * g.effective_tip_diameter
     base_half = (math.pi / 2 + 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle)) / g.teeth + (
         math.tan(g.transverse_pressure_angle) - g.transverse_pressure_angle
     )
-    if g.normal_tip_thickness < LEAST_TIP * g.normal_module:
-        raise AnalysisError(
-            f"The teeth are pointed at the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm, or all but "
-            f"(thinner than {LEAST_TIP:g} normal modules): reduce the tip diameter, the addendum or the profile shift."
-        )
+    _require_tip(g)
     # The involute begins where the rack's straight flank ends; a negative roll length is that of an undercut tooth.
     roll = g.tool_form_roll_length
     angle = g.normal_pressure_angle
@@ -240,6 +245,52 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
     # A trochoid that crosses the middle of the tooth has cut it off.
     if np.min(outline.fillet(np.linspace(0.0, 1.0, 101))[1]) <= 0.0:
         raise AnalysisError(_cut_through(g))
+    return outline
+
+
+def _require_tip(g: GearGeometry) -> None:
+    """AnalysisError for a tooth that is all but pointed at its tip."""
+    if g.normal_tip_thickness < LEAST_TIP * g.normal_module:
+        remedy = (
+            "give a larger tip diameter or less addendum" if g.is_internal else "reduce the tip diameter, the addendum"
+        )
+        raise AnalysisError(
+            f"The teeth are pointed at the tip diameter of {1e3 * abs(g.effective_tip_diameter):.6g} mm, or all but "
+            f"(thinner than {LEAST_TIP:g} normal modules): {remedy} or {'more' if g.is_internal else 'the'} profile shift."
+        )
+
+
+def _ring_outline(g: GearGeometry) -> ToothOutline:
+    """Outline of a ring's tooth, whose fillet is that of its cutter."""
+    _require_tip(g)
+    tool = cutter(g)
+    tip = 0.5 * abs(g.effective_tip_diameter)
+    roll = tool.ring_form_roll_length
+    form = math.hypot(roll, g.base_radius)
+    if form <= tip:
+        raise AnalysisError(
+            f"The rounding of the cutter's tip ends the flank at the diameter of {2e3 * form:.6g} mm, inside the tip diameter of "
+            f"{2e3 * tip:.6g} mm: no involute is left; use a smaller root_radius_factor or more dedendum."
+        )
+    outline = ToothOutline(
+        geometry=g,
+        tip_radius=tip,
+        root_radius=0.5 * abs(g.root_diameter),
+        form_radius=form,
+        form_roll_length=-roll,
+        # Half the angle of the tooth at a diameter is this and inv a_y: teeth of a ring grow outwards.
+        base_half_angle=-((math.pi / 2 + 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle)) / g.teeth)
+        - (math.tan(g.transverse_pressure_angle) - g.transverse_pressure_angle),
+        form_tool_angle=0.5 * math.pi,
+        undercut=False,
+    )
+    # Below its base circle the cutter has no flank: what the ring's tip would meet there is not made by it.
+    reached = -outline.tip_roll_length - tool.centre_distance * math.sin(tool.pressure_angle)
+    if reached < 0.0:
+        raise AnalysisError(
+            f"A cutter of {tool.teeth} teeth has no involute where it would cut the tip of this ring: give cutter_teeth of a "
+            "larger cutter, or a larger tip diameter."
+        )
     return outline
 
 

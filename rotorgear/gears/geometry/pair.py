@@ -1,10 +1,12 @@
-"""Involute geometry of a parallel-axis pair of external gears: centre distance, contact ratios, backlash.
+"""Involute geometry of a parallel-axis pair of gears: centre distance, contact ratios, backlash.
 
 inv a_wt = inv a_t + 2 tan a_n (x1 + x2) / (z1 + z2),  a_w = a cos a_t / cos a_wt.
 
 Backlash at zero allowance is j_wt = 2 a_w [inv a_wt(a_w) - inv a_wt(x1 + x2)] at the working circles, along the flank normal
 j_bn = j_wt cos a_wt cos b_b. Allowances E_sn of the tooth thickness (negative: thinner) add -(E_sn1 + E_sn2) cos a_n to j_bn
 exactly, since cos a_t cos b_b = cos b cos a_n.
+
+A pinion in a ring has the same formulas with z2 < 0: d2, r_b2 and a_w are negative then, and so are roll lengths of the ring.
 
 Reference: ISO 21771-1, Cylindrical involute gears and gear pairs; ISO/TR 10064-2 for allowances. Lengths in m, angles in rad.
 """
@@ -20,6 +22,10 @@ from rotorgear.gears.geometry.geometry import GearGeometry, inverse_involute, in
 
 def _require_mates(g1: GearGeometry, g2: GearGeometry) -> None:
     """AnalysisError unless the two gears share the normal module, the normal pressure angle and the helix angle."""
+    if g1.is_internal or g1.teeth + g2.teeth == 0 or g2.is_internal != (g1.teeth + g2.teeth < 0):
+        raise AnalysisError(
+            f"A ring of {abs(g2.teeth)} teeth can't hold a pinion of {abs(g1.teeth)}: it needs more teeth, and is the gear."
+        )
     for name in ("normal_module", "normal_pressure_angle", "helix_angle"):
         one = getattr(g1, name)
         two = getattr(g2, name)
@@ -43,20 +49,26 @@ def working_pressure_angle_from_shifts(g1: GearGeometry, g2: GearGeometry) -> fl
     value = involute(g1.transverse_pressure_angle) + shifts
     if value < 0.0:
         raise AnalysisError(
-            f"The profile shifts {g1.profile_shift:g} and {g2.profile_shift:g} are too negative for {g1.teeth} "
-            f"and {g2.teeth} teeth to mesh at any centre distance: raise one of them."
+            f"The profile shifts {g1.profile_shift:g} and {g2.profile_shift:g} are too "
+            f"{'large' if g2.is_internal else 'negative'} for {g1.teeth} and {abs(g2.teeth)} teeth to "
+            f"mesh at any centre distance: {'lower' if g2.is_internal else 'raise'} one of them."
         )
     return inverse_involute(value)
 
 
 def working_pressure_angle_from_centre(g1: GearGeometry, g2: GearGeometry, centre_distance: float) -> float:
-    """a_wt (rad) at a centre distance (m): cos a_wt = (r_b1 + r_b2) / a_w; AnalysisError if the bases overlap."""
+    """a_wt (rad) at a centre distance (m, negative in a ring): cos a_wt = (r_b1 + r_b2) / a_w.
+
+    Raises:
+        AnalysisError: a distance below the sum of the base radii, of a ring below their difference.
+    """
     _require_mates(g1, g2)
     least = g1.base_radius + g2.base_radius
-    if not least < centre_distance < math.inf:
+    if not abs(least) < g2.sign * centre_distance < math.inf:
+        what = "have a difference of" if g2.is_internal else "add up to"
         raise AnalysisError(
-            f"A centre distance of {1e3 * centre_distance:.6g} mm is impossible for gears whose base radii add up to "
-            f"{1e3 * least:.6g} mm: give a larger one."
+            f"A centre distance of {1e3 * abs(centre_distance):.6g} mm is impossible for gears whose base radii {what} "
+            f"{1e3 * abs(least):.6g} mm: give a larger one."
         )
     return math.acos(least / centre_distance)
 
@@ -75,10 +87,10 @@ def profile_shift_sum(g1: GearGeometry, g2: GearGeometry, centre_distance: float
 
 @dataclass(frozen=True)
 class PairGeometry:
-    """A parallel-axis pair of external gears at its centre distance, one helix; lengths in m, angles in rad.
+    """A parallel-axis pair of gears at its centre distance, one helix; lengths in m, angles in rad.
 
     Attributes:
-        centre_distance: a_w.
+        centre_distance: a_w, negative of a pinion in a ring.
         working_transverse_pressure_angle: a_wt.
         working_helix_angle: b_w, at the working pitch circles.
         base_helix_angle: b_b.
@@ -87,7 +99,7 @@ class PairGeometry:
         start_of_contact: SAP, where the tip of gear 2 meets the flank: xi on the line of action from the pitch point,
             positive from the base tangent point of gear 1 towards that of gear 2.
         end_of_contact: EAP, where the tip of gear 1 leaves, as xi.
-        interference: whether a tip reaches past the base tangent point of its mate.
+        interference: whether a tip reaches past the base tangent point of its mate; the flank of a ring has none on this line.
         transverse_backlash: j_wt, an arc at the working pitch circles; negative where the teeth would have to overlap.
     """
 
@@ -114,23 +126,26 @@ class PairGeometry:
         return transverse * math.cos(self.base_helix_angle)
 
     def active_root_diameters(self, g1: GearGeometry, g2: GearGeometry) -> tuple[float, float]:
-        """d_Nf of both gears (m): where contact with the mate's tip begins; the base diameter with interference."""
+        """d_Nf of both gears (m): where contact with the mate's tip begins; the base diameter with interference.
+
+        That of a ring is negative as all its diameters.
+        """
         tangent = math.tan(self.working_transverse_pressure_angle)
         first = max(g1.base_radius * tangent + self.start_of_contact, 0.0)
-        second = max(g2.base_radius * tangent - self.end_of_contact, 0.0)
-        return 2.0 * math.hypot(g1.base_radius, first), 2.0 * math.hypot(g2.base_radius, second)
+        second = max(g2.sign * (g2.base_radius * tangent - self.end_of_contact), 0.0)
+        return 2.0 * math.hypot(g1.base_radius, first), 2.0 * g2.sign * math.hypot(g2.base_radius, second)
 
 
 def _path_beyond_pitch_point(g: GearGeometry, angle: float) -> float:
     """Length of action (m) from the pitch point to where the tip circle of g cuts the line of action at angle a_wt."""
     tip = 0.5 * g.effective_tip_diameter
-    if tip <= g.base_radius:
+    if abs(tip) <= abs(g.base_radius):
         raise AnalysisError(
-            f"The tip diameter of {2e3 * tip:.6g} mm is not above the base diameter of {2e3 * g.base_radius:.6g} mm: "
+            f"The tip diameter of {2e3 * abs(tip):.6g} mm is not above the base diameter of {2e3 * abs(g.base_radius):.6g} mm: "
             "there is no flank to mesh with."
         )
     # sqrt(r_a^2 - r_b^2) as a product, which keeps its digits for a short flank.
-    return math.sqrt((tip - g.base_radius) * (tip + g.base_radius)) - g.base_radius * math.tan(angle)
+    return g.sign * math.sqrt((tip - g.base_radius) * (tip + g.base_radius)) - g.base_radius * math.tan(angle)
 
 
 def pair_geometry(
@@ -157,8 +172,8 @@ def pair_geometry(
     start = -_path_beyond_pitch_point(g2, angle)
     if end <= start:
         raise AnalysisError(
-            f"At a centre distance of {1e3 * distance:.6g} mm the teeth don't meet: "
-            "reduce it, or increase the tip diameters."
+            f"At a centre distance of {1e3 * abs(distance):.6g} mm the teeth don't meet: "
+            f"{'increase' if g2.is_internal else 'reduce'} it, or make the teeth higher at their tips."
         )
     # The lead is the same at every cylinder, so tan b grows with its radius: d_w / d = cos a_t / cos a_wt.
     stretch = math.cos(g1.transverse_pressure_angle) / math.cos(angle)
@@ -171,7 +186,8 @@ def pair_geometry(
         overlap_ratio=width * math.sin(g1.helix_angle) / (math.pi * g1.normal_module),
         start_of_contact=start,
         end_of_contact=end,
-        interference=-start > g1.base_radius * math.tan(angle) or end > g2.base_radius * math.tan(angle),
+        interference=-start > g1.base_radius * math.tan(angle)
+        or (not g2.is_internal and end > g2.base_radius * math.tan(angle)),
         transverse_backlash=2.0 * distance * (involute(angle) - involute(free)),
     )
 

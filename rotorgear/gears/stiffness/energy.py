@@ -127,8 +127,13 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
     """Sum of all slices in contact over one mesh period; it does not depend on the load.
 
     Raises:
-        AnalysisError: interference, or teeth that can't be cut.
+        AnalysisError: a ring, interference, or teeth that can't be cut.
     """
+    if teeth.second.is_internal:
+        raise AnalysisError(
+            "the stiffness model 'potential_energy' has no ring with its teeth inside: its formulas are of external teeth; use "
+            "'iso', 'contact_line' or a number."
+        )
     if teeth.pair.interference:
         raise AnalysisError(
             "a tip reaches past the base tangent point of its mate (interference), where the tooth has no involute to "

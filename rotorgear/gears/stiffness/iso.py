@@ -4,7 +4,8 @@ q' = C1 + C2/z_n1 + C3/z_n2 + C4 x1 + C5 x1/z_n1 + C6 x2 + C7 x2/z_n2 + C8 x1^2 
 c' = c'_th C_M C_R C_B cos b,   c_gamma_alpha = c' (0.75 eps_alpha + 0.25),   c_gamma_beta = 0.85 c_gamma_alpha
 C_R = 1 + ln(b_s / b) / (5 e^(s_R / 5 m_n)) for a web b_s and a rim s_R, 0.2 <= b_s/b <= 1.2, s_R/m_n >= 1; the mean of both
 gears. Below 100 N/mm of line load c' is reduced by (F_t K_A / b / 100)^0.25. The standard is for steel, E = 206 GPa; other
-moduli in proportion to the reduced modulus. Reference: ISO 6336-1:2006, clause 9, method B. The standard's unit is
+moduli in proportion to the reduced modulus. Of a ring 1/z_n2 = 0: the standard takes its teeth as those of a rack.
+Reference: ISO 6336-1:2006, clause 9, method B. The standard's unit is
 N/(mm um); here it is N/m^2 = 1e-9 N/(mm um).
 """
 
@@ -56,9 +57,9 @@ def iso_tooth_stiffness(
         gear_blank_factor: C_R, 1 for solid disks.
         modulus_ratio: E / 206 GPa, with E = 2 E1 E2 / (E1 + E2).
     """
-    pinion, wheel = (g1, g2) if g1.teeth <= g2.teeth else (g2, g1)
+    pinion, wheel = (g1, g2) if abs(g1.teeth) <= abs(g2.teeth) else (g2, g1)
     zn1 = pinion.virtual_teeth
-    zn2 = wheel.virtual_teeth
+    zn2 = math.inf if wheel.is_internal else wheel.virtual_teeth
     x1 = pinion.profile_shift
     x2 = wheel.profile_shift
     terms = (1.0, 1.0 / zn1, 1.0 / zn2, x1, x1 / zn1, x2, x2 / zn2, x1**2, x2**2)

@@ -38,7 +38,8 @@ class ToothBody:
 
     Attributes:
         youngs_modulus (Pa), poisson_ratio: of the teeth.
-        inner_radius: radius (m) of the bore, or inside of the rim.
+        inner_radius: radius (m) of the bore, or inside of the rim; of a ring with its teeth inside that of its outer surface,
+            0 where that is not known.
         web_share: thickness of the web over the face width of a helix; 1 for a solid disk.
         rim_thickness: of the rim below the root circle (m); None for a solid disk.
         blank: its sizes (m), for the body "wheel"; None where they are not known.

@@ -180,7 +180,15 @@ def compliance_key(
         bore_radius: where a ring is held (m); 0 for a solid shaft and gear.
         space: whether the model is three-dimensional.
         blank: of the gear (m), seen along its own face; None: a full disc of that bore.
+
+    Raises:
+        AnalysisError: a ring with its teeth inside.
     """
+    if geometry.is_internal:
+        raise AnalysisError(
+            "loaded teeth by finite elements are built for external gears, not for a ring with its teeth inside: use the "
+            "stiffness 'iso', 'contact_line' or a number."
+        )
     m = geometry.normal_module
     tip = geometry.effective_tip_diameter / m
     unit = replace(

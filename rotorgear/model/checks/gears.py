@@ -27,7 +27,7 @@ _LARGEST_PRESSURE_ANGLE = 45.0
 _LARGEST_HELIX_ANGLE = 60.0
 _OF_TEETH = (
     *("normal_module", "normal_pressure_angle", "helix_angle", "profile_shift"),
-    *("addendum_factor", "dedendum_factor", "tip_diameter"),
+    *("addendum_factor", "dedendum_factor", "tip_diameter", "cutter_teeth"),
 )
 _OF_BEVELS = ("outer_module", "mean_normal_module", "spiral_angle")
 _BEVEL_KEYS = (
@@ -60,13 +60,7 @@ def gear_problems(model: Tables) -> Iterator[Problem]:
         if gear.is_bevel:
             yield from _bevel_gear(address, gear)
             continue
-        if gear.internal and (not gear.lumped or gear.body.mesh is not None or gear.integral):
-            got = "of a gear cut on its shaft" if gear.integral else "of a gear that is not given by its base radius"
-            wanted = "base_radius, transverse_pressure_angle, mass and moments of inertia (teeth may stand beside them)"
-            yield Problem(
-                f"{address}.internal", got, wanted, "teeth of rings by their module, and their bodies, are not built"
-            )
-            continue
+        yield from _ring(address, gear)
         for key in not_default(gear, _OF_BEVELS):
             yield Problem(f"{address}.{key}", "a value", _NOTHING, "kind = 'bevel' has it")
         if not gear.lumped:
@@ -81,6 +75,41 @@ def gear_problems(model: Tables) -> Iterator[Problem]:
             yield missing(f"{address}.width", "width of one helix, which with the gap places the two helices")
         if not inertia_is_given(gear) and gear.body.mesh is None:
             yield missing(f"{address}.mass", "mass and moments of inertia of a gear that is given by its base radius")
+
+
+def _ring(address: str, gear: Gear) -> Iterator[Problem]:
+    """What rings have that other gears have not, and the other way round."""
+    body = gear.body
+    if not gear.internal:
+        yield from told(
+            address,
+            ("cutter_teeth", gear.cutter_teeth, f"{gear.cutter_teeth}", _NOTHING, "of a ring; a rack cuts other gears"),
+            (
+                "body.outer_diameter",
+                body.outer_diameter,
+                millimetres(body.outer_diameter or 0.0),
+                _NOTHING,
+                "of a ring",
+            ),
+        )
+        return
+    rim = "the rim is all that a ring has around its teeth"
+    for key in not_default(
+        body, (key for key in type(body).model_fields if key not in ("rim_thickness", "outer_diameter"))
+    ):
+        yield Problem(f"{address}.body.{key}", "a value", _NOTHING, rim)
+    geometry = None if gear.width is None or gear.normal_pressure_angle <= 0.0 else gear.geometry
+    root = -geometry.root_diameter if geometry else 0.0
+    outer = body.outer_diameter
+    small = outer is not None and outer <= root
+    measured = gear.flank.topography is not None
+    yield from told(
+        address,
+        ("integral", gear.integral, "true of a ring", "false", "no shaft is inside a ring"),
+        ("body", outer and body.rim_thickness, "rim_thickness and outer_diameter", "one of the two"),
+        ("body.outer_diameter", small, millimetres(outer or 0.0), f"more than the root diameter, {millimetres(root)}"),
+        ("flank.topography", measured, "a file", _NOTHING, "measured flanks of rings are not read"),
+    )
 
 
 def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
@@ -176,11 +205,12 @@ def _teeth(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem
     keys = ("tip_relief", "tip_relief_diameter")
     yield from _pair(address, gear, keys, "where the tip relief starts", "amount of the tip relief at the tip circle")
     start = gear.tip_relief_diameter
-    low = 2.0 * outline.form_radius
+    form = 2.0 * outline.form_radius
     tip_form = outline.tip_form_roll_length(gear.flank.tip_rounding, gear.flank.tip_chamfer)
-    high = 2.0 * math.hypot(geometry.base_radius, tip_form)
-    if start is not None and not low <= start < high:
-        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
+    tip = 2.0 * math.hypot(geometry.base_radius, tip_form)
+    if start is not None and not (tip < start <= form if gear.internal else form <= start < tip):
+        side = "above" if gear.internal else "below"
+        limits = f"a diameter on the involute, from {millimetres(form)} to {side} {millimetres(tip)}"
         yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
     yield from _flank(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
     if gear.accuracy_grade is not None and gear.accuracy_grade > FLANK_CLASSES:
@@ -193,7 +223,7 @@ def _teeth(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem
     except RotorgearError as error:
         yield Problem(f"{address}.{key}", "", str(error))
         return
-    if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
+    if gear.ball_diameter is not None and geometry.sign * touched > geometry.effective_tip_diameter:
         wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
         yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
 
@@ -213,10 +243,11 @@ def _flank(address: str, flank: Flank, outline: ToothOutline, width: float) -> I
     keys = ("root_relief", "root_relief_diameter")
     yield from _pair(address, flank, keys, "where the root relief starts", "its amount")
     start = flank.root_relief_diameter
-    low = 2.0 * outline.form_radius
-    high = 2.0 * outline.tip_radius
-    if start is not None and not low < start <= high:
-        limits = f"a diameter on the involute, above {millimetres(low)} to {millimetres(high)}"
+    form = 2.0 * outline.form_radius
+    tip = 2.0 * outline.tip_radius
+    ring = outline.geometry.is_internal
+    if start is not None and not (tip <= start < form if ring else form < start <= tip):
+        limits = f"a diameter on the involute, {'below' if ring else 'above'} {millimetres(form)} to {millimetres(tip)}"
         yield Problem(f"{address}.root_relief_diameter", millimetres(start), limits)
     # Both ends of the face are relieved: beyond half of it they would overlap.
     keys = ("end_relief", "end_relief_length")
@@ -226,10 +257,10 @@ def _flank(address: str, flank: Flank, outline: ToothOutline, width: float) -> I
     deepest = _DEEPEST * outline.geometry.normal_module
     deep = f"up to {_DEEPEST:g} normal modules, {millimetres(deepest)}"
     depths = {key: getattr(flank, key) for key in DEPTHS}
-    teeth = outline.geometry.teeth
+    teeth = abs(outline.geometry.teeth)
     number = f"the number of a tooth, from '0' to '{teeth - 1}'"
     # A tip is rounded or chamfered, and keeps an involute and a tip.
-    height = outline.tip_radius - outline.form_radius
+    height = abs(outline.tip_radius - outline.form_radius)
     thickness = outline.tip_radius * 2.0 * float(outline.involute(outline.tip_roll_length)[1])
     most = 0.5 * thickness / outline.rounding_share
     either = "the tip is rounded or chamfered: give one of tip_rounding and tip_chamfer"

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
+from rotorgear.gears.geometry.interference import radial_distance, tip_distance
 from rotorgear.gears.geometry.pair import working_centre_distance
 from rotorgear.model.checks.axes import not_parallel
 from rotorgear.model.checks.bevel import bevel_problems
@@ -26,6 +27,8 @@ LUMPED_TOLERANCE = 5e-3
 _AXES = "parallel axes of cylindrical gears"
 # Fewer pitches than these are no body for a tooth and its neighbours.
 _LEAST_PITCHES = 3
+# Teeth that jam by less, in m along the normal, do so by the digits of a drawing: positions are rounded to a micrometre.
+_ROUNDED = 1e-6
 
 
 def mesh_settings(model: Tables) -> Iterator[Problem]:
@@ -209,9 +212,23 @@ def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Probl
         found += [] if line is None else _distance(address, mesh, line[0])
         if not found:
             _ = mesh.pair  # derived here, so that teeth that can't mesh are told now
+            found += _tips(address, mesh)
     except RotorgearError as error:
         found.append(Problem(address, "", str(error)))
     yield from found
+
+
+def _tips(address: str, mesh: MeshLayout) -> Iterator[Problem]:
+    """The tips of a pinion and its ring pass each other beside the line of action."""
+    pinion = mesh.pinion.geometry
+    ring = mesh.gear.geometry
+    if not mesh.is_internal or pinion is None or ring is None or mesh.pair is None:
+        return
+    least = -_ROUNDED - mesh.backlash.least / math.cos(pinion.normal_pressure_angle)
+    if (passed := tip_distance(pinion, ring, mesh.pair)) < least:
+        text = f"tips of '{mesh.pinion.name}' and '{mesh.gear.name}' that cut each other by {millimetres(-passed)}"
+        hint = f"{abs(ring.teeth)} teeth are few around {pinion.teeth}: take more, smaller addenda or another profile shift"
+        yield Problem(address, text, "tips that pass each other beside the mesh", hint)
 
 
 def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]:
@@ -220,7 +237,7 @@ def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]
     first = mesh.pinion.geometry
     second = mesh.gear.geometry
     if first and second:
-        wanted = working_centre_distance(first, second)
+        wanted = abs(working_centre_distance(first, second))
         slack = CENTRE_DISTANCE_TOLERANCE * first.normal_module
     else:
         angle = mesh.pinion.part.transverse_pressure_angle or mesh.gear.part.transverse_pressure_angle
@@ -247,8 +264,6 @@ def massless_gears(layout: Layout) -> Iterator[Problem]:
 
 # Less clearance between tip and root than this share of the module is worth a word (ISO 53 has 0.25).
 _LEAST_CLEARANCE = 0.1
-# Teeth that jam by less, in m along the normal, do so by the digits of a drawing: positions are rounded to a micrometre.
-_ROUNDED = 1e-6
 
 
 def mesh_findings(mesh: MeshLayout) -> Iterator[str]:
@@ -267,17 +282,21 @@ def mesh_findings(mesh: MeshLayout) -> Iterator[str]:
         (mesh.pinion.name, mesh.gear.name, first, second, active[0]),
         (mesh.gear.name, mesh.pinion.name, second, first, active[1]),
     ):
-        form = 2.0 * tooth_outline(g).form_radius
-        if not pair.interference and used < form * (1.0 - 1e-6):
+        form = 2.0 * g.sign * tooth_outline(g).form_radius
+        if not pair.interference and used < form - 1e-6 * abs(form):
+            change = "increase" if h.is_internal else "reduce"
             yield (
-                f"the tip of '{mate}' works down to diameter {1e3 * used:.6g} mm of '{own}', whose involute begins at "
-                f"{1e3 * form:.6g} mm: contact begins in the fillet; reduce the tip diameter of '{mate}'"
+                f"the tip of '{mate}' works down to diameter {1e3 * abs(used):.6g} mm of '{own}', whose involute begins at "
+                f"{1e3 * abs(form):.6g} mm: contact begins in the fillet; {change} the tip diameter of '{mate}'"
             )
         clearance = pair.centre_distance - 0.5 * (h.effective_tip_diameter + g.root_diameter)
         if clearance < _LEAST_CLEARANCE * g.normal_module:
             yield f"between the tip of '{mate}' and the root of '{own}' are only {1e3 * clearance:.3g} mm"
+    if second.is_internal and radial_distance(first, second, pair) < -_ROUNDED:
+        yield f"'{mesh.pinion.name}' can't be put into '{mesh.gear.name}' from inside, only along the axis: tips are in the way"
     if pair.total_contact_ratio < 1.0:
         yield f"total contact ratio {pair.total_contact_ratio:.3g} is below 1, the teeth lose contact"
     if mesh.backlash.least < -_ROUNDED:
         jam = f"{-1e6 * mesh.backlash.least:.3g} um along the flank normal"
-        yield f"the axes are too close: the teeth would jam by {jam}; give allowances, or move the axes apart"
+        far, move = ("far apart", "together") if second.is_internal else ("close", "apart")
+        yield f"the axes are too {far}: the teeth would jam by {jam}; give allowances, or move the axes {move}"

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, solid_blank
+from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, hollow_cylinder, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.model.layout.bevel import meeting, pair_of
 from rotorgear.model.parts.gear import BLANK, DEPTHS, Flank, Gear
@@ -53,7 +53,7 @@ class GearLayout:
         """r_b in m, given or from the teeth; of a bevel gear at its mean point."""
         if self.part.is_bevel:
             return self._bevel_numbers[0]
-        return self.geometry.base_radius if self.geometry else (self.part.base_radius or 0.0)
+        return abs(self.geometry.base_radius) if self.geometry else (self.part.base_radius or 0.0)
 
     @property
     def base_helix_angle(self) -> float:
@@ -109,6 +109,14 @@ class GearLayout:
             return self.part.body.bore
         return max(self.shaft_part.diameter_at(place.z) for place in self.places)
 
+    @property
+    def ring_diameter(self) -> float:
+        """Outer diameter (m) of a toothed ring: given, or by the rim around its roots; 0 where neither is."""
+        body = self.part.body
+        if body.rim_thickness is None or self.geometry is None:
+            return body.outer_diameter or 0.0
+        return 2.0 * body.rim_thickness - self.geometry.root_diameter
+
     @cached_property
     def wheel(self) -> ReducedWheel | None:
         """The elastic body of a gear with a mesh, reduced once and kept; None where it is rigid.
@@ -143,14 +151,23 @@ class GearLayout:
             return given_body(gear)
         if self.geometry is None or not gear.width:
             raise ValueError("mass and inertias, or teeth, module and width to compute them from")
-        helix = gear_blank(
-            self.geometry.reference_diameter,
-            self.bore,
-            gear.width,
-            self.material.density,
-            root_diameter=self.geometry.root_diameter,
-            **{key: getattr(gear.body, key) for key in BLANK},
-        )
+        if gear.internal:
+            # Its teeth count as a solid ring from the reference diameter on.
+            inside = -self.geometry.reference_diameter
+            if not self.ring_diameter:
+                raise ValueError(
+                    "body.rim_thickness or body.outer_diameter of the ring, or mass and moments of inertia"
+                )
+            helix = hollow_cylinder(self.ring_diameter, inside, gear.width, self.material.density)
+        else:
+            helix = gear_blank(
+                self.geometry.reference_diameter,
+                self.bore,
+                gear.width,
+                self.material.density,
+                root_diameter=self.geometry.root_diameter,
+                **{key: getattr(gear.body, key) for key in BLANK},
+            )
         if self.helices == 1:
             return helix
         steiner = helix.mass * gear.helix_offset**2
@@ -207,7 +224,7 @@ class GearLayout:
         outline = tooth_outline(geometry)
 
         def roll(diameter: float | None) -> float:
-            return math.sqrt(max(0.25 * (diameter or 0.0) ** 2 - geometry.base_radius**2, 0.0))
+            return geometry.sign * math.sqrt(max(0.25 * (diameter or 0.0) ** 2 - geometry.base_radius**2, 0.0))
 
         tip = outline.tip_form_roll_length(given.tip_rounding, given.tip_chamfer)
         grids: dict[int | None, FlankGrid] = {}
@@ -241,6 +258,8 @@ class GearLayout:
 
         rim = self.part.body.rim_thickness
         web = self.part.body.web_thickness
+        if self.part.internal:
+            return ToothBody(self.material.youngs_modulus, self.material.nu, 0.5 * self.ring_diameter, 1.0, rim)
         inner = 0.5 * self.bore
         if rim is not None and self.geometry is not None:
             inner = 0.5 * self.geometry.root_diameter - rim
@@ -249,7 +268,7 @@ class GearLayout:
 
     @property
     def blank(self) -> BlankShape:
-        """Rim, web and hub of one helix; a full disc where the file gives no rim."""
+        """Rim, web and hub of one helix of an external gear; a full disc where the file gives no rim."""
         given = self.part.body
         bore = 0.5 * self.bore
         if given.rim_thickness is None or given.web_thickness is None or self.geometry is None:

@@ -222,7 +222,9 @@ class MeshLayout:
         """
         if self.pinion.geometry is None or self.gear.geometry is None:
             return None
-        distance = self.centre_line[0] if self.centre_line else None
+        distance = None
+        if self.centre_line is not None:
+            distance = -self.centre_line[0] if self.is_internal else self.centre_line[0]
         return pair_geometry(self.pinion.geometry, self.gear.geometry, centre_distance=distance, width=self.width)
 
     def _toothed(self, lacking: str) -> tuple[GearGeometry, GearGeometry, PairGeometry]:

@@ -58,7 +58,12 @@ class GearBody(Part):
     """A gear's blank, for its mass and its compliance: rim, web and hub, or a finite-element mesh. What is left out is solid."""
 
     bore: si.NonNegativeLength | None = Field(None, description="bore; default: the shaft's diameter there")
-    rim_thickness: si.PositiveLength | None = Field(None, description="thickness of the rim below the tooth roots")
+    outer_diameter: si.PositiveLength | None = Field(
+        None, description="outer diameter of a ring, in place of its rim_thickness"
+    )
+    rim_thickness: si.PositiveLength | None = Field(
+        None, description="thickness of the rim below the tooth roots; of a ring all that is around them"
+    )
     web_thickness: si.PositiveLength | None = Field(
         None, description="thickness of the web along z, between rim and hub"
     )
@@ -102,7 +107,7 @@ class Gear(Part):
         description="spur, helical, herringbone or bevel (straight, Zerol and spiral)"
     )
     internal: Flag = Field(
-        False, description="whether it is a ring with its teeth inside; of a gear that is given by its base radius"
+        False, description="whether it is a ring with its teeth inside; its teeth and diameters are positive here"
     )
     teeth: Whole | None = Field(None, description="number of teeth")
     normal_module: si.PositiveLength | None = Field(None, description="normal module m_n")
@@ -133,6 +138,9 @@ class Gear(Part):
     tip_diameter: si.PositiveLength | None = Field(None, description="tip diameter; default: from addendum and shift")
     root_radius_factor: si.Ratio | None = Field(
         None, description="tip radius of the rack over m_n, which cuts the root fillet; default: that of ISO 53"
+    )
+    cutter_teeth: Whole | None = Field(
+        None, description="teeth of the pinion-type cutter of a ring; default: half of the ring's, at most 30"
     )
     tip_relief: si.NonNegativeLength = Field(
         0.0, description="linear tip relief C_a at the tip circle, normal to the flank"
@@ -180,19 +188,24 @@ class Gear(Part):
 
     @cached_property
     def geometry(self) -> GearGeometry | None:
-        """ISO 21771 geometry of a cylindrical gear given by its teeth; None for others or one with missing data."""
+        """ISO 21771 geometry of a cylindrical gear given by its teeth; None for others or one with missing data.
+
+        Teeth and diameters of a ring are negative there.
+        """
         if self.lumped or self.is_bevel or self.teeth is None or self.normal_module is None:
             return None
+        sign = -1 if self.internal else 1
         return GearGeometry(
-            teeth=self.teeth,
+            teeth=sign * self.teeth,
             normal_module=self.normal_module,
             normal_pressure_angle=self.normal_pressure_angle,
             helix_angle=self.helix_angle or 0.0,
             profile_shift=self.profile_shift,
             addendum_factor=self.addendum_factor,
             dedendum_factor=self.dedendum_factor,
-            tip_diameter=self.tip_diameter,
+            tip_diameter=None if self.tip_diameter is None else sign * self.tip_diameter,
             root_radius_factor=self.root_radius_factor,
+            cutter_teeth=self.cutter_teeth,
         )
 
     @property

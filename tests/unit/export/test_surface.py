@@ -24,6 +24,7 @@ def closed_shapes() -> dict[str, Surface]:
         "hollow cylinder": hollow_cylinder(2.0, 1.0, -1.0, 3.0, 12),
         "prism": prism(0.0),
         "prism with a hole": prism(0.7),
+        "prism in a cylinder": prism(5.0),
         "ball": ball(0.5, 12),
         "wedge": wedge(-1.0, -2.0, 0.5, 0.0, 1.0),
         "upright bar": beam(np.zeros(3), np.array([0.0, 0.0, 2.0]), 0.1),

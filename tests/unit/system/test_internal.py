@@ -198,11 +198,8 @@ def test_what_no_internal_pair_can_have_is_refused_by_name() -> None:
     one["shafts"]["planet_2"]["position"] = (0.0, 0.09)
     assert "meshes.planet_2_ring: got axes 90 mm apart, expected a centre distance of 100.5" in refused(one)
     one = star()
-    ring = one["gears"]["ring"]
-    for key in ("base_radius", "base_helix_angle", "transverse_pressure_angle"):
-        del ring[key]
-    ring |= {"normal_module": MODULE, "helix_angle": HELIX}
-    assert "gears.ring.internal: got of a gear that is not given by its base radius" in refused(one)
+    one["gears"]["ring"]["integral"] = True
+    assert "gears.ring.integral: got true of a ring" in refused(one)
     one = star()
     one["meshes"]["planet_1_ring"]["stiffness"] = "iso"
     assert "meshes.planet_1_ring.stiffness" in refused(one)
