@@ -66,7 +66,7 @@ class StateSpace(BetweenPlaces, kind="state_space"):
         for hz in np.asarray(frequencies, float).ravel():
             w = 2.0 * np.pi * hz
             Z = self.stiffness_matrix + 1j * w * self.velocity_terms - w**2 * self.mass_matrix
-            found.append(self.output_matrix @ la.solve(Z, self.input_matrix.astype(complex)))
+            found.append(self.output_matrix @ np.linalg.solve(Z, self.input_matrix.astype(complex)))
         return np.array(found)
 
     def tables(self) -> Iterator[Block]:

@@ -1,4 +1,4 @@
-"""Frequency responses between places: H(w) = P_o^T (K + i w C - w^2 M)^-1 P_i, each frequency factored and solved directly.
+"""Frequency responses between places: H(w) = P_o^T (K + i w C - w^2 M)^-1 P_i, by direct solutions, or in a basis of some.
 
 Ewins, Modal Testing, 2nd ed., chapter 2 (Research Studies Press 2000).
 """
@@ -6,6 +6,7 @@ Ewins, Modal Testing, 2nd ed., chapter 2 (Research Studies Press 2000).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,9 +24,10 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.old_names import renamed_arguments
-from rotorgear.progress import Progress, silent
+from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.laws import about_state, law_rows
+from rotorgear.solvers.frequency.frequency_range import FrequencyRange
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.bubble_errors import ForcedChanges
@@ -101,11 +103,12 @@ def frf(
         system = meshed(model, about, turns, float(hz[-1]), elements, aim)
         limit = damped_up_to(system, 2.0 * np.pi * float(hz[-1]))
         solved = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress)
-        receptance, bubble_change, residual, rounding = solved
+        receptance = solved.receptance
         progress(0.96, "error estimate")
-        estimate = receptance_error(system, turns, hz, receptance, bubble_change, (inputs, outputs), (limit, zeta))
-        if rounding > _ROUNDING:
-            estimate = max(estimate, rounding)
+        where = (inputs, outputs), (limit, zeta)
+        estimate = receptance_error(system, turns, hz, receptance, solved.bubble_change, *where)
+        if solved.error > _ROUNDING:
+            estimate = max(estimate, solved.error)
         if accuracy is None or estimate <= accuracy:
             break
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
@@ -117,7 +120,7 @@ def frf(
         **places,
         receptance=receptance,
         damping_ratio=zeta,
-        residual=residual,
+        residual=solved.residual,
         error_estimate=estimate,
         dofs=system.n,
         discretisation=pieces(system),
@@ -129,7 +132,7 @@ def frf(
         ),
         warnings=(*few, *([] if zeta or system.damping(turns).nnz else [_UNDAMPED]), *([short] if short else [])),
         status=short or "success",
-        method="direct sparse LU at every frequency" + about_state(system.state),
+        method=solved.method + about_state(system.state),
     )
 
 
@@ -162,6 +165,27 @@ def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.nd
     return np.linspace(low, fmax, points)
 
 
+@dataclass(frozen=True)
+class _Solved:
+    """Receptances over frequencies.
+
+    Attributes:
+        receptance: (f, o, i).
+        bubble_change: what polynomials that the shaft elements lack would change of the receptance at each input, (f, i).
+        residual: the largest, relative to the forces inside.
+        error: of the solution, relative: that of a basis; or, if larger, what the rounding of M and K may change: a relative
+            change eps of their entries moves the receptance f^T q at the input by up to eps |q|^T (|K| + w^2 |M|) |q|, relative
+            to the largest receptance there.
+        method: in words.
+    """
+
+    receptance: np.ndarray
+    bubble_change: np.ndarray
+    residual: float
+    error: float
+    method: str
+
+
 def _solved(
     system: System,
     speed: float,
@@ -169,41 +193,38 @@ def _solved(
     places: tuple[Sequence[str], Sequence[str]],
     damping: tuple[float, float],
     progress: Progress,
-) -> tuple[np.ndarray, np.ndarray, float, float]:
+) -> _Solved:
     """Solve each frequency for forces at the first of the places and displacements at the second ones.
 
     `damping`: frequency in rad/s up to which modes have a damping ratio beside the damping of the model, and that ratio.
-
-    Returns:
-        Receptances (f, o, i); what polynomials that the shaft elements lack would change of the receptance at each input, (f, i);
-        the largest relative residual; and what the rounding of M and K may change: a relative change eps of their entries moves
-        the receptance f^T q at the input by up to eps |q|^T (|K| + w^2 |M|) |q|; it is relative to the largest receptance there.
     """
     dynamics = damped_plant(system, speed, *damping).dynamics(speed)
     inputs, outputs = (moving_rows(system, names) for names in places)
+    w = 2.0 * np.pi * hz
     f = inputs.T
     bubbles = ForcedChanges.of(system)
-    rows = []
-    changes = []
+    receptance = np.zeros((len(hz), len(outputs), len(inputs)), complex)
+    change = np.zeros((len(hz), len(inputs)))
     worst = 0.0
     moved = np.zeros(len(inputs))
     largest = np.zeros(len(inputs))
     size_K = abs(system.stiffness(speed))
     size_M = abs(system.mass)
     with single_thread(system.n):
-        for k, value in enumerate(hz):
-            if k % 10 == 0:
-                progress(0.05 + 0.9 * k / len(hz), f"{value:.5g} Hz")
-            w = 2.0 * np.pi * float(value)
-            q = dynamics.solve(w, f)
-            worst = max(worst, dynamics.relative_residual(w, f, q))
-            rows.append(outputs @ q)
-            changes.append(bubbles.change(speed, np.full(len(inputs), w), q, turning=False))
-            size = np.abs(q)
-            moved = np.maximum(moved, EPS * np.sum(size * (size_K @ size + w**2 * (size_M @ size)), axis=0))
-            largest = np.maximum(largest, np.abs(np.sum(f * q, axis=0)))
+        found = FrequencyRange(dynamics, w, f, part_of(progress, 0.05, 0.5))
+        for at, solutions in found.blocks():
+            progress(0.5 + 0.45 * at[0] / len(hz), f"{hz[at[0]]:.5g} Hz")
+            receptance[at] = outputs @ solutions
+            for k in range(len(inputs)):
+                q = solutions[:, :, k].T
+                worst = max(worst, dynamics.relative_residual(w[at], f[:, [k]], q))
+                change[at, k] = bubbles.change(speed, w[at], q, turning=False)
+                size = np.abs(q)
+                felt = EPS * np.sum(size * (size_K @ size + w[at] ** 2 * (size_M @ size)), axis=0)
+                moved[k] = max(moved[k], float(felt.max()))
+                largest[k] = max(largest[k], float(np.abs(f[:, k] @ q).max()))
     rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
-    return np.array(rows), np.array(changes), worst, rounding
+    return _Solved(receptance, change, worst, max(rounding, found.error), found.method)
 
 
 def receptance_error(
@@ -225,7 +246,7 @@ def receptance_error(
         return 0.0
     highest = highest_peaks(np.abs(receptance).reshape(len(hz), -1), 1)
     at = np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))
-    there = _solved(system.with_plan(all_finer(system)), speed, hz[at], places, damping, silent)[0]
+    there = _solved(system.with_plan(all_finer(system)), speed, hz[at], places, damping, silent).receptance
     return relative_change(there, receptance[at], np.abs(receptance).max(axis=0))
 
 

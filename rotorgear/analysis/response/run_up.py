@@ -9,6 +9,7 @@ from rotorgear.analysis.response.plant import Plant, Readings, gathered
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, part_of
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
+from rotorgear.solvers.frequency.frequency_range import largest_peaks
 from rotorgear.solvers.frequency.harmonic import Dynamics, orthonormal, projected, response_in_basis
 from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
 
@@ -154,7 +155,7 @@ class ModalSweep:
         """
         new = []
         error = 0.0
-        for s, order in _worst(np.array(residuals)):
+        for s, order in largest_peaks(np.array(residuals), _PER_ROUND):
             speed = float(speeds[s])
             w, q, _ = self.solve(speed)
             f = self.plant.loads(self.orders, speed)[1][:, [order]]
@@ -170,14 +171,6 @@ class ModalSweep:
             self._projection = None
         self.error = error
         return error
-
-
-def _worst(residuals: np.ndarray) -> list[tuple[int, int]]:
-    """(speed, order) where the residual of an order is larger than at the speeds beside it, the largest of these first."""
-    padded = np.pad(residuals, ((1, 1), (0, 0)), constant_values=-1.0)
-    peaks = np.argwhere((residuals >= padded[:-2]) & (residuals > padded[2:]))
-    ranked = sorted(peaks.tolist(), key=lambda at: -residuals[at[0], at[1]])
-    return [(s, o) for s, o in ranked[:_PER_ROUND]]
 
 
 def modal_sweep(

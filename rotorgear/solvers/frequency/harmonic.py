@@ -117,10 +117,14 @@ def projected(dynamics: Dynamics, X: np.ndarray) -> Pencil:
     return Pencil(M, D, K)
 
 
+def stiffness_in_basis(pencil: Pencil, w: np.ndarray) -> np.ndarray:
+    """Z (p, r, r) in a basis at p frequencies w (p,) in rad/s."""
+    return np.asarray(pencil.K[None] + 1j * w[:, None, None] * pencil.D[None] - (w**2)[:, None, None] * pencil.M[None])
+
+
 def response_in_basis(pencil: Pencil, w: np.ndarray, f: np.ndarray) -> np.ndarray:
     """Coordinates y (r, p) at p frequencies w (p,) in rad/s, each with its own projected right side f (r, p)."""
-    Z = pencil.K[None] + 1j * w[:, None, None] * pencil.D[None] - (w**2)[:, None, None] * pencil.M[None]
-    return np.asarray(np.linalg.solve(Z, f.T[:, :, None])[:, :, 0].T)
+    return np.asarray(np.linalg.solve(stiffness_in_basis(pencil, w), f.T[:, :, None])[:, :, 0].T)
 
 
 def orthonormal(X: np.ndarray, new: np.ndarray, scale: np.ndarray) -> np.ndarray:
