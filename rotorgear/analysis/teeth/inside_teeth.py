@@ -104,7 +104,11 @@ def root_stress(
 
 
 def _with_inside(teeth: ToothPair, ahead: int, what: str) -> ToothPair:
-    """One helix along the path of contact; AnalysisError where its model has no inside, and so not what is asked for."""
+    """One helix along the path of contact; AnalysisError for a ring, and where its model has no inside."""
+    if teeth.second.is_internal:
+        raise AnalysisError(
+            f"A ring with its teeth inside has no {what} to show: stresses in teeth are built for external gears."
+        )
     teeth = teeth if ahead > 0 else mirrored(teeth)
     if in_space(teeth)[1]:
         raise AnalysisError(

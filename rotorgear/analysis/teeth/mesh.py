@@ -242,7 +242,8 @@ def _result(
                 z=cycle.slices.z @ cycle.slices.weight,
                 length=cycle.slices.length / np.cos(teeth.pair.base_helix_angle),
                 corner=cycle.slices.corner,
-                roll=np.stack([roll @ cycle.slices.weight for roll in cycle.slices.roll], axis=-1),
+                # Those of a ring are negative inside.
+                roll=np.abs(np.stack([roll @ cycle.slices.weight for roll in cycle.slices.roll], axis=-1)),
                 force=cycle.force,
                 half_width=cycle.strip,
                 pressure=cycle.pressure,

@@ -92,13 +92,14 @@ class LineOfAction:
 
         # P on the tip circle, as an angle about its own axis from the centre line, and as seen from the mate's axis.
         angle = self.pressure_angle - math.atan(tip / base) - excess / base
-        radius = math.hypot(tip, base)
+        radius = math.copysign(math.hypot(tip, base), base)
         across = radius * np.sin(angle)
         along = self.centre_distance - radius * np.cos(angle)
 
         # The mate's involute through P. Below its base circle there is none: P is then taken to touch at its foot, t = 0.
         t = np.sqrt(np.maximum((across**2 + along**2) / mate**2 - 1.0, 0.0))
-        effective = mate * (self.pressure_angle + np.arctan2(across, along) + t - np.arctan(t))
+        seen = np.arctan2(math.copysign(1.0, mate) * across, math.copysign(1.0, mate) * along)
+        effective = mate * (self.pressure_angle + seen + t - np.arctan(t))
         return tip + excess + effective - self.length, mate * t
 
 

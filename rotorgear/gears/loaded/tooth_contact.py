@@ -119,7 +119,10 @@ def in_space(teeth: ToothPair) -> tuple[bool, bool]:
     flanks = (teeth.first_flank, teeth.second_flank)
     blanks = (teeth.first_body.blank, teeth.second_body.blank)
     # A web off the middle of the face tilts its rim.
-    on_one_side = any(b is not None and b.web_position and fe.body_of(b) == "wheel" for b in blanks)
+    kinds = teeth.bodies
+    on_one_side = any(
+        b is not None and b.web_position and kind == "wheel" for b, kind in zip(blanks, kinds, strict=True)
+    )
     varies = (
         teeth.first.helix_angle > 0.0
         or teeth.tilts
@@ -144,7 +147,7 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
     module = teeth.first.normal_module
     bodies = (teeth.first_body, teeth.second_body)
     keys = (gear_key(teeth, 0, space=space), gear_key(teeth, 1, space=space))
-    kinds = (fe.body_of(bodies[0].blank), fe.body_of(bodies[1].blank))
+    kinds = teeth.bodies
     compliances = []
     for i, name in enumerate(("pinion", "gear")):
 
@@ -177,9 +180,11 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
         slices=slices,
         patch=fe.patch_width,
         flanks=(teeth.first_flank, teeth.second_flank),
-        teeth=(teeth.first.teeth, teeth.second.teeth),
+        teeth=(abs(teeth.first.teeth), abs(teeth.second.teeth)),
         misalignment=teeth.misalignment,
-        body=fe.body_text(kinds, (module * keys[0].held_radius, module * keys[1].held_radius)),
+        body=fe.body_text(
+            kinds, (module * keys[0].held_radius, module * keys[1].held_radius), internal=teeth.second.is_internal
+        ),
         unknowns=sum(compliance.unknowns for compliance in compliances),
         warnings=_warnings(teeth, line),
     )
@@ -204,12 +209,12 @@ def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:
             "a tip reaches below the involute of its mate: contact is taken to end at the form circle, which leaves a transverse "
             f"contact ratio of {line.contact_ratio:.3f} of the {teeth.pair.transverse_contact_ratio:.3f} of the tip circles"
         )
-    for name, g, body in (("pinion", teeth.first, teeth.first_body), ("gear", teeth.second, teeth.second_body)):
-        chosen = teeth.fe.body_of(body.blank)
+    gears = (("pinion", teeth.first, teeth.first_body), ("gear", teeth.second, teeth.second_body))
+    for (name, g, body), chosen in zip(gears, teeth.bodies, strict=True):
         if chosen != "wheel":
             notes += web_left_out(name, g, body, teeth.width, f"body = '{chosen}'")
         if g.normal_tip_thickness < THIN_TIP * g.normal_module:
             notes.append(f"the teeth of the {name} are thinner than {THIN_TIP:g} normal modules at the tip")
-        if g.tool_tip_radius_factor >= g.full_radius_factor * (1.0 - 1e-12):
+        if not g.is_internal and g.tool_tip_radius_factor >= g.full_radius_factor * (1.0 - 1e-12):
             notes.append(f"{name}: the rack's tip is fully rounded, rho = {g.tool_tip_radius_factor:.3f} m_n")
     return tuple(notes)

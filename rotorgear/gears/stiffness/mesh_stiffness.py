@@ -23,7 +23,7 @@ from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import PairGeometry
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
-from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.gears.tooth_fe.settings import Body, ToothFe
 
 Definition = Literal["secant", "tangent"]
 # Positions nearer to each other than this, in mesh periods, are one.
@@ -85,9 +85,19 @@ class ToothPair:
     tilts: bool = False
 
     @property
+    def bodies(self) -> tuple[Body, Body]:
+        """What the teeth of both stand on.
+
+        Raises:
+            AnalysisError: a ring that is to be held at its outer surface, which is not known.
+        """
+        outer = self.second_body.inner_radius if self.second.is_internal else None
+        return self.fe.body_of(self.first_body.blank), self.fe.body_of(self.second_body.blank, outer)
+
+    @property
     def on_wheel(self) -> bool:
         """Whether a gear of the pair stands on a blank of rim, web and hub."""
-        return any(self.fe.body_of(body.blank) == "wheel" for body in (self.first_body, self.second_body))
+        return "wheel" in self.bodies
 
 
 @dataclass(frozen=True)

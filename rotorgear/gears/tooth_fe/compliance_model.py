@@ -71,7 +71,7 @@ def forecast(key: ComplianceKey, mesh: PitchMesh) -> tuple[float, float]:
     sizes = _joints(inside, kept, key.size.face)
     operations = sum(_eliminated(size, inside) for size in sizes)
     operations += (planes * flank) ** 3
-    operations += 4.0 * (key.arc or key.geometry.teeth) * (planes * cut) ** 3
+    operations += 4.0 * (key.arc or abs(key.geometry.teeth)) * (planes * cut) ** 3
     return _PROGRAM + _COPIES * 8.0 * max(sizes) ** 2, operations / (_SHARE * _speed())
 
 
@@ -135,7 +135,7 @@ class ComplianceKey:
     Attributes:
         geometry: of the gear, with a normal module of 1.
         size: of the mesh.
-        inner_radius: of the held circle.
+        inner_radius: of the held circle, around a ring that of its outer surface.
         poisson_ratio: of the material.
         width: of the face; 0 for a plane model.
         arc: pitches of a rim; 0 for a full ring or a wheel.
@@ -177,25 +177,17 @@ def compliance_key(
         fe: settings of the model.
         poisson_ratio: of the material.
         width: of the face (m).
-        bore_radius: where a ring is held (m); 0 for a solid shaft and gear.
+        bore_radius: where a ring is held (m), one with its teeth inside at its outer surface; 0 for a solid shaft and gear.
         space: whether the model is three-dimensional.
         blank: of the gear (m), seen along its own face; None: a full disc of that bore.
-
-    Raises:
-        AnalysisError: a ring with its teeth inside.
     """
-    if geometry.is_internal:
-        raise AnalysisError(
-            "loaded teeth by finite elements are built for external gears, not for a ring with its teeth inside: use the "
-            "stiffness 'iso', 'contact_line' or a number."
-        )
     m = geometry.normal_module
     tip = geometry.effective_tip_diameter / m
     unit = replace(
         geometry, normal_module=1.0, tip_diameter=_rounded(tip), profile_shift=_rounded(geometry.profile_shift)
     )
-    root = 0.5 * unit.root_diameter
-    body = fe.body_of(blank)
+    root = 0.5 * abs(unit.root_diameter)
+    body = fe.body_of(blank, bore_radius if geometry.is_internal else None)
     wheel: BlankShape | None = None
     if body == "wheel":
         shape = blank or solid_blank(bore_radius)
@@ -203,6 +195,8 @@ def compliance_key(
             root
         )  # a core that is held where shaft and gear are one
         inner = _seat_radius(wheel, root)
+    elif geometry.is_internal:
+        inner = bore_radius / m if body == "ring" else root + fe.rim_thickness
     elif body == "ring":
         inner = bore_radius / m if bore_radius > 0.0 else _LEAST_BORE * root
     else:
@@ -281,7 +275,7 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
             )
         progress(0.0, f"teeth in space, about {seconds:.0f} s and {1e-9 * memory:.1f} GB")
     height = np.linspace(-0.5 * key.width, 0.5 * key.width, 2 * key.size.face + 1) if key.width else np.zeros(1)
-    teeth = key.geometry.teeth if key.arc == 0 else key.arc
+    teeth = key.arc or abs(key.geometry.teeth)
     reach = min(REACH, (teeth - 1) // 2)
     if key.blank is not None:
         wheel = sector_of(key, mesh, part_of(progress, 0.0, 0.6))
@@ -328,10 +322,10 @@ def wind_up(key: ComplianceKey) -> float:
     """
     g = key.geometry
     arm = g.base_radius * math.cos(g.base_helix_angle)
-    root = 0.5 * g.root_diameter
+    root = 0.5 * abs(g.root_diameter)
     if key.blank is None:
         shear = 0.5 / (1.0 + key.poisson_ratio)
-        twist = (1.0 / key.inner_radius**2 - 1.0 / root**2) / (4.0 * math.pi * shear)
+        twist = g.sign * (1.0 / key.inner_radius**2 - 1.0 / root**2) / (4.0 * math.pi * shear)
         return arm**2 * twist / (key.width or 1.0)
     # A plane model has the force of a unit width.
     return (

@@ -5,6 +5,8 @@ curve through the middle of both fillets. Quadratic elements (9 nodes) are built
 nodes are then mapped onto the tooth, so their edges follow involute and trochoid. Lengths in normal modules.
 
 The tooth stands on the +y axis, its loaded flank at x > 0; columns and rows are graded towards that flank and to its ends.
+That of a ring stands on the -y axis, its tip up, too: then all of its formulas are those of an external tooth with z and radii
+below 0, and "inner" is the circle around it where its rim ends.
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ class PitchMesh:
         left: nodes on the left cut by rising radius, without the inner circle.
         right: nodes on the right cut, likewise.
         flank: (k,) nodes of the loaded involute by rising roll length.
-        roll: (k,) roll lengths of the flank nodes.
+        roll: (k,) roll lengths of the flank nodes, with the sign of z.
         normal: (k, 2) outward unit normals at the flank nodes.
     """
 
@@ -55,7 +57,7 @@ class PitchMesh:
 
     @property
     def pitch_angle(self) -> float:
-        """2 pi / z (rad)."""
+        """2 pi / z (rad): clockwise to the next tooth, on the side of the loaded flank."""
         return 2.0 * math.pi / self.outline.geometry.teeth
 
     @property
@@ -86,7 +88,12 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
         AnalysisError: the inner circle lies outside the root circle, or cells would turn over.
         MissingExtraError: scikit-fem is not installed.
     """
-    if not 0.0 < inner_radius < outline.root_radius:
+    if outline.geometry.is_internal and not outline.root_radius < inner_radius < math.inf:
+        raise AnalysisError(
+            f"The outer radius of the ring's body, {inner_radius:.4g} normal modules, must be above the root radius, "
+            f"{outline.root_radius:.4g}."
+        )
+    if not outline.geometry.is_internal and not 0.0 < inner_radius < outline.root_radius:
         raise AnalysisError(
             f"The inner radius of the gear's body, {inner_radius:.4g} normal modules, must lie between 0 and the root radius, "
             f"{outline.root_radius:.4g}."
@@ -111,8 +118,9 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
     flank = _on(lattice, (lattice[:, 0] == 2 * (size.land + size.tooth)) & (lattice[:, 1] >= low), 1)
     roll = flank_rolls(outline, size)
 
-    # The normal of an involute is tangent to the base circle, at the angle eta_b - xi / r_b from the tooth's middle.
-    normal_angle = outline.base_half_angle - roll / outline.geometry.base_radius
+    # The normal of an involute is tangent to the base circle, at the angle eta_b -+ xi / r_b from the tooth's middle.
+    sign = outline.geometry.sign
+    normal_angle = outline.base_half_angle - sign * roll / outline.geometry.base_radius
     pitch = PitchMesh(
         outline=outline,
         points=points,
@@ -123,7 +131,7 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
         right=_on(lattice, (lattice[:, 0] == 2 * size.columns) & (lattice[:, 1] > 0), 1),
         flank=flank,
         roll=roll,
-        normal=np.stack([np.cos(normal_angle), -np.sin(normal_angle)], -1),
+        normal=np.stack([np.cos(normal_angle), -sign * np.sin(normal_angle)], -1),
         mesh=mesh,
     )
 

@@ -3,7 +3,8 @@
 Bodies. "rim": an arc of seven pitches, held at its end cuts and on a circle three normal modules below the root, so the approach
 is measured against that circle. "ring": all pitches on a full disc of the face's width, held at the bore or inside of the rim.
 "wheel": all pitches on their blank of rim, web and hub, held at the bore. Where nothing is said, a gear with rim and web is a
-wheel, and any other one a rim.
+wheel, and any other one a rim. A ring with its teeth inside is held at its outer surface, as a "ring", where that is known, else
+as a "rim" at a circle around its teeth.
 """
 
 from __future__ import annotations
@@ -67,8 +68,19 @@ class ToothFe:
         """c_0 in normal modules."""
         return self.patch or (0.2 if self.preset == "fine" else 0.3)
 
-    def body_of(self, blank: BlankShape | None) -> Body:
-        """What the teeth of one gear stand on."""
+    def body_of(self, blank: BlankShape | None, outer_radius: float | None = None) -> Body:
+        """What the teeth of one gear stand on; `outer_radius` (m) is that of a ring with its teeth inside, 0 if not known.
+
+        Raises:
+            AnalysisError: such a ring needs its outer surface.
+        """
+        if outer_radius is not None:
+            if self.body is not None and self.body != "rim" and not outer_radius:
+                raise AnalysisError(
+                    f"body = '{self.body}' holds a ring at its outer surface, which is not known: give body.rim_thickness or "
+                    "body.outer_diameter of the ring, or body = 'rim'."
+                )
+            return "ring" if outer_radius and self.body != "rim" else "rim"
         if self.body is not None:
             return self.body
         return "rim" if blank is None or blank.is_solid else "wheel"
@@ -79,8 +91,15 @@ class ToothFe:
             return False  # held just below the teeth, it has none
         return body == "wheel" if self.exclude_torsion is None else self.exclude_torsion
 
-    def body_text(self, bodies: tuple[Body, Body], held: tuple[float, float]) -> str:
-        """What the teeth of pinion and gear stand on and where that is held, in a line; held: radii of these circles (m)."""
+    def body_text(self, bodies: tuple[Body, Body], held: tuple[float, float], *, internal: bool = False) -> str:
+        """What the teeth of pinion and gear stand on and where that is held, in a line.
+
+        Args:
+            bodies: of both. held: radii of these circles (m). internal: whether the gear is a ring with its teeth inside.
+        """
+        if internal and bodies[1] == "ring":
+            pinion = self._one_body(bodies[0], f"{1e3 * held[0]:.5g}")
+            return f"pinion {pinion}; ring held at radius {1e3 * held[1]:.5g} mm, its outer surface"
         if bodies[0] == bodies[1]:
             return self._one_body(bodies[0], " and ".join(f"{1e3 * radius:.5g}" for radius in held))
         first, second = (self._one_body(body, f"{1e3 * radius:.5g}") for body, radius in zip(bodies, held, strict=True))

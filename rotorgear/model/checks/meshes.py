@@ -81,8 +81,12 @@ def _wind_up(address: str, mesh: MeshLayout, others: list[MeshLayout]) -> Iterat
     if not mesh.has_loaded_teeth:
         return
     fe = mesh.teeth.fe
-    for gear in mesh.gears:
-        body = fe.body_of(gear.blank)
+    try:
+        bodies = mesh.teeth.bodies
+    except RotorgearError as error:
+        yield Problem(f"{address}.tooth_fe", "", str(error))
+        return
+    for gear, body in zip(mesh.gears, bodies, strict=True):
         if gear.part.integral and body == "wheel" and fe.excludes_torsion(body):
             got = f"a wheel that winds up against its bore, of gear '{gear.name}', which is cut on its shaft"
             wanted = "another body or exclude_torsion = false, or integral = false for the gear"

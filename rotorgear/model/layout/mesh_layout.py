@@ -412,9 +412,11 @@ class MeshLayout:
         if not self.has_loaded_teeth:
             return ()
         fe = self.teeth.fe
-        # Teeth that are cut on their shaft have no bore to turn against.
-        bodies = [(gear, fe.body_of(gear.blank)) for gear in self.gears if not gear.part.integral]
-        return tuple(gear for gear, body in bodies if body == "wheel" and fe.excludes_torsion(body))
+        # Teeth that are cut on their shaft have no bore to turn against, nor have rings.
+        bodies = zip(self.gears, self.teeth.bodies, strict=True)
+        return tuple(
+            gear for gear, body in bodies if not gear.part.integral and body == "wheel" and fe.excludes_torsion(body)
+        )
 
     def check_rims(self) -> None:
         """Loaded teeth on an elastic body are held where its rim is: below, its mesh gives, above the elements of the teeth.

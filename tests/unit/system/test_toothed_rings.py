@@ -160,7 +160,6 @@ def test_what_a_ring_has_not_is_refused_by_name() -> None:
     assert "gears.sun.cutter_teeth" in refused(with_gear("sun", cutter_teeth=20))
     assert "can't hold a pinion" in refused(with_gear("sun", teeth=80))
     assert "'potential_energy' has no ring" in refused_stiffness("potential_energy")
-    assert "not for a ring with its teeth inside" in refused_stiffness("tooth_fe")
 
 
 def with_gear(name: str, **change: Any) -> dict[str, Any]:
@@ -189,3 +188,38 @@ def test_tips_that_cut_each_other_are_an_error_and_a_pinion_that_only_goes_in_al
     tables["shafts"]["ring"]["position"] = (0.01, 0.02 - 0.015)
     assert any("only along the axis" in text for text in rg.gear(rg.Model(**tables)).meshes[0].warnings)
     assert not any("only along the axis" in text for text in rg.gear(rg.Model(**toothed())).meshes[0].warnings)
+
+
+def with_loaded_teeth(**mesh: Any) -> dict[str, Any]:
+    """The tables with loaded teeth."""
+    tables = toothed()
+    pair = tables["meshes"]["pair"]
+    del pair["transmission_error"]
+    pair |= {"stiffness": "tooth_fe", "tooth_fe": {"preset": "preview"}} | mesh
+    return tables
+
+
+def test_loaded_teeth_of_a_ring_carry_it_in_the_rotor_model() -> None:
+    model = rg.Model(**with_loaded_teeth())
+    teeth = rg.mesh(model)
+    given = rg.Model(
+        **with_loaded_teeth(stiffness=teeth.mean_tangent_stiffness / math.cos(teeth.base_helix_angle) ** 2)
+    )
+    modes = [rg.modal(one, modes=9).frequency_hz for one in (model, given)]
+    assert np.allclose(*modes, rtol=5e-5, atol=1e-3)  # means over other positions of the period
+    still = rg.static(model)
+    # The mean approach of the loaded teeth, along the flank normal.
+    approach = teeth.mean_transmission_error * math.cos(teeth.base_helix_angle)
+    assert still.mesh_deflection[0] == pytest.approx(approach, rel=1e-3)
+    # Tilted shafts open the flanks at larger z by n (theta_gear x k - theta_pinion x k); e is +y.
+    alpha = model.layout.mesh("pair").pressure_angle
+    normal = math.cos(teeth.base_helix_angle) * np.array([-math.cos(alpha), math.sin(alpha)])
+    z = {"pinion": 0.0805, "ring": 0.0805}
+    tilt = {}
+    for shaft, at in z.items():
+        own = [i for i, name in enumerate(still.nodes.shaft) if name == shaft]
+        nearest = min(own, key=lambda i: abs(still.nodes.position[i][2] - at))
+        tilt[shaft] = np.array([still.displacement[nearest, 4], -still.displacement[nearest, 3]])
+    opened = 0.03 * normal @ (tilt["ring"] - tilt["pinion"])
+    assert still.faces[0].shaft_misalignment_m == pytest.approx(opened, rel=0.02)
+    assert abs(opened) > 1e-5
