@@ -198,7 +198,8 @@ class StaticResult(AboutEquilibrium, kind="static"):
     mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
     assembly: tuple[LoopAssembly, ...] = of("how closed loops go together", "", "loop", record=LoopAssembly)
     imbalance: float = of(
-        "largest force that is missing for equilibrium", note=" of the whole, relative to the sum of all"
+        "largest force that is missing for equilibrium",
+        note=" at a degree of freedom, relative to the largest of an element or load; moments beside moments",
     )
     error_estimate: float = of(
         "estimated relative discretisation error", note=": change of forces when every element is halved", form=".0e"

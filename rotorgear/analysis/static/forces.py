@@ -12,6 +12,12 @@ from rotorgear.model.layout.casings import BearingSeat
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.system.groups import ElementGroup
 
+# What a dof is met by: forces at x y z, moments at the rotations, and neither at inner coordinates of casings and gear bodies.
+_FORCE = 0
+_MOMENT = 1
+_INNER = 2
+_OF_MOTIONS = (_FORCE, _FORCE, _FORCE, _MOMENT, _MOMENT, _MOMENT)
+
 
 def forces_on_gears(equilibrium: Equilibrated) -> np.ndarray:
     """Force of the pinion on the gear at each contact, (c, 3), in the frame of the gear: the normal force along v."""
@@ -136,27 +142,48 @@ def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     return forces
 
 
-def inner_forces(equilibrium: Equilibrated) -> np.ndarray:
-    """Sum of the forces of all elements on all dofs, (a,), contacts with their gaps closed first."""
+def _of_elements(equilibrium: Equilibrated) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Dofs (e, d) and forces (e, d) on them of the elements of each group, contacts with their gaps closed first, and of laws."""
     q = equilibrium.system.dofs.expand(equilibrium.q)
-    total = np.zeros_like(q)
     closed = equilibrium.closed
     meshes = zip(equilibrium.force[closed], equilibrium.moment[closed], strict=True)
     for group in equilibrium.groups:
         if group.part.startswith("meshes."):
             assert group.matrices.strain is not None
             strains = group.matrices.strain[0]
-            np.add.at(total, group.dofs[0], np.array(next(meshes))[: len(strains)] @ strains)
+            yield group.dofs[:1], (np.array(next(meshes))[: len(strains)] @ strains)[None]
         else:
-            np.add.at(total, group.dofs, _inner(group, q))
+            yield group.dofs, _inner(group, q)
     for law in equilibrium.laws:
-        total += law.part.columns @ law.force
+        yield np.arange(len(q))[None], (law.part.columns @ law.force)[None]
+
+
+def inner_forces(equilibrium: Equilibrated) -> np.ndarray:
+    """Sum of the forces of all elements on all dofs, (a,)."""
+    total = np.zeros(equilibrium.system.dofs.transform.shape[0])
+    for dofs, force in _of_elements(equilibrium):
+        np.add.at(total, dofs, force)
     return total
 
 
 def imbalance(equilibrium: Equilibrated) -> float:
-    """Largest force that is missing at a free dof, relative to the largest force there is."""
-    inner = inner_forces(equilibrium)
-    rest = equilibrium.system.dofs.transform.T @ (inner - equilibrium.loads)
-    size = max(float(np.max(np.abs(inner), initial=0.0)), float(np.max(np.abs(equilibrium.loads), initial=0.0)))
-    return float(np.max(np.abs(rest), initial=0.0) / size) if size else 0.0
+    """Largest force that is missing at a free dof, relative to the largest of an element or load; moments, inner coordinates too.
+
+    A moment is small beside the largest moment, or beside the largest force at the size of the model.
+    """
+    system = equilibrium.system
+    T = system.dofs.transform
+    missing = -equilibrium.loads
+    most = np.abs(equilibrium.loads)
+    for dofs, force in _of_elements(equilibrium):
+        np.add.at(missing, dofs, force)
+        np.maximum.at(most, dofs, np.abs(force))
+    kind = np.full(len(most), _INNER)
+    kind[: 6 * len(system.nodes)] = np.tile(_OF_MOTIONS, len(system.nodes))
+    for name in system.model.casings:
+        seats = len(system.layout.casing(name).seats)
+        kind[system.nodes.of_casing(name)[: 6 * seats]] = np.tile(_OF_MOTIONS, seats)
+    sizes = np.array([most[kind == one].max(initial=0.0) for one in (_FORCE, _MOMENT, _INNER)])
+    sizes[_MOMENT] = max(sizes[_MOMENT], sizes[_FORCE] * np.ptp(system.positions(), axis=0).max())
+    beside = sizes[kind[np.asarray(abs(T).argmax(axis=0)).ravel()]]
+    return float(np.max(np.abs(T.T @ missing) / np.where(beside > 0.0, beside, 1.0), initial=0.0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,12 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.static.forces import imbalance
+from rotorgear.analysis.static.static import solved
 from rotorgear.elements.shaft_section import cowper
+from rotorgear.progress import silent
 from rotorgear.results.static import StaticResult
+from rotorgear.system.plan import Plan
 from tests.paths import ROOT
 
 DOWN = (0.0, -9.81, 0.0)
@@ -309,3 +314,23 @@ def test_a_result_comes_back_from_its_file(tmp_path: Path) -> None:
     back = rg.read(rg.save(result, tmp_path / "static.h5"))
     assert back.to_dict() == result.to_dict()
     assert np.array_equal(back.displacement, result.displacement)
+
+
+def test_a_moment_that_is_missing_is_not_hidden_by_large_forces() -> None:
+    # A moment is judged beside the largest moment, or the largest force at the size of the model: 5 kN at .3 m.
+    model = rg.loads(
+        "operation = { input_shaft = 's' }\n"
+        "shafts.s = { sections = [{ length = '300 mm', outer_diameter = '40 mm' }] }\n"
+        "bearings.a = { shaft = 's', at = 'start', stiffness = { radial = 1e8, axial = 1e8, torsion = 1e4 } }\n"
+        "bearings.b = { shaft = 's', at = 'end', stiffness = { radial = 1e8 } }\n"
+        "loads.w = { shaft = 's', at = '150 mm', force = [0.0, -5000.0, 0.0], moment = [20.0, 0.0, 0.0] }\n"
+    )
+    found = solved(model, Plan(2), None, silent)
+    assert imbalance(found) < 1e-10
+    missing = np.zeros_like(found.loads)
+    missing[3] = 1e-3
+    by_moment = imbalance(replace(found, loads=found.loads + missing))
+    assert by_moment == pytest.approx(1e-3 / (5000.0 * 0.3), rel=0.01)
+    missing[3] = 0.0
+    missing[0] = 1e-3
+    assert imbalance(replace(found, loads=found.loads + missing)) == pytest.approx(1e-3 / 5000.0, rel=0.01)
