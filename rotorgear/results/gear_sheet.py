@@ -279,7 +279,8 @@ def _gear_lines() -> Iterator[Column | str]:
     yield "name"
     for one in GearRow.declarations.values():
         if one.name == "helix_angle_deg":
-            yield from (one.name, Column("kind", "kind", left=False), Column("hand", "hand", left=False))
+            ring = Column("ring, teeth inside", "internal", where=lambda gear: gear.internal)
+            yield from (one.name, Column("kind", "kind", left=False), ring, Column("hand", "hand", left=False))
         elif one.name in allowed:
             yield Column("", one.name, where=lambda gear: bool(gear.lower_thickness_allowance_m))
         elif one.name == "tip_relief_m":

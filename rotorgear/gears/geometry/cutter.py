@@ -108,10 +108,19 @@ def cutter(ring: GearGeometry) -> Cutter:
     from scipy.optimize import brentq  # here: it loads much, and models without rings have no need of it
 
     teeth = ring.cutter_teeth or max(min(round(abs(ring.teeth) / 2), _MOST_TEETH), 1)
+    if teeth >= abs(ring.teeth):
+        raise AnalysisError(
+            f"A cutter of {teeth} teeth does not go into a ring of {abs(ring.teeth)}: give fewer cutter_teeth."
+        )
     remedy = "give cutter_teeth of another cutter, less dedendum or another profile shift"
     # No tip of its own, for the tip follows: r_a0 reaches the ring's root.
     plain = GearGeometry(teeth, ring.normal_module, ring.normal_pressure_angle, ring.helix_angle)
-    angle = working_pressure_angle_from_shifts(plain, ring)
+    try:
+        angle = working_pressure_angle_from_shifts(plain, ring)
+    except AnalysisError:
+        raise AnalysisError(
+            f"No cutter of {teeth} teeth makes this ring: its profile shift of {ring.profile_shift:g} is too large."
+        ) from None
     distance = (abs(ring.base_radius) - plain.base_radius) / math.cos(angle)
     tip = 0.5 * abs(ring.root_diameter) - distance
     if tip <= plain.base_radius or plain.transverse_thickness(2.0 * tip) <= 0.0:

@@ -257,6 +257,8 @@ def impossible_teeth(g: GearGeometry) -> list[str]:
     """Sentences on circles in the wrong order; any of them means that there is no tooth to speak of."""
     tip, root, base = (1e3 * d for d in (g.effective_tip_diameter, g.root_diameter, 2.0 * g.base_radius))
     if g.is_internal:
+        if tip >= 0.0:
+            return ["The teeth of the ring reach to its axis: use more teeth or a smaller addendum or profile shift."]
         if root >= tip:
             return [
                 f"The tip diameter of {-tip:.6g} mm is not below the root diameter of {-root:.6g} mm: there is no tooth."

@@ -98,16 +98,11 @@ def _ring(address: str, gear: Gear) -> Iterator[Problem]:
         body, (key for key in type(body).model_fields if key not in ("rim_thickness", "outer_diameter"))
     ):
         yield Problem(f"{address}.body.{key}", "a value", _NOTHING, rim)
-    geometry = None if gear.width is None or gear.normal_pressure_angle <= 0.0 else gear.geometry
-    root = -geometry.root_diameter if geometry else 0.0
-    outer = body.outer_diameter
-    small = outer is not None and outer <= root
     measured = gear.flank.topography is not None
     yield from told(
         address,
         ("integral", gear.integral, "true of a ring", "false", "no shaft is inside a ring"),
-        ("body", outer and body.rim_thickness, "rim_thickness and outer_diameter", "one of the two"),
-        ("body.outer_diameter", small, millimetres(outer or 0.0), f"more than the root diameter, {millimetres(root)}"),
+        ("body", body.outer_diameter and body.rim_thickness, "rim_thickness and outer_diameter", "one of the two"),
         ("flank.topography", measured, "a file", _NOTHING, "measured flanks of rings are not read"),
     )
 
@@ -191,6 +186,10 @@ def _teeth(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem
     except RotorgearError as error:
         yield Problem(address, "", str(error))
         return
+    outer = gear.body.outer_diameter
+    if outer is not None and outer <= 2.0 * outline.root_radius:
+        limit = f"more than the root diameter, {millimetres(2.0 * outline.root_radius)}"
+        yield Problem(f"{address}.body.outer_diameter", millimetres(outer), limit)
     allowance = gear.allowance
     thinner = "allowances make a tooth thinner, for the backlash"
     below = "a length not above the upper allowance"

@@ -70,8 +70,9 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             anywhere = layout.model.motions == ("torsion",) and not both.is_modelled
             faces = () if anywhere else _faces(address, both)
             found = [*_mates(address, pinion, gear), *faces, *_teeth(address, mesh, pinion, gear)]
-            yield from found or _axes(address, both, in_bending=layout.model.has("bending"))
-            if not found:
+            found = found or list(_axes(address, both, in_bending=layout.model.has("bending")))
+            yield from found
+            if not found:  # loaded teeth need axes on which they mesh
                 yield from counted_twice(address, both)
                 yield from _wind_up(address, both, [other for other in layout.meshes if other is not both])
 

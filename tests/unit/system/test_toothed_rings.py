@@ -159,6 +159,11 @@ def test_what_a_ring_has_not_is_refused_by_name() -> None:
     assert "gears.annulus.integral: got true of a ring" in refused(toothed(integral=True))
     assert "gears.sun.cutter_teeth" in refused(with_gear("sun", cutter_teeth=20))
     assert "can't hold a pinion" in refused(with_gear("sun", teeth=80))
+    far = with_loaded_teeth()
+    far["gears"]["annulus"]["teeth"] = 200
+    assert "meshes.pair: got axes 72.9 mm apart" in refused(far)
+    assert "profile shift of 1.4 is too large" in refused(toothed(profile_shift=1.4))
+    assert "reach to its axis" in refused(toothed(addendum_factor=40.0))
     assert "'potential_energy' has no ring" in refused_stiffness("potential_energy")
 
 

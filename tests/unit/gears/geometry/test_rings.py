@@ -156,6 +156,8 @@ def test_impossible_rings_say_why() -> None:
     assert "not below the root diameter" in check_gear(GearGeometry(-71, M, ALPHA, 0.0, tip_diameter=-0.23))[0]
     with pytest.raises(AnalysisError, match="can't hold a pinion of 80"):
         pair_geometry(GearGeometry(80, M, ALPHA, BETA), RING, 0.03)
+    with pytest.raises(AnalysisError, match="cutter of 80 teeth does not go into a ring of 71"):
+        tooth_outline(GearGeometry(-71, M, ALPHA, 0.0, cutter_teeth=80))
     with pytest.raises(AnalysisError, match="have a difference of"):
         pair_geometry(PINION, RING, 0.03, -0.05)
     with pytest.raises(AnalysisError, match="cutter_teeth of a larger cutter"):
