@@ -128,10 +128,13 @@ def _teeth(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Probl
     one = mesh.stagger and pinion.kind != "herringbone"
     named = isinstance(mesh.stiffness, str) and pinion.lumped
     wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
+    energy = mesh.stiffness == "potential_energy" and gear.internal and not gear.lumped
+    others = "'iso', 'contact_line', 'tooth_fe' or a number"
     yield from told(
         address,
         ("tilt", narrow, "true between gears without a width", "a width of both gears", face),
         ("stagger", one, f"{mesh.stagger:g}", "0, or herringbone gears", "one helix has nothing to lead"),
+        ("stiffness", energy, f"'{mesh.stiffness}' in a ring", others, "its formulas are of external teeth"),
         ("stiffness", named, f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth"),
     )
 

@@ -10,6 +10,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.export.solids import build_solids
+from rotorgear.export.teeth import tooth_phases
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.plots.gear_mesh import gear_contour
 from tests.unit.system.test_internal import refused
@@ -164,7 +165,11 @@ def test_what_a_ring_has_not_is_refused_by_name() -> None:
     assert "meshes.pair: got axes 72.9 mm apart" in refused(far)
     assert "profile shift of 1.4 is too large" in refused(toothed(profile_shift=1.4))
     assert "reach to its axis" in refused(toothed(addendum_factor=40.0))
-    assert "'potential_energy' has no ring" in refused_stiffness("potential_energy")
+    energy = toothed()
+    energy["meshes"]["pair"]["stiffness"] = "potential_energy"
+    assert "meshes.pair.stiffness: got 'potential_energy' in a ring, expected 'iso'" in refused(energy)
+    with pytest.raises(rg.AnalysisError, match="'potential_energy' has no ring"):
+        rg.mesh(rg.Model(**with_loaded_teeth()), stiffness="potential_energy")
 
 
 def with_gear(name: str, **change: Any) -> dict[str, Any]:
@@ -172,15 +177,6 @@ def with_gear(name: str, **change: Any) -> dict[str, Any]:
     tables = toothed()
     tables["gears"][name] |= change
     return tables
-
-
-def refused_stiffness(name: str) -> str:
-    """What a stiffness model says of the pair."""
-    tables = toothed()
-    tables["meshes"]["pair"]["stiffness"] = name
-    with pytest.raises(rg.RotorgearError) as error:
-        rg.gear(rg.Model(**tables))
-    return str(error.value)
 
 
 def test_tips_that_cut_each_other_are_an_error_and_a_pinion_that_only_goes_in_along_the_axis_a_word() -> None:
@@ -228,3 +224,21 @@ def test_loaded_teeth_of_a_ring_carry_it_in_the_rotor_model() -> None:
     opened = 0.03 * normal @ (tilt["ring"] - tilt["pinion"])
     assert still.faces[0].shaft_misalignment_m == pytest.approx(opened, rel=0.02)
     assert abs(opened) > 1e-5
+
+
+@pytest.mark.parametrize("first", ["sun", "annulus"])
+def test_drawn_teeth_of_a_pinion_stand_in_the_gaps_of_its_ring(first: str) -> None:
+    tables = toothed()
+    tables["shafts"]["ring"]["position"] = (0.01 + 0.0729 * math.cos(0.7), 0.02 + 0.0729 * math.sin(0.7))
+    tables["gears"] = {name: tables["gears"][name] for name in sorted(tables["gears"], key=first.__ne__)}
+    model = rg.Model(**tables)
+    phases = tooth_phases(model, {name: shaft.frame for name, shaft in model.shafts.items()})
+    rate = math.tan(model.layout.gear("sun").base_helix_angle)
+    shares = []
+    # The pitch point, away from the ring's axis, in the middle of the common face; a left-hand helix turns back towards +z.
+    for name, z in (("sun", 23), ("annulus", 71)):
+        gear = model.layout.gear(name)
+        middle = phases[name] - rate / gear.base_radius * (0.08 - gear.z)
+        shares.append((0.7 + math.pi - middle) / (2.0 * math.pi) * z)
+    # Both turn the same way: where a tooth of the pinion is so far back, so is a gap of the ring.
+    assert math.remainder(shares[0] - shares[1] - 0.5, 1.0) == pytest.approx(0.0, abs=1e-6)
