@@ -45,7 +45,7 @@ print(list(written)[:8])
 print([round(frequency, 2) for frequency in written["frequency_hz"]], written["whirl"])
 """
 _KEYS = """Every key of each command, with unit and meaning, is on the site, which `python docs/build_site.py` builds from the
-declarations in `rotorgear/results/`; a test compares them with what the commands write. `help(rg.ModalResult)` lists the fields
+declarations in `rotorgear/results/`. `help(rg.ModalResult)` lists the fields
 of a result in Python.
 """
 _COMMON = "These keys stand in the JSON of every command that analyses a model:\n"

@@ -4,44 +4,32 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
+from importlib import import_module
 
-from rotorgear.analysis.studies.casing import casing_convergence_study
-from rotorgear.analysis.studies.meshes import (
-    campbell_convergence_study,
-    convergence_study,
-    critical_convergence_study,
-    frf_convergence_study,
-    response_convergence_study,
-    state_space_convergence_study,
-    static_convergence_study,
-)
-from rotorgear.analysis.studies.motions import (
-    orbits_convergence_study,
-    sweep_convergence_study,
-    transient_convergence_study,
-)
-from rotorgear.analysis.studies.parts import bearing_convergence_study, mesh_convergence_study
+from rotorgear.analysis.common.stream import Stream, pieces
+from rotorgear.analysis.common.study import keeping
 from rotorgear.errors import AnalysisError
-from rotorgear.model.model import Model
+from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy, MeshConvergenceStudy, SweepConvergenceStudy
 
 AnyStudy = ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy
-# An analysis with a study of its own gets a line here; the command and its refusals follow from it.
-STUDIES: dict[str, Callable[..., AnyStudy]] = {
-    "modal": convergence_study,
-    "campbell": campbell_convergence_study,
-    "critical": critical_convergence_study,
-    "static": static_convergence_study,
-    "response": response_convergence_study,
-    "frf": frf_convergence_study,
-    "state-space": state_space_convergence_study,
-    "mesh": mesh_convergence_study,
-    "bearing": bearing_convergence_study,
-    "transient": transient_convergence_study,
-    "sweep": sweep_convergence_study,
-    "orbits": orbits_convergence_study,
-    "casing": casing_convergence_study,
+# An analysis with a study of its own gets a line here, the file of the study and its function; the command and its refusals
+# follow from it. All analyses together take a second to load: what is misspelt is refused before.
+STUDIES = {
+    "modal": ("meshes", "convergence_study"),
+    "campbell": ("meshes", "campbell_convergence_study"),
+    "critical": ("meshes", "critical_convergence_study"),
+    "static": ("meshes", "static_convergence_study"),
+    "response": ("meshes", "response_convergence_study"),
+    "frf": ("meshes", "frf_convergence_study"),
+    "state-space": ("meshes", "state_space_convergence_study"),
+    "mesh": ("parts", "mesh_convergence_study"),
+    "bearing": ("parts", "bearing_convergence_study"),
+    "transient": ("motions", "transient_convergence_study"),
+    "sweep": ("motions", "sweep_convergence_study"),
+    "orbits": ("motions", "orbits_convergence_study"),
+    "casing": ("casing", "casing_convergence_study"),
 }
 # Verbs that have no discretisation of their own, and where the errors of their numbers are stated.
 _ELSEWHERE = {
@@ -76,6 +64,7 @@ def accuracy(
     coupled: bool | None = None,
     finest: int | None = None,
     excite: str | None = None,
+    stream: Stream | None = None,
     progress: Progress = silent,
 ) -> AnyStudy:
     """Run an analysis of a model over a series of discretisations, each with its error and run time.
@@ -100,6 +89,7 @@ def accuracy(
         coupled: for casing: modes of the gearbox with it, not its own.
         finest: for casing: largest number of unknowns of the mesh to compare with (default: 300 000).
         excite: for orbits: name of the mesh whose stage excites alone.
+        stream: keeps rows while the study goes on (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
     Returns:
@@ -115,11 +105,22 @@ def accuracy(
     if analysis not in STUDIES:
         names = list(STUDIES)
         raise AnalysisError(f"--analysis: got '{analysis}', expected {', '.join(names[:-1])} or {names[-1]}")
-    given = {name: value for name, value in arguments.items() if value is not None and name != "analysis"}
-    taken = {name: inspect.signature(study).parameters for name, study in STUDIES.items()}
+    given = {
+        name: value for name, value in arguments.items() if value is not None and name not in ("analysis", "stream")
+    }
+    taken = {name: inspect.signature(study_by_name(name)).parameters for name in STUDIES}
     for name in given:
         if name not in taken[analysis]:
             homes = [other for other, parameters in taken.items() if name in parameters]
             spelled = _SPELLED.get(name, name).replace("_", "-")
             raise AnalysisError(f"--{spelled} belongs to --analysis {' or '.join(homes)}, not to {analysis}")
-    return STUDIES[analysis](**given)
+    asked = {name: value for name, value in given.items() if name not in ("model", "progress")}
+    with keeping(pieces(stream, {"model": model_hash(model), "run": f"{analysis} {asked}"})):
+        return study_by_name(analysis)(**given)
+
+
+def study_by_name(analysis: str) -> Callable[..., AnyStudy]:
+    """The study of an analysis in `STUDIES`."""
+    file, name = STUDIES[analysis]
+    study: Callable[..., AnyStudy] = getattr(import_module(f"rotorgear.analysis.studies.{file}"), name)
+    return study

@@ -89,7 +89,7 @@ def accuracy(call: Call) -> None:
     try:
         result = call.result()
     except Interrupted as stop:
-        show(call, stop.result)
+        show(call, stop.result, whole=False)
         raise
     show(call, result)
 
@@ -153,9 +153,10 @@ def export(call: Call) -> None:
 
 def report(call: Call) -> None:
     """One page about a model."""
-    with progress_bar("report", lines=True) as progress:
+    with call.stream() as stream, progress_bar("report", lines=True) as progress:
         asked = {"output": call["output"]} | call.arguments("report")
-        done = rg.report(call.source_path, **asked, progress=progress)
+        done = rg.report(call.source_path, **asked, stream=stream, progress=progress)
+    stream.close()
     write_json(call, done.to_dict())
     say(f"wrote {done.path}, {done.path.stat().st_size / 1e6:.2f} MB")
     for name, reason in done.missing.items():

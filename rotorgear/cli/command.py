@@ -32,6 +32,7 @@ _BLOCKS = {
     "save": Option("Save the result (HDF5), in blocks while it runs.", "path"),
     "resume": Option("Go on with an interrupted run of the same --save.", "flag"),
 }
+_SECTIONS = {"resume": Option("Go on with an interrupted run of the same --output.", "flag")}
 _CLUSTER = Option("Workers elsewhere: a dask scheduler such as tcp://host:8786, or local:N processes here.", "text")
 
 
@@ -49,6 +50,7 @@ class Command:
         positional: arguments that are given by place, beside the first one of the verb.
         table, picture: options that are handed to the table and to the picture of the result.
         needs: optional package -> what needs it, as a sentence begins with it.
+        kept_beside: the option that names the file beside which an interrupted run has its blocks.
         body: "module.function" below rotorgear.cli that does more than to run the verb and to show its result.
         group: under which `rotorgear --help` lists it.
     """
@@ -63,6 +65,7 @@ class Command:
     table: tuple[str, ...] = ()
     picture: tuple[str, ...] = ()
     needs: Mapping[str, str] = field(default_factory=dict)
+    kept_beside: str = "save"
     body: str = "show.analyse"
     group: str = ""
 
@@ -100,7 +103,7 @@ class Command:
         choices |= {name: option_of(name, None, own) for name, own in self.options.items() if name not in choices}
         shown = {name: SHOWS[name] for name in self.shows}
         if "stream" in self.arguments:
-            shown |= _BLOCKS
+            shown |= _BLOCKS if self.kept_beside == "save" else _SECTIONS
         return choices | {name: option_of(name, None, self.options.get(name, option)) for name, option in shown.items()}
 
     def function(self, body: Callable[[Command, dict[str, Any]], None]) -> Callable[..., None]:

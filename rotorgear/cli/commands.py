@@ -73,12 +73,13 @@ _GROUPS = {
             "One page about a model, with pictures (HTML)",
             options={"output": Option("The page to write (HTML).", "path", Path("report.html"), ("-o", "--output"))},
             needs={"jinja2": "A report", "matplotlib": "A report"},
+            kept_beside="output",
             body="bodies.report",
         ),
         Command(
             "accuracy",
             "Error against run time over finer and finer meshes",
-            shows=("json", "save", "plot"),
+            shows=("json", "plot"),
             options={
                 "modes": Option(least=1),
                 "finest": Option(least=1),

@@ -41,7 +41,7 @@ class Call:
             require("pyvista", "VTK output")
         if self["output"] is not None and command.name in ("update", "optimise"):
             require("tomlkit", "Writing a changed model file")
-        if self["resume"] and self["save"] is None:
+        if self["resume"] and self[command.kept_beside] is None:
             raise AnalysisError("--resume needs the --save of the run that was interrupted")
         for name, option in command.choices.items():
             # Those of verbs are the verbs' to judge.
@@ -156,11 +156,21 @@ class Call:
             if self["cluster"] is not None:
                 arguments["executor"] = stack.enter_context(rg.cluster(self["cluster"]))
             if "stream" in known and self["save"]:
-                stack.enter_context(_kept_blocks(self["save"]))
-                arguments["stream"] = rg.stream(self["save"], resume=self["resume"])
+                arguments["stream"] = stack.enter_context(self.stream())
             if "progress" in known:
                 arguments["progress"] = progress
             return getattr(rg, verb)(source, **arguments)
+
+    @contextmanager
+    def stream(self) -> Iterator[Any]:
+        """Where the run keeps its blocks; that they are kept is said where it is interrupted."""
+        beside = self[self.command.kept_beside]
+        try:
+            yield rg.stream(beside, resume=self["resume"])
+        except (KeyboardInterrupt, RotorgearError):
+            if any(Path(f"{beside}.parts").glob("chunk_*")):
+                say(f"the blocks that were done are kept in {beside}.parts: go on with --resume", err=True)
+            raise
 
 
 def _same(path: Path, other: str | Path) -> bool:
@@ -168,14 +178,3 @@ def _same(path: Path, other: str | Path) -> bool:
     with suppress(OSError, ValueError):
         return path.samefile(other)
     return False
-
-
-@contextmanager
-def _kept_blocks(save: Path) -> Iterator[None]:
-    """Say, where a run that saves blocks is interrupted, that those which were done are kept."""
-    try:
-        yield
-    except (KeyboardInterrupt, RotorgearError):
-        if any(Path(f"{save}.parts").glob("chunk_*")):
-            say(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
-        raise

@@ -28,7 +28,9 @@ def analyse(call: Call) -> None:
     show(call, call.result())
 
 
-def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn: Any = None) -> None:
+def show(
+    call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn: Any = None, *, whole: bool = True
+) -> None:
     """Print a result and write the files that were asked for.
 
     Args:
@@ -36,6 +38,7 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
         result: of its verb.
         beside: more results, which are printed below it and stand in its JSON under these keys.
         drawn: the one that --plot draws, where that is another.
+        whole: an interrupted one is not: the blocks behind it stay, for --resume.
 
     Raises:
         Exit: with code 1, where a transient ended early.
@@ -50,7 +53,7 @@ def show(call: Call, result: Any, beside: Mapping[str, Any] | None = None, drawn
     # First the file that holds everything.
     if call["save"] and not early:
         say(f"saved {rg.save(result, call['save'])}")
-        if "stream" in call.command.arguments:
+        if whole and "stream" in call.command.arguments:
             rg.stream(call["save"]).close()
     write_json(call, data)
     if call["plot"]:

@@ -13,11 +13,9 @@ import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from rotorgear.analysis.sweep.cluster import versions
 from rotorgear.errors import RotorgearError
-from rotorgear.export.hdf5_values import digest_of
+from rotorgear.export.hdf5_values import digest_of, get_value, put_value
 from rotorgear.files.bounds import MODEL, RESULT
 from rotorgear.files.hdf5 import new_hdf5, opened_hdf5
 from rotorgear.files.read import UnreadableError, read_text
@@ -38,7 +36,7 @@ class ChunkStream:
         self._count = 0
         self._run = ""
 
-    def begin(self, settings: dict[str, str]) -> list[dict[str, np.ndarray]]:
+    def begin(self, settings: dict[str, str]) -> list[dict[str, Any]]:
         """Make the folder, or read the chunks of the same run that are there.
 
         Raises:
@@ -80,20 +78,20 @@ class ChunkStream:
             scratch.write_text(json.dumps(mark), encoding="utf-8")
         return []
 
-    def write(self, chunk: dict[str, np.ndarray]) -> None:
-        """Write a chunk to a file of its own.
+    def write(self, chunk: dict[str, Any]) -> None:
+        """Write a chunk, of values that results may have, to a file of its own.
 
         Raises:
             WriteError: no space, no permission.
         """
-        with new_hdf5(self.folder / _chunk_name(self._count + 1)) as (_, file):
+        with new_hdf5(self.folder / _chunk_name(self._count + 1)) as (h5, file):
             for name, value in chunk.items():
-                file[name] = value
+                put_value(h5, file, name, value)
             file.attrs.update({"run": self._run, "number": self._count + 1})
             file.attrs["sha256"] = _digest(file)
         self._count += 1
 
-    def _read(self) -> list[dict[str, np.ndarray]]:
+    def _read(self) -> list[dict[str, Any]]:
         """The chunks from the first to the last; RotorgearError where one in between is missing: time would jump."""
         names = sorted(path.name for path in self.folder.glob("chunk_*.h5"))
         for number, name in enumerate(names, start=1):
@@ -115,7 +113,7 @@ class ChunkStream:
             remove_files(self.folder, [path.name for path in self.folder.iterdir() if _OWN.fullmatch(path.name)])
 
 
-def read_chunk(path: Path, run: str = "", number: int = 0) -> dict[str, np.ndarray]:
+def read_chunk(path: Path, run: str = "", number: int = 0) -> dict[str, Any]:
     """Read one chunk.
 
     Args:
@@ -134,7 +132,7 @@ def read_chunk(path: Path, run: str = "", number: int = 0) -> dict[str, np.ndarr
                 other = "is of another run"
             elif whole and number and file.attrs["number"] != number:
                 other = f"is chunk {file.attrs['number']} of the run under another name"
-            chunk = {name: file[name][()] for name in file} if whole else {}
+            chunk = {name: get_value(file[name]) for name in file} if whole else {}
     except (UnreadableError, OSError, KeyError, ValueError, TypeError, RuntimeError):
         whole = False
     if not whole or other:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from rotorgear.analysis.casing.casing import casing
 from rotorgear.analysis.common.describe_model import check
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.stream import Piece, unkept
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.response import HIGHEST as TOP
 from rotorgear.analysis.response.response import response
@@ -46,6 +48,7 @@ class Contents:
 
     model: Model
     progress: Progress = silent
+    piece: Piece = unkept
     results: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
@@ -54,17 +57,27 @@ class Contents:
     def run(self, name: str, begins: float, analysis: Callable[[], Any]) -> Any:
         """Run an analysis, which begins at a fraction of the whole; what the model lacks for it is kept as the reason why not."""
         self.progress(begins, name.replace("_", " "))
-        start = cpu_seconds()
-        try:
-            self.results[name] = analysis()
-        except RotorgearError as error:
-            self.missing[name] = str(error)
+        done = self.piece(partial(_section, analysis))
+        if "missing" in done:
+            self.missing[name] = done["missing"]
             return None
-        self.seconds[name] = cpu_seconds() - start
+        self.seconds[name] = done["seconds"]
+        self.results[name] = done["result"]
         return self.results[name]
 
 
-def computed(model: Model, rig: Any, grade: float, run_up: dict[str, Any], progress: Progress) -> Contents:
+def _section(analysis: Callable[[], Any]) -> dict[str, Any]:
+    start = cpu_seconds()
+    try:
+        result = analysis()
+    except RotorgearError as error:
+        return {"missing": str(error)}
+    return {"result": result, "seconds": cpu_seconds() - start}
+
+
+def computed(
+    model: Model, rig: Any, grade: float, run_up: dict[str, Any], progress: Progress, piece: Piece
+) -> Contents:
     """Run all analyses of a report.
 
     Args:
@@ -72,8 +85,9 @@ def computed(model: Model, rig: Any, grade: float, run_up: dict[str, Any], progr
         grade: balance quality grade in mm/s.
         run_up: modal_damping and fmax of `response`; without fmax orders go up to those of `_highest_order`.
         progress: callable that is told fraction and step.
+        piece: does the work of a section, or takes it over.
     """
-    found = Contents(model, progress)
+    found = Contents(model, progress, piece)
     speed = model.operating_speed
     found.run("check", 0.02, lambda: check(model))
     if model.meshes:

@@ -10,6 +10,7 @@ from typing import Any
 
 from rotorgear.analysis.common.recorded import setting
 from rotorgear.analysis.common.request import check_grade, check_modal_damping, check_request
+from rotorgear.analysis.common.stream import Stream, pieces
 from rotorgear.analysis.rig.rig_file import read_rig_lines
 from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
@@ -63,6 +64,7 @@ def report(
     modal_damping: float = 0.0,
     fmax: float | None = None,
     turntable: bool = False,
+    stream: Stream | None = None,
     progress: Progress = silent,
 ) -> Report:
     """Compute what a model has the parts for, and write it as one page: no network, readable without script, prints on A4.
@@ -77,6 +79,7 @@ def report(
         fmax: leave out orders of the run-up above this many Hz at its highest speed (default: above the third order of the
             fastest mesh).
         turntable: also put the modes into the page as solids that turn and move where a browser runs its script.
+        stream: keeps sections while the page is made (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
     Returns:
@@ -111,7 +114,9 @@ def report(
     from rotorgear.page.sections import RESULTS, sections
 
     start = cpu_seconds()
-    found = computed(built, lines, grade, {"modal_damping": modal_damping, "fmax": fmax}, progress)
+    asked = {"modal_damping": modal_damping, "fmax": fmax}
+    piece = pieces(stream, {"model": model_hash(built), "run": f"{lines} {grade} {asked}"})
+    found = computed(built, lines, grade, asked, progress, piece)
     found.seconds_of_all = cpu_seconds() - start
     numbers = {
         "analysis": "report",

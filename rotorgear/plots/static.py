@@ -59,7 +59,12 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
         axes += [forces, bearings, *along]
         for axis in along:
             _along_faces(axis, faces)
-    return np.array([*axes, *_deflections(bottom, result, shafts)])
+    axes += _deflections(bottom, result, shafts)
+    if not axes:
+        axes = [figure.subplots()]
+        axes[0].set_axis_off()
+        axes[0].text(0.5, 0.5, "no meshes, no bearings, and no shaft with a length", ha="center")
+    return np.array(axes)
 
 
 def _along_faces(axis: Any, faces: list[MeshFace]) -> None:

@@ -58,6 +58,7 @@ BY_NAME = {
     "rotorgear.cli.commands": "rotorgear.cli",
     "rotorgear.lazy": "rotorgear",  # the loader of the face, which is where its names are listed
     "rotorgear.results.kinds": "rotorgear.results",
+    "rotorgear.analysis.accuracy": "rotorgear.analysis",
     "rotorgear.analysis.sweep.cluster": "rotorgear",  # versions of packages, asked for on a worker
 }
 Arrows = dict[str, dict[str, int]]  # importing module -> imported module -> line

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.analysis.accuracy import STUDIES
+from rotorgear.analysis.accuracy import study_by_name
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 from rotorgear.analysis.studies.meshes import REFERENCE
 from tests.free_trains import chain, train
@@ -171,7 +171,7 @@ def of_analyses(*names: str) -> list[Study]:
     found = []
     for name, analysis, options in [case for case in CASES if not names or case[1] in names]:
         model = OWN[name]() if name in OWN else rg.load(ROOT / "models" / f"{name}.toml")
-        result = STUDIES[analysis](model, **options)
+        result = study_by_name(analysis)(model, **options)
         speed = options.get("speed", options.get("bearing", ""))
         at = f" at {speed if isinstance(speed, str) else f'{speed:.4g} rad/s'}" if speed else ""
         found.append(Study(name, analysis, at, result, (math.nan, math.nan)))

@@ -11,11 +11,14 @@ from __future__ import annotations
 import tracemalloc
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import KW_ONLY, dataclass, field
+from functools import partial
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from rotorgear.analysis.common.stream import Piece, unkept
 from rotorgear.cpu import compiling_seconds, cpu_seconds
 from rotorgear.errors import Interrupted, RotorgearError
 from rotorgear.model.model import Model
@@ -110,17 +113,20 @@ class Study(Generic[R]):
         return tuple(found)
 
     def _run(self, found: list[Rung], repeat: int, progress: Progress) -> None:
+        piece = keeper()
         for number, setting in enumerate(self.settings):
             progress(number / len(self.settings), setting.method)
             before = found[-1] if found and found[-1].family == setting.family else None
-            try:
-                result, seconds, memory = measured(lambda: self.run(setting.options), repeat)  # noqa: B023
-            except RotorgearError as error:
-                which = (setting.method, setting.family, setting.number)
-                found.append(Rung(*which, 0, np.nan, np.inf, np.inf, None, notes=(f"not reached: {error}",)))
-                continue
-            found.append(self._rung(setting, self.judge(result), seconds, memory, before))
+            found.append(piece(partial(self._of_setting, setting, repeat, before))["rung"])
         progress(1.0, "done")
+
+    def _of_setting(self, setting: Setting, repeat: int, before: Rung | None) -> dict[str, Rung]:
+        try:
+            result, seconds, memory = measured(lambda: self.run(setting.options), repeat)
+        except RotorgearError as error:
+            which = (setting.method, setting.family, setting.number)
+            return {"rung": Rung(*which, 0, np.nan, np.inf, np.inf, None, notes=(f"not reached: {error}",))}
+        return {"rung": self._rung(setting, self.judge(result), seconds, memory, before)}
 
     def _rung(self, setting: Setting, judged: Judged, seconds: np.ndarray, memory: int, before: Rung | None) -> Rung:
         error = float(np.max(judged.error, initial=0.0))
@@ -167,6 +173,24 @@ class Study(Generic[R]):
             effectivity_largest=None if ratio is None else float(ratio.max()),
             notes=tuple(notes),
         )
+
+
+_KEEPER: ContextVar[Piece] = ContextVar("keeper", default=unkept)
+
+
+@contextmanager
+def keeping(piece: Piece) -> Iterator[None]:
+    """Let studies keep their rows by `piece` while this lasts."""
+    token = _KEEPER.set(piece)
+    try:
+        yield
+    finally:
+        _KEEPER.reset(token)
+
+
+def keeper() -> Piece:
+    """What keeps the rows of a study now; it only does the work where nobody asked for more."""
+    return _KEEPER.get()
 
 
 @contextmanager

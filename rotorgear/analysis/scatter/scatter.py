@@ -23,6 +23,7 @@ from rotorgear.analysis.common.request import (
     share_of,
     speed_or_operating,
 )
+from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.scatter.family import basis_of, family_of, nominal_modes, whole_modes
 from rotorgear.analysis.scatter.gather import gathered
@@ -31,7 +32,6 @@ from rotorgear.analysis.sensitivity.forms import Floats, modes_of, with_shapes
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.state_at import linear_system, state_at
 from rotorgear.analysis.static.static import solved
-from rotorgear.analysis.transient.histories import Stream
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model, model_hash

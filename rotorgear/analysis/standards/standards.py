@@ -330,7 +330,9 @@ def _stability(model: Model, running: ModalResult) -> Iterator[RuleCheck]:
 
 def _interference(lines: tuple[ExcitationOrder, ...], operating: float, torsional: ModalResult) -> Iterator[RuleCheck]:
     """The torsional mode next to each line at the operating speed; undamped modes at standstill, as the rule asks."""
-    torsion = np.flatnonzero((torsional.kinetic_by_motion["torsion"] >= _MOSTLY) & ~torsional.rigid)
+    # A model without this motion has no such mode.
+    share = torsional.kinetic_by_motion.get("torsion", np.zeros(len(torsional)))
+    torsion = np.flatnonzero((share >= _MOSTLY) & ~torsional.rigid)
     limit = 100.0 * rules.LEAST_TORSIONAL_MARGIN
     for line in lines:
         hz = line.frequency_hz(operating)

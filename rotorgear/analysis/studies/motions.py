@@ -4,6 +4,7 @@ of a periodic motion."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import needed_speed
-from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
+from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study, keeper
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, outputs_of, range_of
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, change, equations_of, scale_of, statistics_of
 from rotorgear.analysis.orbits.verify import run_periods, settled
@@ -191,7 +192,8 @@ def sweep_convergence_study(
 
     plans = [(n, max(counts)) for n in steps] + [(max(steps) // 2, count) for count in counts[:-1]]
     progress(0.1, "reference")
-    finest = run(_FINER_STEPS * max(steps), max(counts))
+    piece = keeper()
+    finest = piece(lambda: {"sweep": run(_FINER_STEPS * max(steps), max(counts))})["sweep"]
     worst = int(np.argmax(finest.peak_to_peak[0].mean(axis=0)))
     kept = on_same_motion(finest.motion, finest.peak_to_peak[0, :, worst])
     kind = finest.motion[int(np.argmax(kept))]
@@ -206,14 +208,18 @@ def sweep_convergence_study(
     if not kept.all():
         why = f"{kept.sum()} of {starts} states end on the one that is compared, {kind}"
         notes = [*notes, Note("", "several motions coexist at this point", why)]
-    rungs = []
-    for number, (n, count) in enumerate(plans):
-        progress(0.2 + 0.8 * number / len(plans), f"{n} steps, {count} periods")
+
+    def rung_of(n: int, count: int) -> dict[str, SweepRung]:
         begun = cpu_seconds()
         runs = run(n, count)
         seconds = cpu_seconds() - begun
         kept = on_same_motion(runs.motion, runs.peak_to_peak[0, :, worst], like)
-        rungs.append(_rung_of(runs, worst, kept, (n, count, seconds / starts), truth))
+        return {"rung": _rung_of(runs, worst, kept, (n, count, seconds / starts), truth)}
+
+    rungs = []
+    for number, plan in enumerate(plans):
+        progress(0.2 + 0.8 * number / len(plans), f"{plan[0]} steps, {plan[1]} periods")
+        rungs.append(piece(partial(rung_of, *plan))["rung"])
     progress(1.0, "done")
     return SweepConvergenceStudy(
         model.title or "model",

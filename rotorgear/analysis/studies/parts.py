@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from rotorgear.analysis.bearing.state import (
 )
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_or_operating
-from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study, kept
+from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study, keeper, kept
 from rotorgear.analysis.static.solve import LawState
 from rotorgear.analysis.teeth.errors import error_parts
 from rotorgear.analysis.teeth.request import mesh_request, solve_helices
@@ -158,45 +160,47 @@ def mesh_convergence_study(
     runs.sort(key=lambda run: run[0] != "preset preview" if space else size_of(run[1]).elements)
     finest = sized(replace(teeth.fe, preset="fine"), _REFERENCE[space], modules)
     steps = len(runs) + 4
-    reference, exact, *_ = solved(replace(teeth, fe=finest), part_of(progress, 0.0, 4.0 / steps))
-    truth = _figures(exact)
+    piece = keeper()
+
+    def exact() -> dict[str, Any]:
+        problem, cycle, *_ = solved(replace(teeth, fe=finest), part_of(progress, 0.0, 4.0 / steps))
+        return {**{name: getattr(problem, name) for name in ("unknowns", "slices", "body")}, "figures": _figures(cycle)}
+
+    reference = piece(exact)
+    truth = reference["figures"]
     size = finest.mesh_size(modules, space=space)
     layers = f" in {size.face} layers" if size.face else ""
     words = (
-        f"{size.elements} elements a pitch{layers}, {reference.unknowns} dofs, {counted(reference.slices, 'slices')}; the same "
-        "elements and contact, only finer"
+        f"{size.elements} elements a pitch{layers}, {reference['unknowns']} dofs, {counted(reference['slices'], 'slices')}; "
+        "the same elements and contact, only finer"
     )
     rungs: list[MeshRung] = []
 
     def study(status: str = "success") -> MeshConvergenceStudy:
-        given = (request.mesh.name, reference.body, request.base_force)
+        given = (request.mesh.name, reference["body"], request.base_force)
         return MeshConvergenceStudy(model.title, *given, words, tuple(rungs), status=status)
+
+    def rung_of(name: str, pair: ToothPair, told: Progress) -> dict[str, MeshRung]:
+        problem, cycle, fe_seconds, contact_seconds = solved(pair, told)
+        figures = _figures(cycle)
+        estimate = None
+        if name.startswith("preset"):
+            # What an analysis with this preset states of one helix; its compliances may come from the disk.
+            one = replace(request, senses=(1,))
+            helices = solve_helices(one, pair, POSITIONS, judged=True)
+            parts = error_parts(one, pair, helices)
+            estimate = parts.total if parts else None
+        size = size_of(pair)
+        errors = MeshErrors(*(abs(here / there - 1.0) for here, there in zip(figures, truth, strict=True)))
+        seconds = (fe_seconds, contact_seconds)
+        return {
+            "rung": MeshRung(name, size.elements, size.face, problem.unknowns, *seconds, *figures, errors, estimate)
+        }
 
     with kept(rungs, len(runs), study):
         for number, (name, pair) in enumerate(runs):
             told = part_of(progress, (number + 4) / steps, (number + 5) / steps)
-            problem, cycle, fe_seconds, contact_seconds = solved(pair, told)
-            figures = _figures(cycle)
-            estimate = None
-            if name.startswith("preset"):
-                # What an analysis with this preset states of one helix; its compliances may come from the disk.
-                one = replace(request, senses=(1,))
-                helices = solve_helices(one, pair, POSITIONS, judged=True)
-                parts = error_parts(one, pair, helices)
-                estimate = parts.total if parts else None
-            rungs.append(
-                MeshRung(
-                    name,
-                    size_of(pair).elements,
-                    size_of(pair).face,
-                    problem.unknowns,
-                    fe_seconds,
-                    contact_seconds,
-                    *figures,
-                    MeshErrors(*(abs(here / there - 1.0) for here, there in zip(figures, truth, strict=True))),
-                    estimate,
-                )
-            )
+            rungs.append(piece(partial(rung_of, name, pair, told))["rung"])
     progress(1.0, "done")
     return study()
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.sweep.axes import Axis, along, axis_of, number_in, points_of
 from rotorgear.analysis.sweep.blocks import blocks, packed, run_blocks, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
@@ -22,7 +23,6 @@ from rotorgear.analysis.sweep.gather import gathered
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
 from rotorgear.analysis.sweep.reduce import Large, Reducer
 from rotorgear.analysis.sweep.request import Request, start_of, steps_of
-from rotorgear.analysis.transient.histories import Stream
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.model.model import Model, model_hash

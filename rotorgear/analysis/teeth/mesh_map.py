@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
+from typing import Any
 
 import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import quantity
+from rotorgear.analysis.common.stream import Piece, Stream, pieces, unkept
 from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
 from rotorgear.analysis.teeth.request import MeshRequest, mesh_request, solve_helices
 from rotorgear.cpu import Clock
@@ -20,7 +23,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.face import load_per_width
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.model.model import Model
+from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh_map import MeshMap
 
@@ -62,6 +65,7 @@ def figures_at(
     misalignment: np.ndarray,
     positions: int,
     progress: Progress = silent,
+    piece: Piece = unkept,
 ) -> MeshFigures:
     """Solve one mesh period at each of some operating points, torque by torque.
 
@@ -72,34 +76,39 @@ def figures_at(
         misalignment: (m,) over the face (m).
         positions: in the mesh period.
         progress: told how far it is.
+        piece: does the work of a point, or takes it over.
     """
     points = list(product(torque.tolist(), misalignment.tolist()))
     rows = []
-    notes: list[str] = []
     for number, (load, f) in enumerate(points):
         told = part_of(progress, number / len(points), (number + 1) / len(points))
-        base_force = abs(load) / request.mesh.pinion.base_radius / request.mesh.helices
-        misaligned = replace(teeth, misalignment=f)
-        solved = solve_helices(request, misaligned, positions, base_force=base_force, progress=told)
-        normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
-        places = min(_PLACES, solved.problem.slices)
-        largest = [load_per_width(cycle, teeth.width, places)[1].max() for cycle in solved.cycles]
-        curve = solved.curve
-        rows.append(
-            (
-                np.ptp(solved.error),
-                np.abs(curve.harmonics(ORDERS)[:, 0]),
-                curve.values[:, 3].max(),
-                max(largest) * teeth.width / normal_force,
-                curve.mean()[1],
-            )
-        )
-        notes += [*solved.problem.warnings, *(note for cycle in solved.cycles for note in cycle.warnings)]
-    columns = [np.array(column) for column in zip(*rows, strict=True)]
-    ste, harmonics, pressure, factor, stiffness = (
-        column.reshape(len(torque), len(misalignment), *column.shape[1:]) for column in columns
-    )
-    return MeshFigures(ste, harmonics, pressure, factor, stiffness, tuple(dict.fromkeys(notes)))
+        rows.append(piece(partial(_figures_at_point, request, teeth, load, f, positions, told)))
+        told(1.0, "contact")
+    size = (len(torque), len(misalignment))
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0] if name != "warnings"}
+    figures = {name: column.reshape(*size, *column.shape[1:]) for name, column in columns.items()}
+    return MeshFigures(**figures, warnings=tuple(dict.fromkeys(note for row in rows for note in row["warnings"])))
+
+
+def _figures_at_point(
+    request: MeshRequest, teeth: ToothPair, torque: float, misalignment: float, positions: int, progress: Progress
+) -> dict[str, Any]:
+    """The values of `MeshFigures` at one torque (N m) and misalignment (m)."""
+    base_force = abs(torque) / request.mesh.pinion.base_radius / request.mesh.helices
+    misaligned = replace(teeth, misalignment=misalignment)
+    solved = solve_helices(request, misaligned, positions, base_force=base_force, progress=progress)
+    normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
+    places = min(_PLACES, solved.problem.slices)
+    largest = [load_per_width(cycle, teeth.width, places)[1].max() for cycle in solved.cycles]
+    curve = solved.curve
+    return {
+        "ste_peak_to_peak": np.ptp(solved.error),
+        "ste_harmonics": np.abs(curve.harmonics(ORDERS)[:, 0]),
+        "largest_pressure": curve.values[:, 3].max(),
+        "face_load_factor": max(largest) * teeth.width / normal_force,
+        "mean_stiffness": curve.mean()[1],
+        "warnings": (*solved.problem.warnings, *(note for cycle in solved.cycles for note in cycle.warnings)),
+    }
 
 
 def operating_values(given: Mapping[str, object], name: str) -> np.ndarray | None:
@@ -169,6 +178,7 @@ def mesh_map(
     preset: str | None = None,
     body: str | None = None,
     positions: int = POSITIONS,
+    stream: Stream | None = None,
     progress: Progress = silent,
 ) -> MeshMap:
     """Solve the loaded contact of a mesh over its cycle at each torque and misalignment.
@@ -182,6 +192,7 @@ def mesh_map(
         preset: as in `mesh`.
         body: as in `mesh`.
         positions: as in `mesh`.
+        stream: keeps points while the map is made (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -192,8 +203,10 @@ def mesh_map(
     require_positions(positions)
     clock = Clock()
     request, teeth, load, misalignment = operating_points(model, mesh, over, torque, {"preset": preset, "body": body})
+    run = f"{request.mesh.name} {load.tolist()} {misalignment.tolist()} {positions} {preset} {body}"
+    piece = pieces(stream, {"model": model_hash(model), "run": run})
     problem = contact_problem(teeth, part_of(progress, 0.0, 0.3))
-    figures = figures_at(request, teeth, load, misalignment, positions, part_of(progress, 0.3, 1.0))
+    figures = figures_at(request, teeth, load, misalignment, positions, part_of(progress, 0.3, 1.0), piece)
     clock.lap("teeth and contact")
     missing = ["error estimates: `rotorgear mesh` gives them for one point"]
     if teeth.first_flank.single_teeth or teeth.second_flank.single_teeth:

@@ -9,11 +9,11 @@ energies at some of them.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.transient.request import Grid, Task
 from rotorgear.errors import ConvergenceError
 from rotorgear.model.model import model_hash
@@ -109,16 +109,6 @@ class LedgerBook:
 
 _STATE = ("q", "v", "a", "F", "before", "d", "sums", "last", "events")
 _TABLES = ("t", "d", "watched", "F", "values")
-
-
-class Stream(Protocol):
-    """Where a run writes its chunks, and from where an interrupted run continues."""
-
-    def begin(self, settings: dict[str, str]) -> list[dict[str, np.ndarray]]:
-        """Say what is run; returns the chunks that are there already of the same run, all or none."""
-
-    def write(self, chunk: dict[str, np.ndarray]) -> None:
-        """Keep a chunk, whole or not at all."""
 
 
 @dataclass

@@ -21,8 +21,9 @@ import scipy.sparse as sp
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.transient.errors import FALLS, Stated, fine_enough, stated
-from rotorgear.analysis.transient.histories import Histories, Stream, run_task
+from rotorgear.analysis.transient.histories import Histories, run_task
 from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, thinned, transient_warnings
 from rotorgear.analysis.transient.request import (
     STARTS,

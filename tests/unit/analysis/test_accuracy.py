@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rotorgear as rg
-from rotorgear.analysis.accuracy import STUDIES
+from rotorgear.analysis.accuracy import study_by_name
 from rotorgear.analysis.common.study import Judged, Setting, Study, measured
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -70,7 +70,7 @@ def test_memory_of_a_run_is_that_of_its_arrays() -> None:
 
 def test_critical_speeds_carry_the_error_of_the_speed_and_not_of_the_frequency() -> None:
     # Gyroscopic moments: the error of the crossing is that of the frequency at a held speed over 1 - d(frequency)/d(speed).
-    study = STUDIES["critical"](overhung_disk(), elements=(2, 4), accuracies=(), repeat=0)
+    study = study_by_name("critical")(overhung_disk(), elements=(2, 4), accuracies=(), repeat=0)
     within(study, 0.8, 1.25)
     falls_with_order(study, 1.5)
     last = rg.critical(overhung_disk(), elements=2).speeds[-1]
@@ -97,7 +97,7 @@ def test_a_free_rotation_of_a_fine_mesh_is_no_critical_speed() -> None:
 
 @pytest.mark.long
 def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> None:
-    study = STUDIES["campbell"](overhung_disk(), modes=6, **SHORT)
+    study = study_by_name("campbell")(overhung_disk(), modes=6, **SHORT)
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.5)
 
@@ -105,20 +105,20 @@ def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> Non
 @pytest.mark.long
 @pytest.mark.parametrize("analysis", ["response", "frf"])
 def test_amplitudes_are_held_to_those_of_a_mesh_of_high_order(analysis: str) -> None:
-    study = STUDIES[analysis](overhung_disk(), modal_damping=0.01, **SHORT)
+    study = study_by_name(analysis)(overhung_disk(), modal_damping=0.01, **SHORT)
     within(study, 0.5, 3.0)
     falls_with_order(study, 1.5)
     assert study.rungs[-1].error <= 1e-3
 
 
 def test_a_model_in_torsion_alone_has_its_response_between_rotations() -> None:
-    study = STUDIES["frf"](rg.load("models/backlash_pair.toml"), **SHORT)
+    study = study_by_name("frf")(rg.load("models/backlash_pair.toml"), **SHORT)
     assert study.rungs[0].dofs == 2
     assert study.rungs[0].error < 1e-11
 
 
 def test_statics_of_the_basic_element_are_exact() -> None:
-    study = STUDIES["static"](overhung_disk(), **SHORT)
+    study = study_by_name("static")(overhung_disk(), **SHORT)
     assert max(rung.error for rung in study.rungs) < 1e-11
     assert all("rounding only" in rung.notes for rung in study.rungs)
 

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
 
 import rotorgear as rg
-from rotorgear.analysis.accuracy import STUDIES
+from rotorgear.analysis.accuracy import study_by_name
 from rotorgear.analysis.common.study import Judged, Setting, Study
 from rotorgear.analysis.studies import meshes
 from rotorgear.analysis.studies.continuum import Continuum, piece_stiffness
@@ -110,7 +110,7 @@ def test_a_cross_coupled_bearing_at_standstill_is_that_of_the_model() -> None:
     cross = np.diag([4e7, 4e7, 1e7, 0.0, 0.0, 0.0])
     cross[0, 1], cross[1, 0] = 2e7, -1e7
     model = overhung_disk().with_("bearings.b.stiffness", {"matrix": cross.tolist()})
-    study = STUDIES["modal"](model, modes=8, **SHORT | {"elements": (4, 8)})
+    study = study_by_name("modal")(model, modes=8, **SHORT | {"elements": (4, 8)})
     assert "exact dynamic stiffness" in study.reference
     assert "finest mesh's word" in study.reference  # counts need a symmetric stiffness
     assert np.any(np.abs(rg.modal(model, modes=8).eigenvalues.real) > 1.0)
@@ -125,14 +125,14 @@ def test_a_root_of_another_mode_is_not_taken(monkeypatch: pytest.MonkeyPatch) ->
     with pytest.raises(ConvergenceError, match="is that of another mode"):
         exact.roots(np.array([s[0], 1.001 * s[0]]))
     monkeypatch.setattr(Continuum, "root", lambda self, s: 1.5j)
-    study = STUDIES["modal"](model, modes=6, **SHORT)
+    study = study_by_name("modal")(model, modes=6, **SHORT)
     assert study.reference.startswith("the same elements, refined to 1e-10")
 
 
 @pytest.mark.parametrize("analysis", ["state-space", "campbell"])
 def test_state_spaces_and_branches_are_compared_with_continuous_shafts(analysis: str) -> None:
     more = {"modes": 5} if analysis == "campbell" else {"speed": 700.0}
-    study = STUDIES[analysis](overhung_disk(), **SHORT, **more)
+    study = study_by_name(analysis)(overhung_disk(), **SHORT, **more)
     assert "exact dynamic stiffness" in study.reference
     ratios = [rung.effectivity for rung in study.rungs]
     assert all(ratio is not None and 0.5 < ratio < 3.0 for ratio in ratios), study.text()
@@ -140,7 +140,7 @@ def test_state_spaces_and_branches_are_compared_with_continuous_shafts(analysis:
 
 @pytest.mark.parametrize("analysis", ["modal", "critical", "frf", "response"])
 def test_no_mesh_of_elements_is_the_reference(analysis: str) -> None:
-    study = STUDIES[analysis](overhung_disk(), **SHORT)
+    study = study_by_name(analysis)(overhung_disk(), **SHORT)
     assert "exact dynamic stiffness" in study.reference
     ratios = [rung.effectivity for rung in study.rungs if np.isfinite(rung.estimate)]
     assert len(ratios) >= 2
@@ -152,7 +152,7 @@ def test_a_critical_speed_that_a_coarse_mesh_misses_has_an_infinite_error() -> N
     highest = rg.critical(model, accuracy=1e-9).speeds[-1].speed
     coarse = rg.critical(model, elements=1).speeds[-1].speed
     assert coarse > highest
-    study = STUDIES["critical"](model, stop=0.5 * (coarse + highest), elements=(1, 8), accuracies=(), repeat=0)
+    study = study_by_name("critical")(model, stop=0.5 * (coarse + highest), elements=(1, 8), accuracies=(), repeat=0)
     missed, fine = study.rungs
     assert missed.error == float("inf")
     assert any(note.startswith("1 missed") for note in missed.notes)

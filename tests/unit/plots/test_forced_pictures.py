@@ -151,3 +151,10 @@ def test_a_slip_on_the_command_line_gets_a_sentence(arguments: list[str], words:
     assert isinstance(run.exception, rg.RotorgearError)
     assert words in str(run.exception)
     assert "\n" not in str(run.exception)
+
+
+def test_statics_of_points_alone_have_a_picture_that_says_so() -> None:
+    twist = {name: {"shaft": name, "at": "start", "moment": [0.0, 0.0, m]} for name, m in (("one", 5.0), ("two", -5.0))}
+    chain = rg.load(ROOT / "models" / "torsion_chain.toml").with_({"loads": twist})
+    (axis,) = rg.plot.static(rg.static(chain))
+    assert [text.get_text() for text in axis.texts] == ["no meshes, no bearings, and no shaft with a length"]

@@ -154,6 +154,13 @@ def test_torsional_modes_are_held_against_the_orders_of_shafts() -> None:
     assert twice.verdict == "not within"
 
 
+def test_a_model_without_torsion_has_no_torsional_mode() -> None:
+    model = rg.load(ROOT / "models" / "helical_pair.toml").with_({"motions": ["bending"]})
+    checks = [c for c in rg.standards(model).checks if c.rule == "torsional interference"]
+    assert checks
+    assert all(check.value is None and "no torsional mode" in check.note for check in checks)
+
+
 def test_a_model_without_a_speed_and_a_grade_without_a_size_are_refused() -> None:
     with pytest.raises(rg.AnalysisError, match=r"speed of \[operation\]"):
         rg.standards(rg.load(ROOT / "models" / "torsion_chain.toml"))
