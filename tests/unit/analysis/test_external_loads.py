@@ -101,12 +101,13 @@ fixed = ["x", "y"]
     assert result.support_force["left"][1] == pytest.approx(-250.0 * 0.15 / 0.4, rel=1e-9)
 
 
-def test_reactions_of_a_gearbox_balance_its_loads():
-    text = Path("models/helical_pair.toml").read_text()
-    model = _with(text, 'gear = "wheel"\nforce = ["500 N", "-900 N", "130 N"]\nmoment = ["20 N m", "7 N m", "0 N m"]')
+@pytest.mark.parametrize(("name", "gear"), [("helical_pair", "wheel"), ("split_torque", "wheel_a")])
+def test_reactions_of_a_gearbox_balance_its_loads(name, gear):
+    text = Path(f"models/{name}.toml").read_text()
+    model = _with(text, f'gear = "{gear}"\nforce = ["500 N", "-900 N", "130 N"]\nmoment = ["20 N m", "7 N m", "0 N m"]')
     plain = rg.static(rg.loads(text))
     loaded = rg.static(model)
-    shaft = model.shafts[model.gears["wheel"].shaft]
+    shaft = model.shafts[model.gears[gear].shaft]
     total = np.zeros(6)
     for name, force in loaded.bearing_force.items():
         x, y = model.shafts[model.bearings[name].shaft].position
@@ -114,7 +115,7 @@ def test_reactions_of_a_gearbox_balance_its_loads():
         change = force - plain.bearing_force[name]
         total += np.concatenate([change[:3], change[3:] + np.cross([x, y, z], change[:3])])
     load = loaded.load_force["loads.pull"]
-    place = [*shaft.position, np.mean([place.z for place in model.layout.places("gears.wheel")])]
+    place = [*shaft.position, np.mean([place.z for place in model.layout.places(f"gears.{gear}")])]
     total += np.concatenate([load[:3], load[3:] + np.cross(place, load[:3])])
     size = max(float(np.abs(force[:3]).max()) for force in loaded.bearing_force.values())
     np.testing.assert_allclose(total[:5], 0.0, atol=1e-12 * size)

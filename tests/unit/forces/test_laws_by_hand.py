@@ -14,6 +14,7 @@ from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.roller_bearing import RollerBearing
 from rotorgear.forces.rotating_force import RotatingForce
+from rotorgear.forces.tabulated_force import TabulatedForce
 from rotorgear.forces.torque_curve import TorqueCurve
 
 # --- force that turns ---------------------------------------------------------------------------------------------------
@@ -281,3 +282,25 @@ def test_the_mean_of_a_contact_is_the_mean_over_its_cycle() -> None:
     still = law.mean().evaluate([5e-6], angle=1.0)
     assert still.in_displacement[0, 0] == pytest.approx(mean, rel=1e-6)
     assert still.force[0] == pytest.approx(mean * 3e-6, rel=1e-6)
+
+
+# --- tables -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("order", [1.0, -0.6])
+def test_a_table_over_the_angle_that_begins_late_goes_on_straight_into_the_next_turn(order: float) -> None:
+    places = (0.9, 2.0, 5.1)
+    values = (10.0, 40.0, -20.0)
+    law = TabulatedForce(places, values, True, order)
+    for angle in np.linspace(-9.0, 9.0, 43):
+        expected = np.interp(order * angle, places, values, period=2.0 * math.pi)
+        assert law.evaluate([0.0], angle=angle).force[0] == pytest.approx(-expected, abs=1e-12)
+
+
+def test_a_table_over_time_stays_at_its_ends() -> None:
+    places = (0.2, 0.5, 1.1)
+    values = (3.0, 70.0, -20.0)
+    law = TabulatedForce(places, values)
+    for time in (-1.0, 0.1, 0.2, 0.3, 0.5, 0.9, 1.1, 7.0):
+        expected = np.interp(time, places, values)
+        assert law.evaluate([0.0], time=time).force[0] == pytest.approx(-expected, abs=1e-12)

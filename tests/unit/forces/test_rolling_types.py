@@ -310,3 +310,25 @@ def test_a_bore_that_does_not_fit_its_seat_is_warned_of(designation, diameters, 
 def test_a_bore_beside_another_designation_is_refused():
     with pytest.raises(rg.ModelError, match="bore: got 40 mm beside designation = '6209', expected 45 mm"):
         rg.loads(TEXT % 'designation = "6209", clearance_class = "C3", bore = "40 mm"')
+
+
+@pytest.mark.parametrize("row", [TAPERED, replace(TAPERED, contact_angle=-0.4, preload=6e-6, clearance=4e-6)])
+def test_loads_inside_add_up_to_the_force_and_press_as_cylinders_on_the_cones_of_their_raceways(row):
+    inside = row.inside(STATE)
+    a, side = abs(row.contact_angle), np.sign(row.contact_angle)
+    phi = 0.1 + 2.0 * np.pi * np.arange(17) / 17
+    way = np.array([np.cos(a) * np.cos(phi), np.cos(a) * np.sin(phi), np.full(17, side * np.sin(a))])
+    assert way @ inside.load == pytest.approx(row.evaluate(STATE).force[:3], rel=1e-12)
+    # Of seven slices the middles of the outer ones are 3/7 of the length off the middle of the roller.
+    psi = STATE[3] * np.sin(phi) - STATE[4] * np.cos(phi)
+    played = 0.5 * row.clearance * np.cos(a) - row.preload * np.sin(a)
+    middle = STATE[:3] @ way + psi * side * 0.5 * row.pitch_diameter * np.sin(a) - played
+    worst = middle + np.abs(psi) * 3.0 / 7.0 * row.length
+    per_length = LINE_CONTACT * row.length ** (-1.0 / 9.0) * np.maximum(worst, 0.0) ** (10.0 / 9.0)
+    assert 0 < np.count_nonzero(inside.load) < 17
+    for pressure, outward in ((inside.inner_pressure, -1.0), (inside.outer_pressure, 1.0)):
+        # In the plane across the roller its raceway has the radius of the cone, convex inside and concave outside.
+        cone = (0.5 * row.pitch_diameter + outward * 0.5 * row.roller_diameter * np.cos(a)) / np.cos(a)
+        curvature = 2.0 / row.roller_diameter - outward / cone
+        hertz = np.sqrt(per_length * curvature * 210e9 / (1.0 - 0.3**2) / (2.0 * np.pi))
+        assert pressure == pytest.approx(hertz, rel=1e-12)

@@ -289,3 +289,24 @@ def test_a_collar_finds_its_place_under_every_moment_and_names_pads_that_fail():
     assert ("flutter of pads that have no film", "pad 4 for +z") in said
     assert any("may stay as well" in what for what, _ in said)
     assert any("the jump" in what for what, _ in said)
+
+
+def test_pads_that_follow_slowly_are_as_stiff_as_pads_in_balance_and_fast_ones_keep_their_tilt():
+    """A collar that leans, so that what a pad takes from it and gives back differ."""
+    law = replace(TILTING, acts="+z", around=12, across=6)
+    d = np.array([0.0, 0.0, 8e-6, 2e-4, -1e-4])
+    slow = replace(law.settled(d), whirl_ratio=1e-7).linearised(d, speed=SPEED)
+    balance = law.evaluate(d, speed=SPEED)
+    size = np.array([1.0, 1.0, 1.0, law.outer_radius, law.outer_radius])
+    scale = np.abs(balance.in_displacement[2, 2]) * np.outer(size, size)
+    assert np.abs(balance.in_displacement - balance.in_displacement.T)[2:, 2:].max() > 1e-3 * scale[2, 2] * size[3]
+    np.testing.assert_allclose(slow.stiffness / scale, balance.in_displacement / scale, atol=1e-6)
+    np.testing.assert_allclose(slow.force, balance.force, rtol=1e-12)
+    # Between both a pad without a moment: the inverse of its matrix, of which the collar sees the part of its own motions.
+    middle = replace(law.settled(d), whirl_ratio=0.5).linearised(d, speed=SPEED)
+    omega = 0.5 * SPEED
+    pads = [K + 1j * omega * C for _, _, _, _, K, C, _ in law._each_pad(d, SPEED)]
+    seen = sum(np.linalg.inv(np.linalg.inv(Z)[:3, :3]) for Z in pads)
+    own = scale[2:, 2:]
+    np.testing.assert_allclose(middle.stiffness[2:, 2:] / own, seen.real / own, atol=1e-9)
+    np.testing.assert_allclose(omega * middle.damping[2:, 2:] / own, seen.imag / own, atol=1e-9)

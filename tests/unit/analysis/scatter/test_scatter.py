@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.special import ndtri
+from scipy.special import ndtr, ndtri
 
 import rotorgear as rg
 from rotorgear.analysis.scatter.family import family_of
@@ -393,3 +393,29 @@ def test_a_table_of_scatter_that_leads_nowhere_is_refused_when_the_file_is_read(
     file = (MODELS / "geared_pair.toml").read_text() + "\n[scatter]\n"
     with pytest.raises(ModelError, match=text):
         rg.loads(file + rows)
+
+
+SPRUNG = """
+motions = ["bending"]
+operation = { input_shaft = "one", speed = "180 rad/s" }
+shafts.one = {}
+disks.wheel = { shaft = "one", at = "start", mass = 2.0, polar_inertia = 0.01, diametral_inertia = 0.01 }
+supports.spring = { shaft = "one", at = "start", stiffness = { radial = 8e4 }, fixed = ["tilt_x", "tilt_y"] }
+"""
+
+
+def test_the_share_below_the_margin_is_that_of_the_normal_distribution_between_both_sides_of_a_line():
+    """ln f of a mass on a spring is normal about 200 rad/s; its unbalance turns at 180."""
+    sigma = 0.5 * math.hypot(0.10, 0.06)
+    given = {
+        "supports.spring.stiffness": Scatter(sigma="10 %", distribution="lognormal"),
+        "disks.wheel.mass": Scatter(sigma="6 %", distribution="lognormal"),
+    }
+    result = rg.scatter(rg.loads(SPRUNG), given, samples=256, modes=1, elements=1, margin="7 %")
+    row = next(row for row in result.margins if row.frequency_hz == pytest.approx(180.0 / (2.0 * math.pi)))
+    assert row.nominal == pytest.approx(200.0 / 180.0 - 1.0)
+    sides = [math.log(0.9 * (1.0 + side * 0.07)) / sigma for side in (-1.0, 1.0)]
+    assert row.below == pytest.approx(ndtr(sides[1]) - ndtr(sides[0]), abs=0.01)
+    # |f/f_line - 1| = m where ln f is on either side: half of the samples are closer than the median.
+    nearer = [math.log(0.9 * (1.0 + side * row.median)) / sigma for side in (-1.0, 1.0)]
+    assert ndtr(nearer[1]) - ndtr(nearer[0]) == pytest.approx(0.5, abs=0.01)

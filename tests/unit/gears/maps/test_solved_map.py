@@ -14,7 +14,7 @@ from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact
 from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
-from rotorgear.gears.maps.solved_map import contact_map, kept_map
+from rotorgear.gears.maps.solved_map import contact_map, kept_map, with_start
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import LOAD, cycle, helical, pair, spur
@@ -196,3 +196,16 @@ def test_a_helix_that_carries_another_load_than_its_mesh_has_its_own_curve(share
     exact = normal(teeth, found, share)
     curve = found.approach_at(share * LOAD, found.position)
     assert curve - curve.mean() == pytest.approx(exact - exact.mean(), abs=0.025 * np.ptp(exact))
+
+
+def test_the_slope_at_no_load_is_that_of_the_parabola_through_both_points() -> None:
+    """delta = a + b F + c F^2 of two positions, of which the second hardens so little that rounding would turn it about."""
+    a, b, c = np.array([3e-6, 1e-6]), np.array([2e-9, 5e-9]), np.array([-1e-13, 1e-13])
+    loads = np.array([0.0, 4e3, 9e3])
+    approach = a[:, None] + b[:, None] * loads + c[:, None] * loads**2
+    slope = b[:, None] + 2.0 * c[:, None] * loads[1:]
+    found = with_start(slope, approach, loads)
+    assert found[:, 1:] == pytest.approx(slope)
+    assert found[0, 0] == pytest.approx(b[0], rel=1e-9)
+    # Contacts stiffen with the load: a parabola that softens begins with the slope of its second point.
+    assert found[1, 0] == slope[1, 0]

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from rotorgear.solvers.sparse import nullspace
 from rotorgear.solvers.sparse.nullspace import (
     in_comparable_units,
+    inertia_relief,
     left_null_space,
     orthonormal_motions,
     support_dofs,
@@ -67,3 +68,19 @@ def test_a_motion_that_moves_nothing_is_no_body_of_its_own() -> None:
     R = np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
     assert len(support_dofs(R)) == 2
     assert orthonormal_motions(R).shape == (3, 2)
+
+
+def test_under_inertia_relief_the_rest_of_a_load_bends_and_no_momentum_is_left() -> None:
+    """A free chain of unequal masses on unequal springs, pushed at one end: m a carries the push, and the rest is statics."""
+    k = np.array([3e6, 1e6, 2e6])
+    m = np.array([1.0, 4.0, 2.0, 0.5])
+    stretch = np.diff(np.eye(4), axis=0)
+    K = stretch.T @ np.diag(k) @ stretch
+    R = np.ones((4, 1)) / np.sqrt(m.sum())
+    f = np.array([[7.0, 0.0], [0.0, -2.0], [0.0, 0.0], [0.0, 5.0]])
+    q = inertia_relief(sp.csc_array(K), sp.csc_array(np.diag(m)), R)(f)
+    np.testing.assert_allclose(K @ q, f - np.outer(m, f.sum(axis=0)) / m.sum(), atol=1e-12)
+    np.testing.assert_allclose(m @ q, 0.0, atol=1e-18)
+    # The springs one after the other carry the push less what the masses before them take.
+    carried = 7.0 - np.cumsum(m)[:3] * 7.0 / m.sum()
+    np.testing.assert_allclose(-np.diff(q[:, 0]), carried / k, rtol=1e-12)
