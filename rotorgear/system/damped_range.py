@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 # So far above the highest excitation modes of large systems get it.
 _ABOVE = 1.5
-# Degrees of freedom up to which all modes cost next to nothing.
+# Degrees of freedom with one element in each segment up to which all modes get it, and those of any mesh at which they cost much.
 _ALL = 60
+_MOST = 600
 
 
 def all_damped(system: System) -> bool:
-    """Whether all modes are at hand. Those far above excitation still lose energy, 2 zeta w/w_n of what they store."""
-    return system.n <= _ALL
+    """Whether all modes get it. Those far above excitation still lose energy, 2 zeta w/w_n of what they store.
+
+    The coarsest mesh decides, so that what is damped does not change where a mesh is refined.
+    """
+    return system.n <= _MOST and (system.n <= _ALL or system.with_plan(Plan(1)).n <= _ALL)
 
 
 def damped_up_to(system: System, highest: float) -> float:

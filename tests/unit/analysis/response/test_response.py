@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.results.response import ResponseResult
+from tests.overhung import overhung_disk
 from tests.paths import MODELS, ROOT
 
 Data = dict[str, Any]
@@ -442,3 +443,14 @@ def test_speeds_on_the_command_line_have_units() -> None:
     said = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["response", model, "--speeds", "9000 rpm,1000 rad/s"])
     assert said.exit_code == 0, said.output
     assert "9000 to 9549.3 rpm" in " ".join(said.output.split())
+
+
+def test_damping_of_modes_is_that_of_the_same_modes_on_a_finer_mesh() -> None:
+    # A mesh of 52 degrees of freedom, and one of 70: damping by modes must not change with their number.
+    peaks = [
+        rg.response(overhung_disk(), points=31, modal_damping=0.01, accuracy=accuracy, method="direct")
+        for accuracy in (1e-6, 1e-8)
+    ]
+    assert peaks[0].dofs < 60 < peaks[1].dofs
+    coarse, fine = (np.abs(found.bearing_force) for found in peaks)
+    assert np.abs(coarse - fine).max() < 1.2 * peaks[0].error_estimate * fine.max()
