@@ -3,6 +3,7 @@
     killed           a named test fails
     survived         all of them pass: the tests do not see the fault
     does not apply   the text to change is not there exactly once: the list has to follow the code
+    not done         no test had failed at the time limit
     equivalent       the list says why the change changes nothing; it is not run
 
 The work tree is never touched. Compiled code of the copy is kept in a folder of its own, named by the hash of its sources
@@ -44,6 +45,7 @@ SURVIVED = "survived"
 EQUIVALENT = "equivalent"
 NOT_APPLIED = "does not apply"
 NO_TEST = "no such test"
+NOT_DONE = "not done"
 _PASSED = 0
 _NO_SUCH_TEST = (4, 5)  # pytest's exit codes for a wrong path, and for nothing that was collected
 
@@ -179,7 +181,7 @@ def judge(tree: Path, mutation: Mutation, tests: Sequence[str], limit: float) ->
         if mutation.equivalent:
             return Outcome(mutation, EQUIVALENT)
         code, output = run_tests(tree, tests, limit)
-    status = SURVIVED if code == _PASSED else NO_TEST if code in _NO_SUCH_TEST else KILLED
+    status = {None: NOT_DONE, _PASSED: SURVIVED, **dict.fromkeys(_NO_SUCH_TEST, NO_TEST)}.get(code, KILLED)
     return Outcome(mutation, status, output, time.perf_counter() - begin)
 
 
@@ -220,6 +222,22 @@ def sound_tests(mutations: Sequence[Mutation], limit: float) -> tuple[bool, str]
     return code == _PASSED, output
 
 
+def try_samples(count: int, seed: int, only: Sequence[str], limit: float, jobs: int) -> int:
+    """Try so many faults of each package whose name holds one of the texts; print what survives, and the share that is killed."""
+    from tests.mutation.sample import drawn, packages  # which imports this file
+
+    for package in packages():
+        if not any(text in package for text in only):
+            continue
+        outcomes = try_all([each for each in drawn(package, count, seed) if each.tests], limit, jobs)
+        killed = sum(each.status == KILLED for each in outcomes)
+        print(f"{package:24} tried {len(outcomes)}, killed {killed}", flush=True)
+        for each in outcomes:
+            if each.status != KILLED:
+                print(f"    {each.status}: {each.mutation.name}\n        {each.mutation.why}", flush=True)
+    return 0
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command; returns 0 where every mutation is killed or equivalent, 1 where not, 2 for a request that makes no sense."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__.split("\n")[0])
@@ -235,7 +253,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--tests", nargs="+", metavar="PATH", help="run these tests in place of the named ones")
     parser.add_argument("--verbose", action="store_true", help="print the end of the tests' output for each mutation")
+    parser.add_argument(
+        "--sample", type=int, metavar="COUNT", help="so many faults of each package, drawn at random, in place"
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the draw (default 0)")
     chosen = parser.parse_args(arguments)
+    if chosen.sample:
+        return try_samples(chosen.sample, chosen.seed, chosen.only or [""], chosen.limit, chosen.jobs)
     mutations = [
         each
         for each in read()
@@ -269,7 +293,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     outcomes = try_all(mutations, chosen.limit, chosen.jobs, chosen.tests or (), tell)
     counts = {
         status: sum(each.status == status for each in outcomes)
-        for status in (KILLED, SURVIVED, EQUIVALENT, NOT_APPLIED, NO_TEST)
+        for status in (KILLED, SURVIVED, EQUIVALENT, NOT_APPLIED, NO_TEST, NOT_DONE)
     }
     print(", ".join(f"{count} {status}" for status, count in counts.items() if count))
     return 0 if counts[KILLED] + counts[EQUIVALENT] == len(outcomes) else 1

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutation.runner import LIST, ROOT, Mutation, fault, mutated, read
+from tests.mutation.sample import drawn, faults_of, nearest_tests, packages
 
 
 def test_every_fault_names_tests_that_there_are_or_says_why_none_can_see_it() -> None:
@@ -43,3 +44,39 @@ def test_a_list_with_two_of_one_name_or_without_tests_is_refused(tmp_path: Path)
         path.write_text(text, encoding="utf-8")
         with pytest.raises(ValueError, match=words):
             read(path)
+
+
+def test_faults_are_drawn_from_arithmetic_and_not_from_texts_and_annotations() -> None:
+    text = '''"""a - b"""
+
+
+def f(x: float | None = 2.0) -> float:
+    """x / 2.0"""
+    é = "a - b" + f"{x - 1.0}"
+    y: int | None = 3
+    return np.sin(x) * 0.5 if x < y else x
+'''
+    found = [(old, new) for *_, old, new in faults_of(text)]
+    assert found == [("+", "-"), ("sin", "cos"), ("*", "/"), ("0.5", "1.0"), ("<", ">")]
+    for begin, length, old, _ in faults_of(text):
+        assert text[begin : begin + length] == old
+
+
+@pytest.mark.parametrize("package", ["forces", "gears/maps", "rexs"])
+def test_a_draw_can_be_put_in_is_the_same_again_and_has_tests(package: str) -> None:
+    found = drawn(package, 20, 3)
+    assert found == drawn(package, 20, 3)
+    assert found != drawn(package, 20, 4)
+    for each in found:
+        text = (ROOT / "rotorgear" / each.file).read_text(encoding="utf-8")
+        changed = mutated(text, each)
+        assert changed not in (None, text)
+        assert f"tests/unit/{package}" in " ".join(each.tests)
+
+
+def test_every_package_is_drawn_from_and_the_tests_that_import_a_module_come_first() -> None:
+    assert {"forces", "gears/geometry", "solvers/time", "analysis/rig", "model/layout", "rexs"} <= set(packages())
+    tests = nearest_tests("rexs/bearings.py")
+    assert tests[0] == "tests/unit/rexs/test_import.py"
+    assert set(tests) > {"tests/unit/rexs/test_numbers.py", "tests/unit/rexs/test_other_files.py"}
+    assert nearest_tests("forces/law.py")[-1] == "tests/contract/test_force_laws.py"

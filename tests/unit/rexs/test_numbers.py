@@ -1,4 +1,4 @@
-"""Numbers of an import that differ: every unit of the table, speeds stated on another shaft, and estimates of bearings by hand."""
+"""Numbers of an import that differ: all units of the table, speeds stated on any shaft, and estimates of bearings by hand."""
 
 from __future__ import annotations
 
@@ -29,7 +29,14 @@ _WORD = {
     "%": 0.01,
 }
 # What turns once: a number of turns a second is an angle of 2 pi in it.
-_TURNS = {"1/min": "2pi/min", "rpm": "2pi/min", "rev/min": "2pi/min", "min^-1": "2pi/min", "1/s": "2pi/s", "Hz": "2pi/s"}
+_TURNS = {
+    "1/min": "2pi/min",
+    "rpm": "2pi/min",
+    "rev/min": "2pi/min",
+    "min^-1": "2pi/min",
+    "1/s": "2pi/s",
+    "Hz": "2pi/s",
+}
 
 
 def _of_symbol(text: str) -> float:
