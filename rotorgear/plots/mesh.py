@@ -282,7 +282,7 @@ def mesh_quantity(result: MeshMap, ax: Any = None, *, quantity: str = "ste") -> 
 
 
 def root_stress(result: RootStress, ax: Any = None) -> Any:
-    """Draw the largest principal stress at the 30 degree tangent, and the largest of the fillet.
+    """Draw the largest principal stress at the root section, and the largest of the fillet.
 
     Args:
         result: root stresses over the mesh cycle.

@@ -1,4 +1,7 @@
-"""Result of tooth root stresses over the mesh cycle: at the 30 degree tangent and where they are largest."""
+"""Result of tooth root stresses over the mesh cycle: at the root section and where they are largest.
+
+The section is that of ISO 6336-3: at the 30 degree tangent of the fillet, of a ring at that of 60 degrees.
+"""
 
 from __future__ import annotations
 
@@ -31,12 +34,12 @@ class GearRootStress(Record):
     phase: np.ndarray = of(
         "position of the tooth", "mesh periods", "phase", note=" from its contact at the pitch point"
     )
-    at_tangent: np.ndarray = of("stress at the 30 degree tangent", "Pa", "phase", note=", largest along the face")
+    at_tangent: np.ndarray = of("stress at the root section", "Pa", "phase", note=", largest along the face")
     largest: np.ndarray = of("largest stress of the fillet", "Pa", "phase")
-    tangent_diameter: float = of("diameter of the 30 degree tangent", "m", form=".3f", column="  diameter there, mm")
+    tangent_diameter: float = of("diameter of the root section", "m", form=".3f", column="  diameter there, mm")
     tangent_thickness: float = of("thickness of the tooth there", "m")
     worst_at_tangent: float = of(
-        "largest stress at the 30 degree tangent in the cycle", "Pa", form=".2f", column="at the 30 deg tangent, MPa"
+        "largest stress at the root section in the cycle", "Pa", form=".2f", column="at the root section, MPa"
     )
     worst_at_tangent_phase: float = of(
         "its position", note=" in mesh periods", form=".3f", column="  in mesh periods from C"

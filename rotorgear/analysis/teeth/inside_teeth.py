@@ -5,7 +5,7 @@ teeth are alike: tooth k at position u is where tooth 0 is at u + k, so that one
 
 Fields are told in the place where the teeth mesh. The pinion's axis is the z axis, the gear's lies on +y. The pinion pushes
 clockwise, and contact runs ahead at larger z; the other hand and the other flanks are the mirror image. With roll length xi of
-pair k in the middle of the face, the tooth is turned by xi/r_b - (half angle at the base circle) - a_w from +y.
+pair k in the middle of the face, the tooth is turned by xi/r_b -+ (half angle at the base circle) - a_w from +y.
 """
 
 from __future__ import annotations
@@ -104,11 +104,7 @@ def root_stress(
 
 
 def _with_inside(teeth: ToothPair, ahead: int, what: str) -> ToothPair:
-    """One helix along the path of contact; AnalysisError for a ring, and where its model has no inside."""
-    if teeth.second.is_internal:
-        raise AnalysisError(
-            f"A ring with its teeth inside has no {what} to show: stresses in teeth are built for external gears."
-        )
+    """One helix along the path of contact; AnalysisError where its model has no inside, and so not what is asked for."""
     teeth = teeth if ahead > 0 else mirrored(teeth)
     if in_space(teeth)[1]:
         raise AnalysisError(
@@ -122,7 +118,8 @@ def _root_stress_of(
 ) -> GearRootStress:
     """Stress in the fillets of the pinion (0) or the gear (1); `end` is -1 where z runs from the other end of the face."""
     key = gear_key(teeth, gear, space=in_space(teeth)[0])
-    section = root_section(tooth_outline((teeth.first, teeth.second)[gear]))
+    g = (teeth.first, teeth.second)[gear]
+    section = root_section(tooth_outline(g))
     side = 1 if gear == 0 else -1
     loads_at = _tooth_loads(problem, cycle, gear)
     module = problem.module
@@ -135,7 +132,7 @@ def _root_stress_of(
     # Fillet nodes plane by plane; their angles about the axis from the middle of the tooth are those of the middle plane.
     fillet = pitch.fillet.reshape(len(pitch.turn), -1)
     middle = pitch.points[fillet[len(fillet) // 2]]
-    angle = np.abs(np.arctan2(middle[:, 0], middle[:, 1]))
+    angle = np.abs(np.arctan2(middle[:, 0], g.sign * middle[:, 1]))
     order = np.argsort(angle)
     fillet = fillet[:, order]
     rows = []
@@ -284,7 +281,7 @@ def _field(
     g = (teeth.first, teeth.second)[gear]
     first = line.pitch_point + at * line.base_pitch
     roll = first if gear == 0 else line.length - first
-    start = roll / g.base_radius - tooth_outline(g).base_half_angle - line.pressure_angle
+    start = roll / g.base_radius - g.sign * tooth_outline(g).base_half_angle - line.pressure_angle
     turn = [clockwise(start + 2.0 * np.pi * tooth / g.teeth, pitch.dimension).T for tooth in numbers]
     x = np.concatenate([pitch.points @ R for R in turn])
     moved = np.concatenate([u @ R for u, R in zip(displacement, turn, strict=True)])

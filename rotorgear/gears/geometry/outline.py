@@ -8,9 +8,9 @@ trochoid begins where it crosses the involute. Reference: F. L. Litvin, A. Fuent
 chapter on involute gears; ISO 53 for the rack. Lengths in m, angles in rad.
 
 The root section, in which the nominal tooth root stress is taken, lies where the tangent of the fillet makes 30 degrees with
-the middle of the tooth: thickness s_F, radius of curvature rho_F. A force F_bt per width along the line of action at roll
-length xi crosses the middle of the tooth under alpha_F = xi/r_b - psi_b at r_b / cos alpha_F from the axis, psi_b being half
-the tooth's angle at the base circle. With h_F from there to the section,
+the middle of the tooth, of a ring 60 degrees: thickness s_F, radius of curvature rho_F. A force F_bt per width along the line of
+action at roll length xi crosses the middle of the tooth under alpha_F = xi/r_b - psi_b at r_b / cos alpha_F from the axis, psi_b
+being half the tooth's angle at the base circle. With h_F from there to the section,
 
     sigma = F_bt cos alpha_F 6 h_F / s_F^2  Y_S,    L = s_F/h_F,  q_s = s_F/(2 rho_F),
     Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)).
@@ -30,12 +30,13 @@ from rotorgear.gears.geometry.cutter import cutter
 from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
 
 TANGENT = math.radians(30.0)
+_RING_TANGENT = math.radians(60.0)
 _STEP = 1e-4
 
 
 @dataclass(frozen=True)
 class RootSection:
-    """The root at the 30 degree tangent.
+    """The root at the tangent of 30 degrees, of a ring at that of 60.
 
     Attributes:
         share: place on the fillet, 0 at the form circle and 1 at the root circle.
@@ -55,8 +56,9 @@ class RootSection:
     def nominal_stress(self, line_load: float, roll: float) -> float:
         """Stress (Pa) for F_bt per width (N/m) at a roll length of the flank (m)."""
         base = self.outline.geometry.base_radius
-        direction = roll / base - self.outline.base_half_angle
-        arm = base / math.cos(direction) - self.radius * math.cos(self.angle)
+        sign = self.outline.geometry.sign
+        direction = roll / base - sign * self.outline.base_half_angle
+        arm = base / math.cos(direction) - sign * self.radius * math.cos(self.angle)
         slender = self.thickness / arm
         notch = self.thickness / (2.0 * self.curvature_radius)
         correction = (1.2 + 0.13 * slender) * notch ** (1.0 / (1.21 + 2.3 / slender))
@@ -67,7 +69,7 @@ def tangent_angle(outline: ToothOutline, share: float) -> float:
     """Angle (rad) of the fillet's tangent to the middle of the tooth, at a share of the fillet from the form circle."""
     share = min(max(share, _STEP), 1.0 - _STEP)
     (x0, x1), (y0, y1) = (np.asarray(values) for values in _point(outline, np.array([share - _STEP, share + _STEP])))
-    return math.atan2(x1 - x0, y0 - y1)
+    return math.atan2(x1 - x0, outline.geometry.sign * (y0 - y1))
 
 
 def _point(outline: ToothOutline, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -77,14 +79,15 @@ def _point(outline: ToothOutline, share: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def root_section(outline: ToothOutline) -> RootSection:
-    """Section at the 30 degree tangent of a tooth."""
+    """Section at the 30 degree tangent of a tooth, at that of 60 of a ring's."""
     from scipy.optimize import brentq  # here: it loads much, and models without gears have no need of it
 
     ends = (2.0 * _STEP, 1.0 - 2.0 * _STEP)
-    steeper = [tangent_angle(outline, share) - TANGENT for share in ends]
+    wanted = _RING_TANGENT if outline.geometry.is_internal else TANGENT
+    steeper = [tangent_angle(outline, share) - wanted for share in ends]
     # A short fillet may have no such tangent: then its nearer end stands for it.
     if steeper[0] * steeper[1] < 0.0:
-        share = float(brentq(lambda at: tangent_angle(outline, at) - TANGENT, *ends, xtol=1e-12))
+        share = float(brentq(lambda at: tangent_angle(outline, at) - wanted, *ends, xtol=1e-12))
     else:
         share = ends[0] if abs(steeper[0]) < abs(steeper[1]) else ends[1]
     radius, angle = (float(value) for value in outline.fillet(share))

@@ -3,7 +3,7 @@
 One whole pitch has all its nodes; a helical one is a stack of equal layers, each turned by z tan(b_b)/r_b against the middle of
 the face. The motions of its cuts follow from the chain of pitches (`gear_compliance`), tooth by tooth and added up. Inside, every
 pitch has the same stiffness: one sparse factorisation serves all. Lengths in normal modules, Young's modulus 1, as in `sector`;
-the tooth stands on the +y axis at the middle of the face, and displacements are in its frame.
+the tooth stands on the +y axis at the middle of the face, that of a ring on the -y axis, and displacements are in its frame.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ class ToothInside:
             Numbers (t,) of the pitches, and displacements (t, n, d) of the nodes of each, in the frame of its own tooth.
         """
         pitch = self.pitch
-        near = min(_NEIGHBOURS, ((self.key.arc or self.key.geometry.teeth) - 1) // 2)
+        near = min(_NEIGHBOURS, ((self.key.arc or abs(self.key.geometry.teeth)) - 1) // 2)
         teeth = np.arange(min(loads) - near, max(loads) + near + 1)
         if self.key.blank:
             at_ends = self._moved_wheel(teeth, loads, part_of(progress, 0.0, 0.5))
@@ -234,7 +234,7 @@ class ToothInside:
     def _moved_pitches(self, teeth: np.ndarray, loads: dict[int, np.ndarray]) -> list[np.ndarray]:
         """Displacements at the cuts and on the held circle of each pitch in a rim or a ring."""
         pitch = self.pitch
-        count = self.key.arc or self.key.geometry.teeth
+        count = self.key.arc or abs(self.key.geometry.teeth)
         ring = self.key.arc == 0
         # One loaded tooth at a time, its chain of pitches moved to where it stands, all of them added up.
         cuts = np.zeros((len(teeth) + 1, self._sector.cut))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.teeth.inside_teeth import tooth_fields
 from rotorgear.export.solids import build_solids
 from rotorgear.export.teeth import tooth_phases
 from rotorgear.gears.geometry.outline import tooth_outline
@@ -242,3 +243,26 @@ def test_drawn_teeth_of_a_pinion_stand_in_the_gaps_of_its_ring(first: str) -> No
         shares.append((0.7 + math.pi - middle) / (2.0 * math.pi) * z)
     # Both turn the same way: where a tooth of the pinion is so far back, so is a gap of the ring.
     assert math.remainder(shares[0] - shares[1] - 0.5, 1.0) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_fields_of_loaded_teeth_lie_where_pinion_and_ring_mesh_and_roots_are_stressed() -> None:
+    tables = with_loaded_teeth()
+    for name in ("sun", "annulus"):
+        tables["gears"][name] |= {"kind": "spur", "hand": None, "helix_angle": None}
+    tables["shafts"]["ring"]["position"] = (0.01, 0.02 - 0.07137914743405432)
+    model = rg.Model(**tables)
+    fields = tooth_fields(model, at=0.1)
+    pinion, ring = (field.points[:, :2] for field in fields.gears)
+    geometry = model.layout.gear("annulus").geometry
+    assert geometry is not None
+    from_ring = np.hypot(ring[:, 0], ring[:, 1] + 0.07137914743405432)
+    assert from_ring.min() == pytest.approx(-0.5 * geometry.effective_tip_diameter, rel=1e-6)
+    # Each contact lies on both flanks, whose nodes are half a millimetre apart.
+    for x, y, _ in fields.contact.ends.mean(axis=1):
+        for points in (pinion, ring):
+            assert np.hypot(*(points - [x, y]).T).min() < 0.25e-3
+    # At little load one pair carries all at some time: tooth and beam with its notch agree within a fifth for the ring.
+    light = rg.root_stress(model, torque=10.0, positions=8)
+    for gear, share in zip(light.gears, (0.1, 0.2), strict=True):
+        assert gear.nominal is not None
+        assert gear.worst == pytest.approx(gear.nominal, rel=share)

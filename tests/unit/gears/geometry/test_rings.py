@@ -13,7 +13,7 @@ from rotorgear.gears.geometry.geometry import GearGeometry, check_gear, involute
 from rotorgear.gears.geometry.interference import radial_distance, tip_distance
 from rotorgear.gears.geometry.line_of_action import generated_line
 from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, over_balls, with_allowance
-from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.geometry.outline import root_section, tooth_outline
 from rotorgear.gears.geometry.pair import Allowance, normal_backlash, pair_geometry, profile_shift_sum
 from rotorgear.gears.stiffness.iso import iso_tooth_stiffness
 
@@ -181,3 +181,25 @@ def test_iso_takes_a_ring_for_a_rack_with_its_profile_shift() -> None:
     assert found.theoretical == pytest.approx(1e9 / q, rel=1e-12)
     assert found.single == pytest.approx(1e9 / q * 0.8 * (1.0 + 0.5 * (1.2 - 1.25)) * math.cos(BETA), rel=1e-12)
     assert iso_tooth_stiffness(RING, PINION, 1.7).theoretical == found.theoretical
+
+
+def test_the_root_section_of_a_ring_is_that_of_sixty_degrees_with_its_lever_from_the_outside() -> None:
+    outline = tooth_outline(RING)
+    section = root_section(outline)
+    radius, angle = outline.fillet(section.share + np.array([-1e-3, 0.0, 1e-3]))
+    across = radius * np.sin(angle)
+    height = radius * np.cos(angle)
+    assert math.degrees(math.atan2(across[2] - across[0], height[2] - height[0])) == pytest.approx(60.0, abs=0.1)
+    assert section.thickness == pytest.approx(2.0 * across[1], rel=1e-9)
+    # The normal of a flank point meets the middle of the tooth; the lever runs from there to the section.
+    roll = outline.tip_roll_length
+    r, half = (float(value) for value in outline.involute(roll))
+    normal = half + math.acos(-RING.base_radius / r)  # of the line of force to the normal of the middle
+    met = r * math.cos(half) + r * math.sin(half) * math.tan(normal)
+    arm = height[1] - met
+    slender = section.thickness / arm
+    notch = (1.2 + 0.13 * slender) * (section.thickness / (2.0 * section.curvature_radius)) ** (
+        1 / (1.21 + 2.3 / slender)
+    )
+    wanted = 2e5 * math.cos(normal) * 6.0 * arm / section.thickness**2 * notch
+    assert section.nominal_stress(2e5, roll) == pytest.approx(wanted, rel=1e-9)

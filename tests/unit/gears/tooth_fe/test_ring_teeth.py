@@ -15,6 +15,7 @@ from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance, pitch_of, wind_up
 from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.gears.tooth_fe.tooth_solution import ToothInside
 from tests.unit.gears.tooth_pairs import COARSE
 
 ALPHA = math.radians(20.0)
@@ -158,3 +159,20 @@ def test_the_rim_of_a_ring_lies_around_its_teeth() -> None:
         compliance_key(RING, ToothFe(body="ring"), NU, 10.0, 0.0, space=False)
     with pytest.raises(AnalysisError, match="above the root radius"):
         pitch_of(compliance_key(RING, ToothFe(), NU, 10.0, 30.0, space=False))
+
+
+def test_roots_of_a_ring_and_of_a_gear_of_very_many_teeth_are_stressed_alike() -> None:
+    found = []
+    for g in (
+        GearGeometry(20_000, 1.0, ALPHA, 0.0, 0.2),
+        GearGeometry(-20_000, 1.0, ALPHA, 0.0, 0.2, cutter_teeth=10_000),
+    ):
+        inside_tooth = ToothInside(compliance_key(g, ToothFe(preset="preview"), NU, 10.0, 0.0, space=False))
+        pitch = inside_tooth.pitch
+        force = np.zeros(len(pitch.flank))
+        force[-3] = -1.0
+        teeth, moved = inside_tooth.solve({0: force})
+        stress = np.array([pitch.stress(moved[list(teeth).index(tooth)]) for tooth in (0, 1, -1)])
+        found.append(stress[..., pitch.fillet].max(axis=-1))
+    assert found[0] == pytest.approx(found[1], rel=2e-3)
+    assert found[0][0, 1] > 2.0 * found[0][1, 1]
