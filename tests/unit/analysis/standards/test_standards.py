@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import rotorgear as rg
 from rotorgear.analysis.standards import rules
-from rotorgear.results.standards import StandardsResult
+from rotorgear.results.standards import RuleCheck, StandardsResult
 from tests.paths import ROOT
 
 MASS = 10.0
@@ -138,20 +138,29 @@ def test_residual_unbalance_is_compared_by_the_grade() -> None:
     assert wider.verdict == "within"
 
 
-def test_torsional_modes_are_held_against_the_orders_of_shafts() -> None:
-    # Two equal flywheels on a spring: w = sqrt(2 k/J).
-    natural = rg.modal(rg.load(ROOT / "models" / "torsion_chain.toml")).frequency_hz
-    first = float(natural[natural > 0.0][0])
-    text = 'operation = {{ input_shaft = "{}", speed = {} }}\n'
-    model = rg.load(ROOT / "models" / "torsion_chain.toml")
-    speed = 2.0 * math.pi * first / 2.0 * 1.05
-    source = (text.format(next(iter(model.shafts)), speed)) + (ROOT / "models" / "torsion_chain.toml").read_text(
-        encoding="utf-8"
-    )
-    checks = [c for c in rg.standards(rg.loads(source)).checks if c.rule == "torsional interference"]
-    twice = next(c for c in checks if c.part.endswith("2x"))
-    assert twice.value == pytest.approx(100.0 * (1.0 - 1.0 / 1.05), rel=1e-6)
-    assert twice.verdict == "not within"
+def torsional_checks(share: float) -> tuple[float, list[RuleCheck]]:
+    """Twice the speed in Hz, where that is a share of the first torsional mode of a chain, and what the rule says of it."""
+    path = ROOT / "models" / "torsion_chain.toml"
+    chain = rg.load(path)
+    natural = rg.modal(chain).frequency_hz
+    twice = share * float(natural[natural > 0.0][0])
+    operation = {"input_shaft": next(iter(chain.shafts)), "speed": math.pi * twice}
+    checks = rg.standards(chain.with_("operation", operation)).checks
+    return twice, [check for check in checks if check.rule == "torsional interference"]
+
+
+@pytest.mark.parametrize("share", [1.05, 0.85])
+def test_torsional_modes_are_held_against_the_orders_of_shafts(share: float) -> None:
+    found = next(check for check in torsional_checks(share)[1] if check.part.endswith("2x"))
+    assert found.value == pytest.approx(100.0 * abs(1.0 - 1.0 / share), rel=1e-6)
+    assert found.verdict == ("within" if found.value > 10.0 else "not within")
+
+
+def test_a_torsional_mode_a_fifth_above_all_lines_is_none_to_fear() -> None:
+    twice, checks = torsional_checks(0.75)
+    assert [check.value for check in checks] == [None] * len(checks)
+    assert [check.verdict for check in checks] == ["not applicable"] * len(checks)
+    assert f"no torsional mode up to {1.2 * twice:.5g} Hz" in [check.note for check in checks]
 
 
 def test_a_model_without_torsion_has_no_torsional_mode() -> None:
