@@ -33,7 +33,12 @@ _FUNCTIONS = {
     "maximum": "minimum",
 }
 # Laws that every part of a kind holds; quick, and run behind the tests that mirror a module.
-_OF_LAWS = {"forces": ("tests/contract/test_force_laws.py",), "model": ("tests/contract/test_conventions.py",)}
+_OF_LAWS = {
+    "forces": "test_force_laws.py",
+    "elements": "test_conventions*.py",
+    "model": "test_conventions*.py",
+    "system": "test_conventions*.py",
+}
 
 
 def packages(root: Path = ROOT) -> list[str]:
@@ -47,11 +52,13 @@ def nearest_tests(file: str, root: Path = ROOT) -> tuple[str, ...]:
     module = "rotorgear." + file.removesuffix(".py").replace("/", ".")
     places = [root / "tests" / "unit" / parent for parent in Path(file).parents]
     mirror = next(place for place in places if place.is_dir())
-    unit = sorted((root / "tests" / "unit").rglob("test_*.py"))
-    direct = [test for test in unit if f"from {module} import" in test.read_text(encoding="utf-8")]
+    contract = root / "tests" / "contract"
+    every = sorted([*(root / "tests" / "unit").rglob("test_*.py"), *contract.glob("test_*.py")])
+    direct = [test for test in every if f"from {module} import" in test.read_text(encoding="utf-8")]
     around = [] if mirror.name == "unit" else sorted(set(mirror.rglob("test_*.py")) - set(direct))
-    found = [test.relative_to(root).as_posix() for test in (*direct, *around)]
-    return (*found, *_OF_LAWS.get(file.partition("/")[0], ()))
+    kind = file.partition("/")[0]
+    laws = sorted(set(contract.glob(_OF_LAWS[kind])) - set(direct)) if kind in _OF_LAWS else []
+    return tuple(test.relative_to(root).as_posix() for test in (*direct, *around, *laws))
 
 
 def faults_of(text: str) -> list[tuple[int, int, str, str]]:

@@ -79,4 +79,5 @@ def test_every_package_is_drawn_from_and_the_tests_that_import_a_module_come_fir
     tests = nearest_tests("rexs/bearings.py")
     assert tests[0] == "tests/unit/rexs/test_import.py"
     assert set(tests) > {"tests/unit/rexs/test_numbers.py", "tests/unit/rexs/test_other_files.py"}
-    assert nearest_tests("forces/law.py")[-1] == "tests/contract/test_force_laws.py"
+    assert "tests/contract/test_force_laws.py" in nearest_tests("forces/law.py")
+    assert "tests/contract/test_conventions_of_the_mesh.py" in nearest_tests("system/groups.py")
