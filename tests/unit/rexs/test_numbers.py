@@ -162,3 +162,36 @@ def test_an_estimate_is_kramers_formula_with_the_static_ratings_of_iso_76(
     else:
         assert radial == pytest.approx(held, rel=1e-9)
         assert axial == pytest.approx(thrust if ratings[1] else twice * held, rel=1e-9)
+
+
+# Number of a gear of the sample, its teeth, normal module in mm, helix angle in degrees and profile shift.
+GEARS = [("23", 23, 1.0, 30.0, 0.581), ("52", 76, 1.25, 10.0, -0.094)]
+
+
+@pytest.mark.parametrize(("number", "teeth", "module", "helix", "shift"), GEARS)
+@pytest.mark.parametrize(
+    ("addendum", "dedendum", "tip_taken", "root_taken"),
+    [(0.8, 1.4, True, True), (2.7, 1.0, False, True), (-0.5, 2.7, False, False), (1.3, 0.4, True, False)],
+)
+def test_diameters_of_tip_and_root_count_where_a_tooth_can_have_them(
+    number: str,
+    teeth: int,
+    module: float,
+    helix: float,
+    shift: float,
+    addendum: float,
+    dedendum: float,
+    tip_taken: bool,
+    root_taken: bool,
+    tmp_path: Path,
+) -> None:
+    reference = teeth * module / math.cos(math.radians(helix))
+    tip = reference + 2.0 * module * (addendum + shift)
+    root = reference - 2.0 * module * (dedendum - shift)
+    document = changed(sample(), number, tip_diameter=Value(tip, "mm"), root_diameter=Value(root, "mm"))
+    result = rg.import_rexs(write_json(document, tmp_path / "gearbox.rexsj"))
+    gear = next(gear for name, gear in rg.loads(result.toml).gears.items() if name.endswith(f"_{number}"))
+    assert gear.tip_diameter == (pytest.approx(1e-3 * tip, rel=1e-9) if tip_taken else None)
+    assert gear.dedendum_factor == pytest.approx(dedendum if root_taken else 1.25, rel=1e-9)
+    said = {item.address.rpartition(".")[2] for item in result.assumptions if f"_{number}." in item.address}
+    assert ("tip_diameter" in said, "dedendum_factor" in said) == (not tip_taken, not root_taken)
