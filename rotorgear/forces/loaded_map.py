@@ -8,9 +8,10 @@ force, its tangent and its energy, and where the flanks tilt dM/dx and the momen
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from rotorgear.memory import require_memory
 
@@ -46,7 +47,11 @@ def is_large(approach: np.ndarray, tilted: bool) -> bool:
 
 
 def inverted(
-    load: np.ndarray, approach: np.ndarray, moment: np.ndarray, into: np.ndarray | None = None
+    load: np.ndarray,
+    approach: np.ndarray,
+    moment: np.ndarray,
+    into: np.ndarray | None = None,
+    slope: np.ndarray | None = None,
 ) -> tuple[float, np.ndarray]:
     """Return the step of x in m and the rows of a map, (p, 1 + k (steps + 1) node), node being 3, or 5 where the flanks tilt.
 
@@ -58,6 +63,7 @@ def inverted(
         approach: (k, p, l) approach in m at these loads, p positions and k tilts.
         moment: (k, p, l) about the middle of the face in N m; empty of one map without a tilt.
         into: rows to fill; those of a large map are made nowhere else.
+        slope: (k, p, l) change of the approach with the load in m/N; None: that of a monotone interpolation (PCHIP).
 
     Raises:
         AnalysisError: more memory is needed than is free.
@@ -68,24 +74,30 @@ def inverted(
         remedy = "give pitch errors to one gear only, or to fewer teeth"
         require_memory(_COPIES * 8 * shape[0] * shape[1], f"Loaded teeth over {shape[0]} positions in time", remedy)
         rows = np.empty(shape) if into is None else into
-        return _put_rows(rows, load, approach, moment), rows
-    spacing, rows = _kept(load.tobytes(), approach.tobytes(), moment.tobytes(), approach.shape)
+        return _put_rows(rows, load, approach, moment, slope), rows
+    slopes = b"" if slope is None else slope.tobytes()
+    spacing, rows = _kept(load.tobytes(), approach.tobytes(), moment.tobytes(), slopes, approach.shape)
     if into is not None:
         into[:] = rows
     return spacing, rows
 
 
 @lru_cache(maxsize=_KEPT)
-def _kept(load: bytes, approach: bytes, moment: bytes, shape: tuple[int, ...]) -> tuple[float, np.ndarray]:
-    loads, approaches, moments = map(np.frombuffer, (load, approach, moment))
+def _kept(
+    load: bytes, approach: bytes, moment: bytes, slope: bytes, shape: tuple[int, ...]
+) -> tuple[float, np.ndarray]:
+    loads, approaches, moments, slopes = map(np.frombuffer, (load, approach, moment, slope))
     of_map = approaches.reshape(shape)
     rows = np.empty(shape_of_rows(of_map, bool(moments.size)))
-    spacing = _put_rows(rows, loads, of_map, moments.reshape(shape if moments.size else 0))
+    of_slopes = slopes.reshape(shape) if slopes.size else None
+    spacing = _put_rows(rows, loads, of_map, moments.reshape(shape if moments.size else 0), of_slopes)
     rows.setflags(write=False)
     return spacing, rows
 
 
-def _put_rows(found: np.ndarray, load: np.ndarray, approach: np.ndarray, moment: np.ndarray) -> float:
+def _put_rows(
+    found: np.ndarray, load: np.ndarray, approach: np.ndarray, moment: np.ndarray, slope: np.ndarray | None
+) -> float:
     """Fill the rows, return the spacing: delta_0, then force and tangent where a curve passes the steps of x, and integrals."""
     steps = STEPS_OF_A_TILT if moment.size else STEPS
     node = NODE_OF_A_TILT if moment.size else NODE
@@ -100,25 +112,30 @@ def _put_rows(found: np.ndarray, load: np.ndarray, approach: np.ndarray, moment:
     for first in range(0, positions, _TOGETHER):
         some = slice(first, first + _TOGETHER)
         lift = PchipInterpolator(load, moment[:, some], axis=2)(loads) if moment.size else None
-        _fill(nodes[some], load, loads, approach[:, some], touch[some], spacing, lift)
+        if slope is None:
+            curve: Any = PchipInterpolator(load, approach[:, some], axis=2)
+        else:
+            curve = CubicHermiteSpline(load, approach[:, some], slope[:, some], axis=2)
+        _fill(nodes[some], curve, loads, touch[some], spacing, lift)
     return spacing
 
 
 def _fill(
     nodes: np.ndarray,
-    load: np.ndarray,
+    curve: Any,
     loads: np.ndarray,
-    approach: np.ndarray,
     touch: np.ndarray,
     spacing: float,
     moments: np.ndarray | None,
 ) -> None:
-    """Fill the nodes (p, k, steps + 1, node) of some positions; moments (k, p, n) are at the n loads between."""
+    """Fill the nodes (p, k, steps + 1, node) of some positions; moments (k, p, n) are at the n loads between.
+
+    `curve` gives the approach (k, p, n) in m at n loads, and its slope.
+    """
     positions, tilts, count, _ = nodes.shape
-    curve = PchipInterpolator(load, approach, axis=2)
     deflections = curve(loads) - touch[:, None]
     # A flat end of a curve must not divide by zero.
-    softest = 1e-6 * spacing * (count - 1) / load[-1]
+    softest = 1e-6 * spacing * (count - 1) / loads[-1]
     softness = np.maximum(curve(loads, 1), softest)
     x = spacing * np.arange(count)
     for k in range(tilts):

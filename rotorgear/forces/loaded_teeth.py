@@ -315,6 +315,7 @@ class LoadedTeeth(ForceLaw):
     expanded: bool = parameter("", "whether solvers expand about k and c: not on a flank that is mostly open", True)
     tilt: np.ndarray = parameter("m/m", "tilts (k,), rising, that close the flanks at larger z; or none", ())  # noqa: RUF009
     moment: np.ndarray = parameter("N m", "moment (k, p, l) about the middle of the face", ())  # noqa: RUF009
+    slope: np.ndarray = parameter("m/N", "change of the approach with the load, (p, l); or none: the monotone one", ())  # noqa: RUF009
     place: float = parameter("m", "place z_e of the stiffness k from the middle of the face", 0.0)
     tilt_stiffness: float = parameter(
         "N m", "stiffness of the mean state against a tilt about that place", 0.0, least=0.0
@@ -322,7 +323,7 @@ class LoadedTeeth(ForceLaw):
 
     def __post_init__(self) -> None:
         """Take lists as arrays, as a model file gives them."""
-        for name in ("load", "approach", "tilt", "moment"):
+        for name in ("load", "approach", "tilt", "moment", "slope"):
             object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
         object.__setattr__(self, "approach", np.atleast_2d(self.approach))
         super().__post_init__()
@@ -339,6 +340,8 @@ class LoadedTeeth(ForceLaw):
             raise refuse(self, "approach", "for each tilt and position an approach that rises with the load")
         if self.moment.shape != (shape if tilts else (0,)):
             raise refuse(self, "moment", "a moment for each approach at several tilts, and none without")
+        if self.slope.shape != (0,) and (tilts or self.slope.shape != shape or np.any(self.slope < 0.0)):
+            raise refuse(self, "slope", "none, or for each approach one that does not fall, and no tilts")
         if self.coast is not None and (tilts or self.coast.tilt.size):
             raise refuse(self, "coast", "coast flanks where neither side tilts")
 
@@ -376,9 +379,13 @@ class LoadedTeeth(ForceLaw):
         return self.approach if self.tilt.size else self.approach[None]
 
     @property
+    def _slopes(self) -> np.ndarray | None:
+        return self.slope[None] if self.slope.size else None
+
+    @property
     def inverse(self) -> tuple[float, np.ndarray]:
         """Step of x in m and rows of the inverted map, as `inverted` has them."""
-        return inverted(self.load, self._maps, self.moment)
+        return inverted(self.load, self._maps, self.moment, slope=self._slopes)
 
     @cached_property
     def _parameters(self) -> np.ndarray:
@@ -393,7 +400,7 @@ class LoadedTeeth(ForceLaw):
         behind = first + shape[0] * shape[1]
         coast = behind + len(face)
         found = np.empty(coast + (0 if self.coast is None else self.coast.parameter_count()))
-        spacing, _ = inverted(self.load, self._maps, self.moment, found[first:behind].reshape(shape))
+        spacing, _ = inverted(self.load, self._maps, self.moment, found[first:behind].reshape(shape), self._slopes)
         head = [self.damping / self.stiffness, self.damping, DAMPINGS[self.contact_damping], 1.0 / self.reference]
         head += [self.order, self.phase, self.path_phase, self.forward, self.periods, self.error_mean]
         head += [spacing, *shape, len(series) // 2, 0 if self.coast is None else coast]
@@ -445,6 +452,7 @@ class LoadedTeeth(ForceLaw):
             self,
             approach=self.approach.mean(axis=-2, keepdims=True),
             moment=self.moment.mean(axis=-2, keepdims=True) if self.tilt.size else self.moment,
+            slope=self.slope.mean(axis=-2, keepdims=True) if self.slope.size else self.slope,
             periods=1,
             error_cos=(),
             error_sin=(),

@@ -309,9 +309,14 @@ def teeth_law(
     """
     from scipy.interpolate import PchipInterpolator
 
+    from rotorgear.forces.loaded_map import is_large
     from rotorgear.forces.loaded_teeth import LoadedTeeth
     from rotorgear.gears.maps.contact_map import ContactMap
 
+    given: dict[str, Any] = {"periods": teeth.periods, "error_mean": gap, **more}
+    if isinstance(teeth, ContactMap) and is_large(teeth.approach[None], tilted=False):
+        # Loads between those of a map over many pitches would take several times its memory.
+        return LoadedTeeth(teeth.load, teeth.approach, stiffness, slope=teeth.slopes, **given)
     maps = (teeth,) if isinstance(teeth, ContactMap) else teeth.maps
     # Where a contact under the largest loads is no line any more, its map ends earlier.
     solved = min((one.load for one in maps), key=len)
@@ -319,7 +324,6 @@ def teeth_law(
     load = np.interp(at, np.arange(len(solved)), solved)
     # Between its loads the curve is the map's own, which knows its tangents.
     approaches = [one.approaches(load) for one in maps]
-    given: dict[str, Any] = {"periods": teeth.periods, "error_mean": gap, **more}
     if isinstance(teeth, ContactMap):
         return LoadedTeeth(load, approaches[0], stiffness, **given)
     if face is not None:

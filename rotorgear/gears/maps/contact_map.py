@@ -93,7 +93,7 @@ class ContactMap:
         # By blocks: the coefficients of all cubics take four times the map.
         for first in range(0, len(found), _BLOCK):
             some = slice(first, first + _BLOCK)
-            found[some] = CubicHermiteSpline(self.load, self.approach[some], self._monotone[some], axis=1)(load)
+            found[some] = CubicHermiteSpline(self.load, self.approach[some], self.slopes[some], axis=1)(load)
         return found
 
     def curves(self, load: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -149,7 +149,7 @@ class ContactMap:
         index = np.minimum(at.astype(int), len(self.position) - 1)
         share = (at - index)[:, None]
         following = (index + 1) % len(self.position)
-        slope = self._monotone
+        slope = self.slopes
         return (
             (1.0 - share) * self.approach[index] + share * self.approach[following],
             (1.0 - share) * slope[index] + share * slope[following],
@@ -171,7 +171,7 @@ class ContactMap:
         return value, derivative / width
 
     @cached_property
-    def _monotone(self) -> np.ndarray:
+    def slopes(self) -> np.ndarray:
         """Slopes (p, l) with which every cubic rises: within three times the chords beside them (Fritsch and Carlson)."""
         if self.compliance is None:
             return np.asarray(PchipInterpolator(self.load, self.approach, axis=1)(self.load, 1))

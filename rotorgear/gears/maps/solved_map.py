@@ -53,6 +53,8 @@ _FARTHER = 1.05
 # Groups of loads as multiples of the working one, and groups with the contacts under their largest load.
 Groups = tuple[tuple[float, ...], ...]
 _Solved = list[tuple[tuple[float, ...], PatchedContacts]]
+# Slices, multiples of the working load, and the contacts of the commonest period under the last of these.
+Step = tuple[Slices, tuple[float, ...], PatchedContacts]
 
 
 def up_to(problem: ContactProblem, cycle: MeshCycle, load: float, family: Groups) -> _Solved:
@@ -305,14 +307,12 @@ def solved_map(
     common = of_period.index(max(kinds, key=of_period.count))
     place = common + positions.position
     odd_teeth = any(flank.single_teeth for flank in problem.flanks)
-    solved: list[list[np.ndarray]] = [[] for _ in kinds]
-    below: dict[int, PatchedContacts] = {}
-    touch: list[np.ndarray] = []
+    steps: list[Step] = []
     notes: list[str] = []
     factors: list[float] = []
     asked = families(problem, groups)
     for number, family in enumerate(asked):
-        told = part_of(progress, number / len(asked), (number + 1) / len(asked))
+        told = part_of(progress, 0.5 * number / len(asked), 0.5 * (number + 1) / len(asked))
         try:
             if not factors and positions.cycle is not None:
                 notes += positions.cycle.warnings
@@ -330,47 +330,69 @@ def solved_map(
                 raise
             contacts = []
         for group, commonest in contacts:
-            for kind, errors in enumerate(kinds):
-                found = commonest
-                if odd_teeth:
-                    gap = problem.gap(slices, of_period.index(errors) - common)
-                    found = patched_contacts(problem, slices, gap, load * group[-1], known=commonest)
-                # Where patches are those of the group below, its last load needs no second solution; a single load fades nothing.
-                new = bool(factors) and len(group) > 1 and not same_patches(found, below[kind])
-                bound = factors[-1:] if new else []
-                columns = map_columns(slices, found, [load * f for f in (*bound, *group)], few=problem.one_slice)
-                if bound:
-                    columns = faded(columns, solved[kind][-1][:, -1], [*bound, *group])
-                if not factors:
-                    touch.append(np.array([contact.gap.min() for contact in found.contacts]))
-                solved[kind].append(columns)
-                below[kind] = found
-                told((kind + 1) / len(kinds), f"teeth {kind + 1} of {len(kinds)}")
+            steps.append((slices, group, commonest))
             factors += group
         if factors[-1] < family[-1][-1]:
             notes.append(
                 f"the loaded teeth were solved up to {factors[-1]:.3g} times the working load; above it their contact is no line"
             )
             break
-    order = [kinds.index(errors) for errors in of_period]
     loads = load * np.array([0.0, *factors])
-    curves = []
-    for first, parts in zip(touch, solved, strict=True):
-        approach, slope, moment = np.concatenate(parts, axis=1).swapaxes(1, 2)
-        approach = np.column_stack([first, approach])
-        curves.append((approach, with_start(slope, approach, loads), np.column_stack([np.zeros(len(first)), moment])))
-    # Over all periods, period n being of the kind order[n].
-    approach, slope, moment = (np.concatenate([curves[k][i] for k in order]) for i in range(3))
+    each = len(place)
+    approach, slope, moment = np.empty((3, len(of_period) * each, len(loads)))
+    for kind, errors in enumerate(kinds):
+        progress(0.5 + 0.5 * kind / len(kinds), f"teeth {kind + 1} of {len(kinds)}")
+        # Teeth by teeth: the contacts of all of many periods at once would take more memory than the map.
+        curves = _curves(problem, load, steps, of_period.index(errors) - common if odd_teeth else None)
+        for period in (number for number, other in enumerate(of_period) if other == errors):
+            some = slice(period * each, (period + 1) * each)
+            approach[some], slope[some], moment[some] = curves
     position, approach, slope, moment = positions.kept(approach, slope, moment, int(np.argmin(np.abs(loads - load))))
     return ContactMap(
         position=position,
-        periods=len(order),
+        periods=len(of_period),
         load=loads,
         approach=approach,
         warnings=tuple(dict.fromkeys((*problem.warnings, *notes))),
         compliance=slope,
         moment=None if problem.one_slice else moment,
     )
+
+
+def _curves(
+    problem: ContactProblem, load: float, steps: list[Step], ahead: int | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Approach, its slope and the moment (n, l) of the teeth of one base pitch under no load and all groups of loads.
+
+    Args:
+        problem: the teeth. load: the working load (N).
+        steps: slices, group of multiples and contacts of the commonest period, from the smallest loads up.
+        ahead: base pitches from the commonest period to this one; None where all are as that one.
+    """
+    columns: list[np.ndarray] = []
+    factors: list[float] = []
+    touch = np.zeros(0)
+    below = steps[0][2]
+    for slices, group, commonest in steps:
+        found = commonest
+        if ahead is not None:
+            gap = problem.gap(slices, ahead)
+            found = patched_contacts(problem, slices, gap, load * group[-1], known=commonest)
+        # Where patches are those of the group below, its last load needs no second solution; a single load fades nothing.
+        new = bool(factors) and len(group) > 1 and not same_patches(found, below)
+        bound = factors[-1:] if new else []
+        solved = map_columns(slices, found, [load * f for f in (*bound, *group)], few=problem.one_slice)
+        if bound:
+            solved = faded(solved, columns[-1][:, -1], [*bound, *group])
+        if not factors:
+            touch = np.array([contact.gap.min() for contact in found.contacts])
+        columns.append(solved)
+        factors += group
+        below = found
+    deflection, compliance, moment = np.concatenate(columns, axis=1).swapaxes(1, 2)
+    approach = np.column_stack([touch, deflection])
+    slope = with_start(compliance, approach, load * np.array([0.0, *factors]))
+    return approach, slope, np.column_stack([np.zeros(len(touch)), moment])
 
 
 def _error(problem: ContactProblem, solved: ContactMap, load: float) -> float:

@@ -9,7 +9,9 @@ import pytest
 
 from rotorgear.errors import AnalysisError
 from rotorgear.forces import loaded_map
-from rotorgear.forces.loaded_map import inverted
+from rotorgear.forces.loaded_map import FORCE, NODE, inverted
+from rotorgear.gears.maps.contact_map import ContactMap
+from rotorgear.system.local import teeth_law
 
 
 def teeth(positions: int, tilts: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -59,3 +61,40 @@ def test_what_no_machine_holds_is_refused(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("rotorgear.memory.free_memory", lambda: 1e5)
     with pytest.raises(AnalysisError, match=r"over 40 positions in time would take .* GB of memory, and 0\.0001 GB"):
         inverted(*teeth(40, 1))
+
+
+def test_the_curve_between_loads_is_that_of_the_slopes_that_are_given() -> None:
+    """Hermite's cubics are exact for delta = t + a F - b F^2, whose inverse is a square root; monotone ones are not."""
+    load = np.array([0.0, 400.0, 900.0, 2000.0])
+    touch = np.array([[1e-6], [-2e-6], [3e-6]])
+    a = np.array([[2e-9], [3e-9], [2.5e-9]])
+    b = 4e-13
+    approach = (touch + a * load - b * load**2)[None]
+    slope = (a - 2.0 * b * load)[None]
+    spacing, rows = inverted(load, approach, np.zeros(0), slope=slope)
+    x = spacing * np.arange(loaded_map.STEPS + 1)
+    _, monotone = inverted(load, approach, np.zeros(0))
+    for k in range(3):
+        inside = x < a[k] * load[-1] - b * load[-1] ** 2
+        exact = (a[k] - np.sqrt(a[k] ** 2 - 4.0 * b * x[inside])) / (2.0 * b)
+        force = rows[k, 1 + FORCE :: NODE][inside]
+        assert force == pytest.approx(exact, abs=1e-6 * load[-1])
+        assert np.abs(monotone[k, 1 + FORCE :: NODE][inside] - exact).max() > 1e-4 * load[-1]
+
+
+def test_a_large_map_keeps_no_loads_between_and_has_the_same_curves(monkeypatch: pytest.MonkeyPatch) -> None:
+    u = np.arange(16) / 16
+    load = np.concatenate([[0.0], np.geomspace(1.0, 5000.0, 40)])
+    soft = (1.0 + 0.2 * np.cos(2.0 * np.pi * u))[:, None] / 3e8
+    teeth_map = ContactMap(
+        u, 1, load, 2e-6 * np.sin(2.0 * np.pi * u)[:, None] + soft * load + 1e-6 * (load / 1e3) ** 0.7
+    )
+    usual = teeth_law(teeth_map, 3e8, 1e-6)
+    monkeypatch.setattr(loaded_map, "_LARGE", 0.0)
+    large = teeth_law(teeth_map, 3e8, 1e-6)
+    assert large.approach.size < usual.approach.size / 7
+    for one, other in zip(large.inverse, usual.inverse, strict=True):
+        assert one == pytest.approx(other, rel=2e-3, abs=1e-3 * np.abs(other).max())
+    force = [law.inverse[1][:, 1 + FORCE :: NODE] for law in (large, usual)]
+    assert force[0] == pytest.approx(force[1], abs=1e-4 * load[-1])
+    assert large.mean().slope == pytest.approx(teeth_map.slopes.mean(axis=0)[None])
