@@ -79,3 +79,9 @@ def test_pivots_of_one_and_two_rows_count_the_negative_eigenvalues_of_a_dense_he
         if empty_diagonal and n > 1:  # no pivot of one row to begin with
             A[np.arange(n), np.arange(n)] = 0.0
         assert negative_eigenvalues(A) == np.count_nonzero(np.linalg.eigvalsh(A) < 0.0)
+
+
+def test_the_backward_error_of_another_matrix_factor_has_its_closed_form():
+    """A = 2 I with the factor of 6 I: x = b/6, so that |b/3 - b| / (2 |b|/6 + |b|) = 1/2."""
+    A = sp.csc_array(2.0 * np.eye(9))
+    assert solve_error(A, factor_general(sp.csc_array(3.0 * A))) == pytest.approx(0.5, rel=1e-12)
