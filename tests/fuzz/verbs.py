@@ -156,7 +156,7 @@ FINITE: dict[str, tuple[str, ...]] = {
     "transient": ("time", "values", "mesh_force"),
     "frf": ("receptance",),
     "state space": ("mass_matrix", "velocity_terms", "stiffness_matrix", "input_matrix", "output_matrix"),
-    "scatter": ("z", "sample_hz"),
+    "scatter": ("z",),
     "sensors": ("mode_hz",),
     "orbits": ("value", "period", "mean_force", "largest_force"),
 }

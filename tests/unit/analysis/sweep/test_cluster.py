@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -27,6 +28,7 @@ from tests.unit.analysis.sweep.test_sweep import PAIR, ROOT, SHORT, same
 
 distributed = pytest.importorskip("distributed")
 OVER = {"operation.speed": "3000 rpm:9000 rpm:70"}
+ROLES = ("client", "scheduler", "worker")
 
 
 @pytest.fixture(scope="module")
@@ -291,3 +293,31 @@ def test_tls_takes_the_certificates_of_dasks_settings_and_refuses_without(monkey
     assert address == "tls://host:8786"
     assert arguments["require_encryption"]
     assert arguments["ssl_context"] is made
+
+
+@pytest.mark.long
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="makes its certificate by openssl")
+def test_a_scheduler_that_asks_for_certificates_gets_those_of_dasks_settings(tmp_path: Path) -> None:
+    import dask
+
+    key = tmp_path / "key.pem"
+    certificate = tmp_path / "certificate.pem"
+    named = ["-keyout", str(key), "-out", str(certificate), "-subj", "/CN=localhost"]
+    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", *named]
+    subprocess.run(command, check=True, capture_output=True)
+    own = {f"tls_{role}_{part}": str(path) for role in ROLES for part, path in (("cert", certificate), ("key", key))}
+    security = distributed.Security(tls_ca_file=str(certificate), require_encryption=True, **own)
+    settings = {"distributed.comm.tls.ca-file": str(certificate), "distributed.comm.require-encryption": True}
+    for part, path in (("cert", certificate), ("key", key)):
+        settings[f"distributed.comm.tls.client.{part}"] = str(path)
+    few = {"operation.speed": "3000 rpm:9000 rpm:5"}
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tls://", security=security, dashboard_address=":0"
+    ) as running:
+        address = running.scheduler_address
+        assert address.startswith("tls://")
+        with pytest.raises(AnalysisError, match=r"TLS|no dask scheduler answers"):
+            rg.cluster(address, timeout=2.0)
+        with dask.config.set(settings), rg.cluster(address) as cluster:
+            whole = rg.sweep(rg.load(PAIR), few, executor=cluster, **SHORT)
+    assert same(whole, rg.sweep(rg.load(PAIR), few, **SHORT))
