@@ -378,8 +378,12 @@ class _Unpadded:
 
     def __rich_console__(self, console: Any, options: Any) -> Iterator[Any]:
         from rich.segment import Segment
+        from rich.table import Table as RichTable
 
         for part in self.parts:
+            # One blank between columns, rather than names that are cut.
+            if isinstance(part, RichTable) and part.__rich_measure__(console, options).minimum > options.max_width:
+                part.collapse_padding = True
             for line in console.render_lines(part, options, pad=False):
                 while line and not line[-1].text.strip():
                     line.pop()

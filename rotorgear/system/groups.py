@@ -70,6 +70,15 @@ class ElementGroup:
             return self
         return replace(self, matrices=replace(m, modulus=m.modulus + (self.spin * speed) ** 2 * m.modulus_per_square))
 
+    def turning_at(self, speed: float) -> ElementGroup:
+        """The group at a reference speed in rad/s, its circulation that of this speed."""
+        m = self.matrices
+        if m.circulation_per_speed is None or not self.spin * speed:
+            return self
+        turning = self.spin * speed * m.circulation_per_speed
+        Z = turning if m.circulation is None else m.circulation + turning
+        return replace(self, matrices=replace(m, circulation=Z, circulation_per_speed=None))
+
     @property
     def stiffness_per_square(self) -> np.ndarray | None:
         """What the stiffness (e, d, d) grows by with the square of the reference speed; None where it does not."""

@@ -185,5 +185,6 @@ def imbalance(equilibrium: Equilibrated) -> float:
         kind[system.nodes.of_casing(name)[: 6 * seats]] = np.tile(_OF_MOTIONS, seats)
     sizes = np.array([most[kind == one].max(initial=0.0) for one in (_FORCE, _MOMENT, _INNER)])
     sizes[_MOMENT] = max(sizes[_MOMENT], sizes[_FORCE] * np.ptp(system.positions(), axis=0).max())
+    sizes[_INNER] = max(sizes[_INNER], sizes[_FORCE])  # statics mostly leaves them at rest
     beside = sizes[kind[np.asarray(abs(T).argmax(axis=0)).ravel()]]
     return float(np.max(np.abs(T.T @ missing) / np.where(beside > 0.0, beside, 1.0), initial=0.0))

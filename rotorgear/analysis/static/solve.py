@@ -200,7 +200,8 @@ def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawS
         solver = StaticSolver(K, R)
     force = np.where(closed, lines.force(q), 0.0)
     moment = np.where(closed, lines.moment(q), 0.0)
-    return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, moment, notes, tuple(laws))
+    turning = [group.turning_at(speed) for group in groups]
+    return Equilibrated(system, turning, lines, closed, solver, R, loads, q, force, moment, notes, tuple(laws))
 
 
 def _held(system: System, groups: list[ElementGroup], speed: float) -> tuple[sp.csc_array, np.ndarray]:

@@ -334,3 +334,21 @@ def test_a_moment_that_is_missing_is_not_hidden_by_large_forces() -> None:
     missing[3] = 0.0
     missing[0] = 1e-3
     assert imbalance(replace(found, loads=found.loads + missing)) == pytest.approx(1e-3 / 5000.0, rel=0.01)
+
+
+def test_reactions_of_fixed_ends_carry_the_weight_of_a_shaft_with_internal_damping_at_speed() -> None:
+    model = rg.loads(
+        "operation = { input_shaft = 's', speed = '6000 rpm', gravity = [0.0, -9.81, 0.0] }\n"
+        "shafts.s = { internal_damping = 2e-4, sections = [{ length = '600 mm', outer_diameter = '30 mm' }] }\n"
+        "disks.d = { shaft = 's', at = '350 mm', mass = 20.0, polar_inertia = 0.2, diametral_inertia = 0.1 }\n"
+        "supports.a = { shaft = 's', at = 'start', fixed = ['x', 'y', 'z', 'torsion'] }\n"
+        "supports.b = { shaft = 's', at = 'end', fixed = ['x', 'y'] }\n"
+    )
+    result = rg.static(model)
+    disk = 20.0 * 9.81
+    shaft = 7850.0 * np.pi * 0.015**2 * 0.6 * 9.81
+    # The shaft's rotation turns its deflection sideways, and no force: reactions are those of a beam on two ends.
+    assert abs(result.displacement[:, 0]).max() > 1e-2 * abs(result.displacement[:, 1]).max()
+    assert result.support_force["a"][:2] == pytest.approx([0.0, disk * 250.0 / 600.0 + shaft / 2.0], rel=1e-6, abs=1e-6)
+    assert result.support_force["b"][:2] == pytest.approx([0.0, disk * 350.0 / 600.0 + shaft / 2.0], rel=1e-6, abs=1e-6)
+    assert result.imbalance < 1e-10
