@@ -381,9 +381,11 @@ class _Unpadded:
         from rich.table import Table as RichTable
 
         for part in self.parts:
-            # One blank between columns, rather than names that are cut.
-            if isinstance(part, RichTable) and part.__rich_measure__(console, options).minimum > options.max_width:
-                part.collapse_padding = True
+            # One blank between columns, rather than names that are cut; words of a last column may stand below each other.
+            if isinstance(part, RichTable):
+                size = part.__rich_measure__(console, options)
+                least = size.maximum if part.columns[-1].justify == "right" else size.minimum
+                part.collapse_padding |= least > options.max_width
             for line in console.render_lines(part, options, pad=False):
                 while line and not line[-1].text.strip():
                     line.pop()
