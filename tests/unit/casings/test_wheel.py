@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from rotorgear.casings.casing import forget
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.wheel import ReducedWheel
-from rotorgear.casings.wheel_reduction import reduce_wheel
+from rotorgear.casings.wheel_reduction import _Rim, reduce_wheel
 from rotorgear.errors import AnalysisError
 from tests.paths import ROOT
 from tests.unit.casings.blocks import write_inp
@@ -419,3 +420,15 @@ def test_a_shaft_carries_the_mass_of_its_wheel_and_none_of_the_wheels_modes() ->
     assert row.body_mass_kg == pytest.approx(wheel.body_mass, rel=1e-9)
     bare = alone.polar_inertia_kg_m2 - model.layout.gear("pinion").body.polar_inertia
     assert row.polar_inertia_kg_m2 == pytest.approx(bare + wheel.polar_inertia, rel=1e-9)
+
+
+@pytest.mark.parametrize(("uniform", "largest"), [(0.6, 3), (0.8, 0)])
+def test_the_strongest_wave_of_a_real_field_is_that_of_the_largest_mean_square(uniform: float, largest: int) -> None:
+    # Over the circle the square of a constant a is a^2 in the mean, that of cos 3 theta is 1/2: they are equal at a = .707.
+    angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
+    points = np.column_stack([0.2 * np.cos(angle), 0.2 * np.sin(angle), np.zeros(40)])
+    seat = SimpleNamespace(nodes=np.arange(40), surface_mass=np.eye(40))
+    rim = _Rim(SimpleNamespace(seats=[None, seat], mesh=SimpleNamespace(points=points)))  # type: ignore[arg-type]
+    radial = uniform + np.cos(3.0 * angle)
+    field = radial[:, None] * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(40)])
+    assert rim.largest(field.ravel()) == largest
