@@ -186,7 +186,7 @@ class BearingSheet(ModelResult, kind="bearing"):
         "difference between its law at the state printed and the load of the gearbox", note=", relative"
     )
     error_estimate: float = of(
-        "estimated relative error of stiffness and damping", note=": twice the change on a finer grid", form=".0e"
+        "estimated relative error of stiffness and damping", note=": twice the change on a finer grid", form=error_words
     )
     cpu_seconds: float = of("CPU time of the bearing at one speed and load", "s", form=".4f")
 

@@ -10,7 +10,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
 from rotorgear.results.schema import Record, derived, of
-from rotorgear.results.table import Block, Column, Line, exact, table_of, table_over
+from rotorgear.results.table import Block, Column, Line, error_words, exact, table_of, table_over
 
 # So many crossings are listed; sidebands of a gearbox give thousands.
 _MOST_CROSSINGS = 100
@@ -38,7 +38,9 @@ class Crossing(Record):
     line: str = of("excitation line", note=" that is met", column="line")
     branch: int = of("branch", note=", from 1", column="branch")
     speed: float = of("speed of the input shaft", "rad/s", note=" there", form=".2f", column="rpm")
-    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f", column="Hz")
+    frequency_hz: float = of(
+        "frequency", "Hz", note=" of the mode there, the damped one", form=exact(".3f"), column="Hz"
+    )
     damping_ratio: float = of("damping ratio", note=" of the mode there", form=".3f", column="zeta %")
     whirl: str = of("sense of whirl", note=" there, for the shaft whose line it is", column="whirl")
     participation: float = of(
@@ -81,7 +83,7 @@ class Onset(Record):
     speed: float = of(
         "speed of the input shaft", "rad/s", note=" from which on it is unstable", form=".1f", column="from rpm"
     )
-    frequency_hz: float = of("frequency", "Hz", note=" there", form=".3f", column="Hz")
+    frequency_hz: float = of("frequency", "Hz", note=" there", form=exact(".3f"), column="Hz")
 
 
 class CampbellResult(AboutEquilibrium, kind="campbell"):
@@ -143,7 +145,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         "what moves", "", "branch", note=", at the last speed at which the branch oscillates"
     )
     error_estimate: np.ndarray = of(
-        "estimated relative discretisation error", "", "branch", note=", the larger of both ends", form=".0e"
+        "estimated relative discretisation error", "", "branch", note=", the larger of both ends", form=error_words
     )
     basis_error: float = of(
         "largest relative error of the reduced eigenvalues", note=" against true solutions at speeds outside the basis"
@@ -208,5 +210,5 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         yield f"{self.dofs} dofs, {self.cost}; {self.method}"
         estimates = self.error_estimate[np.isfinite(self.error_estimate)]
         if estimates.size:
-            yield f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}"
+            yield f"error: estimated relative discretisation error of each frequency, largest {error_words(estimates.max(), 1)}"
         yield from (*self.remarks(), "")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
 from rotorgear.quantity import counted, millimetres
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, grid, table_of, written
+from rotorgear.results.table import Block, Column, error_words, grid, table_of, written
 
 # Products of inertia below this share of the largest are shown as 0.
 _ROUNDING = 1e-9
@@ -106,13 +107,14 @@ class CasingSurvey(Result, kind="casing"):
         for name, row in self.casings.items():
             yield grid(row.facts(), "", "", left=2, caption=f"casing {name}", titled=True, headed=False)
             yield from (*(f"  {note}" for note in row.notes), "")
+            small = partial(error_words, decimals=1)
             columns = (
                 (row.free_frequency_hz, ".2f"),
-                (row.free_mesh_error, ".1e"),
+                (row.free_mesh_error, small),
                 (row.held_frequency_hz, ".2f"),
-                (row.held_mesh_error, ".1e"),
+                (row.held_mesh_error, small),
                 (row.reduced_frequency_hz, ".2f"),
-                (row.reduction_error, ".1e"),
+                (row.reduction_error, small),
             )
             modes = [
                 (str(k + 1), *(written(values[k], form) if k < len(values) else "-" for values, form in columns))

@@ -14,7 +14,7 @@ from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Declared, Record, Written, derived, of
-from rotorgear.results.table import Block, Column, Line, error_words, grid, table_of
+from rotorgear.results.table import Block, Column, Line, error_words, exact, grid, table_of
 
 
 class CriticalSpeed(Record):
@@ -22,7 +22,9 @@ class CriticalSpeed(Record):
 
     line: str = of("excitation line", column="line")
     speed: float = of("speed of the input shaft", "rad/s", form=".2f", column="rpm")
-    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f", column="Hz")
+    frequency_hz: float = of(
+        "frequency", "Hz", note=" of the mode there, the damped one", form=exact(".3f"), column="Hz"
+    )
     damping_ratio: float = of(
         "damping ratio", note=" of the mode there; 0 in an undamped analysis", form=".3f", column="zeta %"
     )
@@ -33,7 +35,7 @@ class CriticalSpeed(Record):
     excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
     description: str = of("what moves", column="what moves")
     residual: float = of(
-        "residual", note=" |w - p W| / (p W), with the eigenvalue solved for again at that speed", form=".0e"
+        "residual", note=" |w - p W| / (p W), with the eigenvalue solved for again at that speed", form=error_words
     )
     error_estimate: float = of(
         "estimated relative discretisation error",

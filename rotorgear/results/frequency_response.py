@@ -98,11 +98,13 @@ class FrequencyResponse(BetweenPlaces, kind="frf"):
         ),
     )
     damping_ratio: float = of("damping ratio", note=" added to every elastic mode")
-    residual: float = of("residual", note=" of the equations, the largest, relative to the forces inside", form=".0e")
+    residual: float = of(
+        "residual", note=" of the equations, the largest, relative to the forces inside", form=error_words
+    )
     error_estimate: float = of(
         "estimated relative discretisation error",
         note=": change on a finer mesh at the largest responses, relative to the largest; 0 without shaft elements",
-        form=".0e",
+        form=error_words,
     )
 
     def of(self, quantity: str) -> np.ndarray:

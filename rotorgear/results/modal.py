@@ -86,7 +86,9 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         """Damped frequency |Im s| / 2 pi, (m,)."""
         return np.where(self.rigid, 0.0, np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
 
-    @derived("natural frequency", "Hz", "mode", note=", |s| / 2π; equal to the former without damping", form=".4f")
+    @derived(
+        "natural frequency", "Hz", "mode", note=", |s| / 2π; equal to the former without damping", form=exact(".4f")
+    )
     def natural_frequency_hz(self) -> np.ndarray:
         """|s| / 2 pi, (m,)."""
         return np.where(self.rigid, 0.0, np.abs(self.eigenvalues) / (2.0 * np.pi))
@@ -189,7 +191,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         yield from ("", f"{self.dofs} dofs, {self.mesh_text}, {self.cost}; {self.method}")
         estimates = self.error_estimate[np.isfinite(self.error_estimate)]
         if estimates.size:
-            yield f"error: estimated relative error of each frequency; largest {estimates.max():.1e}"
+            yield f"error: estimated relative error of each frequency; largest {error_words(estimates.max(), 1)}"
         yield from (*self.remarks(), "")
 
 

@@ -216,7 +216,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
         yield from ("", f"|mu|: largest Floquet multiplier; {shown}", f"{self.dofs} dofs; {self.method}")
         yield f"{self.cpu_per_point:.3g} CPU s a point, {self.cost} in all"
         if self.error_estimate == self.error_estimate:
-            yield f"error estimate {self.error_estimate:.1e} of the motions' coefficients"
+            yield f"error estimate {error_words(self.error_estimate, 1)} of the motions' coefficients"
         yield from (*self.remarks(), "")
 
     def _value(self, si: float, parameter: int = 0) -> str:
@@ -284,7 +284,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
             (
                 self._value(one.value),
                 written(one.stable),
-                f"{one.deviation:.1e}",
+                error_words(one.deviation, 1),
                 written(one.growth, ".5f"),
                 f"{one.expected:.5f}",
             )

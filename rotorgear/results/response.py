@@ -172,7 +172,9 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     solver_error: float = of("solver error", note=": of the reduced basis at the points checked; direct: the residual")
     checked: int = of("number of points checked")
     error_estimate: float = of(
-        "estimated relative discretisation error", note=": change of the largest forces on a finer mesh", form=".0e"
+        "estimated relative discretisation error",
+        note=": change of the largest forces on a finer mesh",
+        form=error_words,
     )
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, of
-from rotorgear.results.table import Block, Column, Line, table_of
+from rotorgear.results.table import Block, Column, Line, error_words, table_of
 
 WITHIN = "within"
 NOT_WITHIN = "not within"
@@ -62,7 +62,9 @@ class ResponseCritical(Record):
     margin_percent: float = of(
         "separation from the operating speed", "%", note=" of the operating speed", form="+.2f", column="margin %"
     )
-    error_estimate: float = of("estimated relative discretisation error", note=" of the critical speed", form=".0e")
+    error_estimate: float = of(
+        "estimated relative discretisation error", note=" of the critical speed", form=error_words
+    )
 
 
 class StandardsResult(ModelResult, kind="standards"):

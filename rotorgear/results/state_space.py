@@ -29,10 +29,12 @@ class StateSpace(BetweenPlaces, kind="state_space"):
     reduced: bool = of("whether it is reduced to modes and static shapes")
     kept_modes: int = of("number of modes that were kept", note="; 0 without a reduction")
     reduction_error: float = of(
-        "estimated error of the reduction", note=": twice the largest change of a response over its size", form=".0e"
+        "estimated error of the reduction",
+        note=": twice the largest change of a response over its size",
+        form=error_words,
     )
     error_estimate: float = of(
-        "estimated error of the mesh", note=": the largest change of a response over its size", form=".0e"
+        "estimated error of the mesh", note=": the largest change of a response over its size", form=error_words
     )
 
     @property

@@ -202,7 +202,9 @@ class StaticResult(AboutEquilibrium, kind="static"):
         note=" at a degree of freedom, relative to the largest of an element or load; moments beside moments",
     )
     error_estimate: float = of(
-        "estimated relative discretisation error", note=": change of forces when every element is halved", form=".0e"
+        "estimated relative discretisation error",
+        note=": change of forces when every element is halved",
+        form=error_words,
     )
     place_displacement: dict[str, np.ndarray] = of(
         "displacements of parts on shafts", "m, rad", "PLACE", "component", json="displacement", default_factory=dict

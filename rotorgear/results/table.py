@@ -109,9 +109,9 @@ class Table:
 Block = str | Line | Table
 
 
-def error_words(value: float) -> str:
-    """A small relative error in one digit; what rounding alone decides is not told apart."""
-    return "<1e-9" if value < _NOTHING else f"{value:.0e}"
+def error_words(value: float, decimals: int = 0) -> str:
+    """A small relative error in one digit, or some more; what rounding alone decides is not told apart."""
+    return "<1e-9" if value < _NOTHING else f"{value:.{decimals}e}"
 
 
 def exact(form: str) -> Callable[[float], str]:

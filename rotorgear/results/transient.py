@@ -234,7 +234,9 @@ class TransientResult(ModelResult, kind="transient"):
         "sizes that the errors of the statistics are taken relative to", "", "quantity", json=None
     )
     error_estimate: float = of(
-        "largest relative error of the statistics that are shown", note=", each relative to its own size", form=".1e"
+        "largest relative error of the statistics that are shown",
+        note=", each relative to its own size",
+        form=error_words,
     )
     error_source: str = of("where the errors of the statistics are from", note=", in words")
     energy: EnergyLedger = of("energies", record=EnergyLedger)
@@ -308,9 +310,9 @@ class TransientResult(ModelResult, kind="transient"):
         cost = f"{self.dofs} dofs, {self.steps} steps of {self.step:.4g} s, {self.cost}"
         yield f"{cost}; {self.method} ({self.reason})"
         if known:
-            within = f"error: statistics within {self.error_estimate:.1e}, each of its own size"
+            within = f"error: statistics within {error_words(self.error_estimate, 1)}, each of its own size"
             yield f"{within}; {self.seconds.get('error estimate', 0.0):.2f} CPU s, from {self.error_source}"
-        yield f"energy error: {self.energy.share:.1e} of the largest term"
+        yield f"energy error: {error_words(self.energy.share, 1)} of the largest term"
         yield from (*self.remarks(), "")
 
     def error_of(self, statistic: str) -> float:

@@ -345,6 +345,16 @@ def test_the_terminal_and_the_page_write_a_number_alike() -> None:
     ]
 
 
+def test_no_declared_error_or_residual_is_written_as_a_power_of_ten_of_rounding() -> None:
+    kinds()
+    declared = [one for cls in Record.known.values() for one in cls.declarations.values()]
+    small = [
+        one for one in declared if one.form and one.name.endswith(("error_estimate", "residual", "reduction_error"))
+    ]
+    assert len({one.name for one in small}) == 3
+    assert {written(value, one.form) for one in small for value in (0.0, 1e-23)} == {"<1e-9"}
+
+
 def test_a_changed_value_changes_the_hash_of_a_model_and_the_order_of_its_tables_does_not() -> None:
     rotor = model("jeffcott")
     same = rg.Model(**dict(reversed(rotor.model_dump(exclude_none=True).items())))

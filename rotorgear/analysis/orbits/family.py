@@ -14,7 +14,7 @@ from rotorgear.analysis.orbits.between import Between, between
 from rotorgear.analysis.sweep.axes import axis_of, number_places
 from rotorgear.analysis.sweep.point import depends_on_speed, orders_of, shared_period
 from rotorgear.analysis.transient.request import prepare
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError, ModelError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
@@ -148,8 +148,18 @@ class SystemFamily:
         return turned
 
     def _exact(self, shares: Sequence[float]) -> LocalSystem:
-        """The system assembled at shares of the ranges."""
-        return self._with_means((self._built(shares) if any(shares) else self.local).local)
+        """The system assembled at shares of the ranges.
+
+        Raises:
+            ConvergenceError: beyond an end of a range, where an iteration may look, there is no such model.
+        """
+        try:
+            local = self._built(shares) if any(shares) else self.local
+        except (AnalysisError, ModelError):
+            if all(0.0 <= share <= 1.0 for share in shares):
+                raise
+            raise ConvergenceError("a step leaves the range for values that no model has") from None
+        return self._with_means(local.local)
 
     @cached_property
     def _through(self) -> Between | None:

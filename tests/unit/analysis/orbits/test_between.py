@@ -8,6 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.orbits.between import between
 from rotorgear.analysis.orbits.family import SystemFamily, range_of
+from rotorgear.errors import ConvergenceError, ModelError
 from tests.paths import MODELS
 from validation.studies.dead_zone import HALF_BACKLASH, STIFFNESS, TEETH, DeadZone
 
@@ -74,3 +75,13 @@ def test_the_centrifugal_terms_of_an_elastic_wheel_go_with_the_speed_that_is_fol
     there = SystemFamily(twice, [range_of(twice, "operation.speed", [2.0 * speed, 3.0 * speed])], None, 1)
     found, wanted = family.system([1.0]).K.toarray(), there.system([0.0]).K.toarray()
     assert found == pytest.approx(wanted, rel=1e-12, abs=1e-12 * abs(wanted).max())
+
+
+def test_a_value_that_no_model_has_shortens_a_step_beyond_the_range_and_is_refused_within() -> None:
+    address = "gears.wheel.polar_inertia"
+    family = _family("backlash_pair.toml", address, "1e-3 kg m^2:3e-3 kg m^2")
+    assert family.system([1.7]).n == family.system([0.0]).n
+    with pytest.raises(ConvergenceError, match="leaves the range"):
+        family.system([-2.3])  # -3.6e-3 kg m^2
+    with pytest.raises(ModelError, match=address):
+        _family("backlash_pair.toml", address, "-1e-3 kg m^2:3e-3 kg m^2")
