@@ -302,7 +302,7 @@ def test_pads_that_follow_slowly_are_as_stiff_as_pads_in_balance_and_fast_ones_k
     assert np.abs(balance.in_displacement - balance.in_displacement.T)[2:, 2:].max() > 1e-3 * scale[2, 2] * size[3]
     np.testing.assert_allclose(slow.stiffness / scale, balance.in_displacement / scale, atol=1e-6)
     np.testing.assert_allclose(slow.force, balance.force, rtol=1e-12)
-    # Between both a pad without a moment follows by its own tilt, b = -Z_bb^-1 Z_ba a. Z itself is singular: a pad that tilts with
+    # Between both a pad without a moment follows by its own tilt, b = -Z_bb^-1 Z_ba a. Z is singular: a pad that tilts with
     # the collar about its pivot strains nothing.
     middle = replace(law.settled(d), whirl_ratio=0.5).linearised(d, speed=SPEED)
     omega = 0.5 * SPEED
