@@ -48,13 +48,17 @@ def packages(root: Path = ROOT) -> list[str]:
 
 
 def nearest_tests(file: str, root: Path = ROOT) -> tuple[str, ...]:
-    """Paths of tests of a file below rotorgear/: those that import it, then the folder that mirrors it, then those of laws."""
+    """Paths of tests of a file below rotorgear/, the nearest first.
+
+    Those that import it, those of its name wherever they stand, the folder that mirrors its own, and those of laws.
+    """
     module = "rotorgear." + file.removesuffix(".py").replace("/", ".")
     places = [root / "tests" / "unit" / parent for parent in Path(file).parents]
     mirror = next(place for place in places if place.is_dir())
     contract = root / "tests" / "contract"
     every = sorted([*(root / "tests" / "unit").rglob("test_*.py"), *contract.glob("test_*.py")])
     direct = [test for test in every if f"from {module} import" in test.read_text(encoding="utf-8")]
+    direct += [test for test in every if test.name.startswith(f"test_{Path(file).stem}") and test not in direct]
     around = [] if mirror.name == "unit" else sorted(set(mirror.rglob("test_*.py")) - set(direct))
     kind = file.partition("/")[0]
     laws = sorted(set(contract.glob(_OF_LAWS[kind])) - set(direct)) if kind in _OF_LAWS else []
