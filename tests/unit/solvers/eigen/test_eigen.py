@@ -128,6 +128,17 @@ def test_massless_dofs_give_no_modes_and_follow_their_neighbours(n):
     np.testing.assert_allclose(modes.eigenvalues, np.linalg.eigvalsh(walls), rtol=1e-11)
 
 
+def test_a_mass_of_low_rank_gives_as_many_modes_as_its_rank():
+    # Every dof has mass, but not of its own: 1 / lambda are the eigenvalues of B^T K^-1 B for M = B B^T, and no more.
+    draw = np.random.default_rng(4)
+    B = draw.standard_normal((20, 6))
+    _, K, _ = _walls(20)
+    modes = lowest_modes(sp.csc_array(B @ B.T), K, count=20)
+    assert modes.available == 6
+    exact = 1.0 / np.linalg.eigvalsh(B.T @ np.linalg.solve(K.toarray(), B))[::-1]
+    np.testing.assert_allclose(modes.eigenvalues, exact, rtol=1e-11)
+
+
 def test_a_dof_with_neither_mass_nor_stiffness_is_named():
     M, K, _ = _walls(6)
     M = sp.block_diag([M, [[0.0]]])

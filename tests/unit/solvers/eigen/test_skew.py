@@ -24,9 +24,10 @@ def skew(theta: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("theta", [WELL_SPREAD, CLUSTERS, WIDE], ids=["spread", "clusters", "wide"])
 @pytest.mark.parametrize("count", [1, 8, 25, 30])
-def test_pairs_are_those_of_the_hermitian_matrix(theta, count):
-    B = skew(theta)
+@pytest.mark.parametrize("unit", [2.0**-30, 1.0, 2.0**30])
+def test_pairs_are_those_of_the_hermitian_matrix_in_any_unit(theta, count, unit):
+    B = unit * skew(theta)
     found, Y = largest_pairs(B, count)
-    assert found == pytest.approx(np.sort(theta)[::-1][:count], abs=1e-14)
-    assert np.abs(-1j * B @ Y - Y * found).max() < 1e-13
+    assert found / unit == pytest.approx(np.sort(theta)[::-1][:count], abs=1e-14)
+    assert np.abs(-1j * B @ Y - Y * found).max() < 1e-13 * unit
     assert np.abs(Y.conj().T @ Y - np.eye(count)).max() < 1e-13
