@@ -151,13 +151,13 @@ def _chunk_name(number: int) -> str:
 
 
 def stream(path: str | Path, *, resume: bool = False) -> ChunkStream:
-    """Return where a long transient keeps its chunks; with `resume` an interrupted run of the same settings goes on.
+    """Return where a long run keeps its chunks; with `resume` an interrupted run of the same settings goes on.
 
     Args:
         path: of the result; the chunks stand in a folder beside it.
         resume: whether to go on with an interrupted run.
 
     Returns:
-        What `transient` and `sweep` take as `stream`.
+        What analyses take as `stream`.
     """
     return ChunkStream(path, resume=resume)

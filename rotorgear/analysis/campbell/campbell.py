@@ -28,6 +28,8 @@ from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, exci
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
+from rotorgear.analysis.common.stream import Stream
+from rotorgear.analysis.common.stream import pieces as kept_pieces
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
 from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.modal.reach import Reach
@@ -36,7 +38,7 @@ from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError
-from rotorgear.model.model import Model
+from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult, ExcitationOrder, Margin, Onset
@@ -66,6 +68,7 @@ def campbell(
     mesh_orders: Sequence[int] = MESH_ORDERS,
     sidebands: int = 0,
     error_estimate: bool = True,
+    stream: Stream | None = None,
     progress: Progress = silent,
 ) -> CampbellResult:
     """Return the modes of a model over a range of speeds, as branches.
@@ -87,6 +90,7 @@ def campbell(
         mesh_orders: orders of every mesh that are drawn as lines of excitation.
         sidebands: number of sidebands on each side of a mesh order, at the distance of the speed of both shafts of the mesh.
         error_estimate: False leaves the estimate of the discretisation error out, for timing.
+        stream: keeps modes while speeds are solved (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -113,8 +117,11 @@ def campbell(
     system = system_for_speeds(model, ends, request, about.state, progress)
     clock.lap("mesh")
     reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax)
+    drawn = (tuple(shaft_orders), tuple(mesh_orders), sidebands)
+    run = (asked.tolist(), modes, fmax, accuracy, tuple(only), error_estimate, drawn, pieces(system))
+    piece = kept_pieces(stream, {"model": model_hash(parts), "run": repr(run)})
     with single_thread(system.n):
-        found = SpeedModes(system, min(ends), max(ends), reach, tuple(only), progress)
+        found = SpeedModes(system, min(ends), max(ends), reach, tuple(only), progress, piece)
         clock.lap("basis")
         diagram = _Diagram.of(found, asked, progress)
         if not diagram.chains:

@@ -11,11 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
+from rotorgear.analysis.common.stream import Piece, unkept
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.solve import Wanted, group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -37,6 +40,8 @@ _SPARE = 4
 _SPARE_SHARE = 0.25
 _BEYOND_LIMIT = 1.15
 _STILL = 1e-5
+# Of the modes of a group in the basis, all but the pencil, which follows from the basis.
+_OF_EIGEN = ("s", "q", "y", "real")
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,11 @@ class _Group:
 class SpeedModes:
     """Modes of a system at any speed from `low` to `high`, from a certified basis.
 
+    Args:
+        system: what turns. low, high: ends of the range of speeds. reach: the modes that are asked for. only: as in `modal`.
+        progress: is told how far the basis is.
+        piece: solves for the true modes, or those in the basis, at a speed, or takes them over.
+
     Attributes:
         reach: how many of the oscillating modes are asked for.
         snapshots: the true solutions in the basis; checks: (speed, largest relative error) of true solutions that are not.
@@ -80,10 +90,12 @@ class SpeedModes:
         reach: Reach,
         only: tuple[str, ...] = (),
         progress: Progress = silent,
+        piece: Piece = unkept,
     ) -> None:
         self.system = system
         self.reach = reach
         self._only = only
+        self._piece = piece
         self.family = SpeedFamily(system, low, high)
         self.snapshots: list[Snapshot] = []
         self.checks: list[tuple[float, float]] = []
@@ -123,9 +135,17 @@ class SpeedModes:
         """Oscillating modes of each group at a speed, in coordinates of its basis; without the model's modal damping ratio."""
         speed = float(speed)
         if speed not in self._known:
-            parts = self._parts
-            self._known[speed] = [eigen(p.family(speed), p.shift, p.smallest, p.count) for p in parts]
+            done = self._piece(partial(self._in_basis, speed))
+            columns = (done[name] for name in _OF_EIGEN)
+            pencils = [part.family(speed) for part in self._parts]
+            self._known[speed] = [Eigen(*row) for row in zip(*columns, pencils, strict=True)]
         return self._known[speed]
+
+    def _in_basis(self, speed: float) -> dict[str, tuple[np.ndarray, ...]]:
+        """What `Eigen` has of each group at a speed, but for the pencil."""
+        found = [eigen(p.family(speed), p.shift, p.smallest, p.count) for p in self._parts]
+        # In one order in memory, as they come back from a file: products depend on it in the last digit.
+        return {name: tuple(np.ascontiguousarray(getattr(one, name)) for one in found) for name in _OF_EIGEN}
 
     def pencil(self, group: int, speed: float) -> Pencil:
         """Projected matrices of a group at a speed."""
@@ -142,12 +162,12 @@ class SpeedModes:
         ends = list(dict.fromkeys((low, high)))
         for k, speed in enumerate(ends):
             progress(0.3 * k / len(ends), f"true modes, {self.system.n} dofs")
-            self._add(self._true(speed))
+            self._add(self._taken(speed))
         self._project()
         waiting = list(pairwise(ends))
         while waiting:
             a, b = waiting.pop(0)
-            middle = self._true(0.5 * (a + b))
+            middle = self._taken(0.5 * (a + b))
             error = self._error(middle)
             progress(0.5, f"checked at {len(self.checks) + 1} speeds")
             if error <= TOLERANCE:
@@ -164,8 +184,14 @@ class SpeedModes:
             self._project()
             waiting += pairwise((a, middle.speed, b))
 
-    def _true(self, speed: float) -> Snapshot:
-        """The modes at a speed by the sparse solver, with spare ones."""
+    def _taken(self, speed: float) -> Snapshot:
+        """The true modes at a speed, with spare ones."""
+        done = self._piece(partial(self._true, speed))
+        self._still = done["still"]
+        return Snapshot(speed, done["s"], done["vectors"], done["rigid"])
+
+    def _true(self, speed: float) -> dict[str, Any]:
+        """What `Snapshot` has of a speed, by the sparse solver, and how many rigid and overdamped motions are known then."""
         asked = self.reach.modes
         count = None if asked is None else asked + max(_SPARE, int(_SPARE_SHARE * asked))
         limit = None if self.reach.limit is None else self.reach.limit * _BEYOND_LIMIT
@@ -178,7 +204,9 @@ class SpeedModes:
                 break
             self._still += count - len(moving)
         kept = moving[:count]
-        return Snapshot(speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real)
+        shapes = (found.vectors[:, kept], found.vectors[:, found.rigid].real)
+        vectors, rigid = map(np.ascontiguousarray, shapes)
+        return {"s": s[kept], "vectors": vectors, "rigid": rigid, "still": self._still}
 
     def _add(self, snapshot: Snapshot) -> int:
         """Put a true solution into the basis; return the number of new columns."""

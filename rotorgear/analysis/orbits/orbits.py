@@ -16,13 +16,22 @@ from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.left_out import GIVE_DAMPING
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed
+from rotorgear.analysis.common.stream import Piece, Stream, pieces, unkept
 from rotorgear.analysis.orbits.family import Outputs, SystemFamily, outputs_of, range_of
-from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches, special_curves
+from rotorgear.analysis.orbits.follow import (
+    STRETCH,
+    Branch,
+    certified,
+    doubled_branches,
+    main_branches,
+    special_curves,
+)
+from rotorgear.analysis.orbits.kept import AnyOrbits, packed, remembering, unpacked
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
 from rotorgear.analysis.transient.notes import left_out_in_time
 from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.model import Model
+from rotorgear.model.model import Model, model_hash
 from rotorgear.note import Note
 from rotorgear.progress import Progress, silent
 from rotorgear.results.orbits import OrbitBranch, OrbitsResult, SpecialCurve, SpecialPoint
@@ -32,6 +41,7 @@ from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits, static_di
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import MotionCycle, answered
 from rotorgear.solvers.periodic.shooting import MOST_COORDINATES, MOST_RATIO, ShootingOrbits
+from rotorgear.solvers.periodic.special import Certified
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.time.statistics import STATISTICS, MotionStatistics, PeriodicCurve, compared, over_period
 
@@ -124,6 +134,7 @@ def orbits(
     step: float = 0.04,
     points: int = 600,
     elements: int | None = None,
+    stream: Stream | None = None,
     progress: Progress = silent,
 ) -> OrbitsResult:
     """Follow the periodic motions of a model over a parameter, through folds, with the stability of each.
@@ -144,6 +155,7 @@ def orbits(
         step: longest step along a branch, as a share of the range.
         points: largest number of points of a branch.
         elements: number of basic elements in each shaft segment (default: one of second order).
+        stream: keeps stretches of the branches while they are followed (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -154,6 +166,8 @@ def orbits(
     _check(over, harmonics, instants, method, accuracy, step, points)
     ranges = [range_of(model, address, ends) for address, ends in over.items()]
     plan = Walk(longest=step, most=points)
+    asked = (ranges, harmonics, instants, method, excite, from_transient, switch, verify, accuracy, plan, elements)
+    piece = pieces(stream, {"model": model_hash(model), "run": repr(asked)})
     curves: tuple[SpecialCurve, ...] = ()
     with single_thread(0):
         progress(0.0, "model")
@@ -171,22 +185,23 @@ def orbits(
             small = _coordinates(plant) <= MOST_COORDINATES
             from_rest = partial(settled, problem, family, progress=progress) if small else None
             used = cpu_seconds() - compiling_seconds()
-            first = first_node(problem, family, from_transient=from_transient, progress=progress)
-            branches = main_branches(problem, first, plan, progress, from_rest)
+            own = remembering(piece, problem)
+            begin = partial(_first_motion, problem, family, from_transient=from_transient, progress=progress)
+            branches = main_branches(problem, unpacked(own(begin))[0], plan, progress, from_rest, own)
             if switch:
-                branches += [twice for branch in branches for twice in doubled_branches(branch, plan, progress)]
+                branches += [twice for branch in branches for twice in doubled_branches(branch, plan, progress, piece)]
             used = cpu_seconds() - compiling_seconds() - used
             progress(0.95, "error estimate")
-            error = largest_error(branches[0], outputs.columns)
+            error = own(partial(_error, branches[0], outputs.columns))["error"]
             if accuracy is None or error <= accuracy or isinstance(problem, ShootingOrbits):
                 break
         if len(ranges) > 1:
-            curves = special_curves(branches, family, outputs, plan, progress)
+            curves = special_curves(branches, family, outputs, plan, progress, piece)
         clock.lap("branches")
         progress(0.97, "statistics")
-        fields = gathered(branches, outputs, family, H)
+        fields = gathered(branches, outputs, family, H, piece)
         clock.lap("statistics")
-        checks = verified(branches, family, outputs.columns) if verify else ()
+        checks = verified(branches, family, outputs.columns, piece) if verify else ()
     short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
     progress(1.0, "done")
     count = sum(len(branch.nodes) for branch in branches)
@@ -219,6 +234,17 @@ def orbits(
         ),
         warnings=(*_warnings(family, branches, curves), *((short,) if short else ())),
     )
+
+
+def _first_motion(
+    problem: AnyOrbits, family: SystemFamily, *, from_transient: bool, progress: Progress
+) -> dict[str, object]:
+    node = first_node(problem, family, from_transient=from_transient, progress=progress)
+    return packed([certified(problem, node)])
+
+
+def _error(branch: Branch, columns: np.ndarray) -> dict[str, object]:
+    return {"error": largest_error(branch, columns)}
 
 
 def _check(
@@ -317,67 +343,85 @@ _MULTIPLIERS = 12
 _LUCK = 0.1
 
 
-def gathered(branches: list[Branch], outputs: Outputs, family: SystemFamily, harmonics: int) -> dict[str, object]:
-    """The fields of a result that belong to points and special points.
+def gathered(
+    branches: list[Branch], outputs: Outputs, family: SystemFamily, harmonics: int, piece: Piece = unkept
+) -> dict[str, object]:
+    """The fields of a result that belong to points and special points; `piece` does those of a few points, or takes them over.
 
     The error of a statistic is its difference from that of the finer solution at the same value of the parameter.
     """
-    along = family.ranges[0]
-    points: list[dict[str, object]] = []
+    parts: list[dict[str, np.ndarray]] = []
     special = []
     for number, branch in enumerate(branches):
-        orbits = branch.orbits
-        finer = orbits.finer()
-        for one in branch.nodes:
-            node = one.node
-            plant = family.plant(node.p)
-            cycle = orbits.cycle(node.y, node.p)
-            found = statistics_of(cycle, plant, outputs)
-            approach, moved = outputs.extremes(cycle)
-            better = refined(orbits, finer, node)
-            error = np.full(found.values.shape, np.nan)
-            place_error = np.full(len(moved), np.nan)
-            if better is not None:
-                fine = finer.cycle(better, node.p)
-                error = compared(found.values, statistics_of(fine, plant, outputs).values, found.scales, 1.0, _LUCK)
-                place_error = np.abs(np.ptp(moved, axis=1) - np.ptp(outputs.extremes(fine)[1], axis=1))
-            # Harmonics of the base period: of a motion of k periods every k-th.
-            force = cycle.force[:: branch.periods][: harmonics + 1]
-            displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
-            mu = one.multipliers[:_MULTIPLIERS]
-            points.append(
-                {
-                    "branch": number,
-                    "value": along.at(node.p),
-                    "period": cycle.period,
-                    "stable": one.stable,
-                    "multipliers": np.concatenate([mu, np.full(_MULTIPLIERS - len(mu), np.nan + 0j)]),
-                    "approach_extremes": approach,
-                    "peak_to_peak_transmission_error": np.ptp(found.transmission_error, axis=1),
-                    "mean_force": found.force.mean,
-                    "rms_force": found.force.rms,
-                    "largest_force": found.force.largest,
-                    "apart": found.shares[:, 1],
-                    "back": found.shares[:, 2],
-                    "statistics_error": error,
-                    "force_harmonics": force[:, outputs.contact_column],
-                    "displacement_harmonics": displacement[:, outputs.contact_column],
-                    "place_extremes": moved,
-                    "place_error": place_error,
-                    "place_harmonics": displacement[:, outputs.place_column],
-                }
-            )
+        finer = branch.orbits.finer()
+        own = remembering(piece, branch.orbits, finer)
+        for k in range(0, len(branch.nodes), STRETCH):
+            stretch = branch.nodes[k : k + STRETCH]
+            found = own(partial(_columns_of, branch, stretch, finer, outputs, family, harmonics))
+            parts.append({"branch": np.full(len(stretch), number), **found})
         for point in branch.special:
             node = point.at.node
-            cycle = orbits.cycle(node.y, node.p)
+            cycle = branch.orbits.cycle(node.y, node.p)
             mu = point.at.multipliers[:_MULTIPLIERS]
             sizes = (mu.real.copy(), mu.imag.copy(), *outputs.extremes(cycle))
-            special.append(SpecialPoint(point.kind, along.at(node.p), number, cycle.period, *sizes))
+            special.append(SpecialPoint(point.kind, family.ranges[0].at(node.p), number, cycle.period, *sizes))
     return {
-        **{name: np.array([point[name] for point in points]) for name in points[0]},
+        **{name: np.concatenate([part[name] for part in parts]) for name in parts[0]},
         "branches": tuple(OrbitBranch(branch.name, branch.periods, branch.ended) for branch in branches),
         "special_points": tuple(special),
     }
+
+
+def _columns_of(
+    branch: Branch,
+    stretch: list[Certified],
+    finer: AnyOrbits,
+    outputs: Outputs,
+    family: SystemFamily,
+    harmonics: int,
+) -> dict[str, np.ndarray]:
+    """The fields that belong to some points of a branch, (points, ...)."""
+    orbits = branch.orbits
+    points: list[dict[str, object]] = []
+    for one in stretch:
+        node = one.node
+        plant = family.plant(node.p)
+        cycle = orbits.cycle(node.y, node.p)
+        found = statistics_of(cycle, plant, outputs)
+        approach, moved = outputs.extremes(cycle)
+        better = refined(orbits, finer, node)
+        error = np.full(found.values.shape, np.nan)
+        place_error = np.full(len(moved), np.nan)
+        if better is not None:
+            fine = finer.cycle(better, node.p)
+            error = compared(found.values, statistics_of(fine, plant, outputs).values, found.scales, 1.0, _LUCK)
+            place_error = np.abs(np.ptp(moved, axis=1) - np.ptp(outputs.extremes(fine)[1], axis=1))
+        # Harmonics of the base period: of a motion of k periods every k-th.
+        force = cycle.force[:: branch.periods][: harmonics + 1]
+        displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
+        mu = one.multipliers[:_MULTIPLIERS]
+        points.append(
+            {
+                "value": family.ranges[0].at(node.p),
+                "period": cycle.period,
+                "stable": one.stable,
+                "multipliers": np.concatenate([mu, np.full(_MULTIPLIERS - len(mu), np.nan + 0j)]),
+                "approach_extremes": approach,
+                "peak_to_peak_transmission_error": np.ptp(found.transmission_error, axis=1),
+                "mean_force": found.force.mean,
+                "rms_force": found.force.rms,
+                "largest_force": found.force.largest,
+                "apart": found.shares[:, 1],
+                "back": found.shares[:, 2],
+                "statistics_error": error,
+                "force_harmonics": force[:, outputs.contact_column],
+                "displacement_harmonics": displacement[:, outputs.contact_column],
+                "place_extremes": moved,
+                "place_error": place_error,
+                "place_harmonics": displacement[:, outputs.place_column],
+            }
+        )
+    return {name: np.array([point[name] for point in points]) for name in points[0]}
 
 
 def statistics_of(cycle: MotionCycle, plant: Plant, outputs: Outputs) -> MotionStatistics:

@@ -8,12 +8,16 @@ Where a branch begins: Newton's method from the static state, or from the end of
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
+from rotorgear.analysis.common.stream import Piece, unkept
 from rotorgear.analysis.orbits.family import SystemFamily
-from rotorgear.analysis.orbits.follow import AnyOrbits, Branch
+from rotorgear.analysis.orbits.follow import Branch
+from rotorgear.analysis.orbits.kept import AnyOrbits, remembering
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.results.orbits import OrbitVerification
@@ -95,17 +99,25 @@ _LAST = 18
 _OTHERS = 3e-3
 
 
-def verified(branches: list[Branch], family: SystemFamily, column: np.ndarray) -> tuple[OrbitVerification, ...]:
-    """Start transients on a motion of each stretch of the branches, in its middle; `column`: displacements that are compared."""
+def verified(
+    branches: list[Branch], family: SystemFamily, column: np.ndarray, piece: Piece = unkept
+) -> tuple[OrbitVerification, ...]:
+    """Start transients on a motion of each stretch of the branches, in its middle.
+
+    Args:
+        branches: the branches. family: of the systems on them. column: displacements that are compared.
+        piece: does the transients of a motion, or takes them over.
+    """
     checks = []
     for branch in branches:
+        own = remembering(piece, branch.orbits)
         stretches = [list(stretch) for _, stretch in groupby(branch.nodes, key=lambda one: one.stable)]
         middles = [stretch[len(stretch) // 2] for stretch in stretches[:_STRETCHES]]
-        checks += [_verified(branch, one, family, column) for one in middles]
+        checks += [own(partial(_verified, branch, one, family, column))["check"] for one in middles]
     return tuple(checks)
 
 
-def _verified(branch: Branch, one: Certified, family: SystemFamily, column: np.ndarray) -> OrbitVerification:
+def _verified(branch: Branch, one: Certified, family: SystemFamily, column: np.ndarray) -> dict[str, Any]:
     orbits = branch.orbits
     node = one.node
     system = family.system(family.shares_at(node.p))
@@ -147,7 +159,7 @@ def _verified(branch: Branch, one: Certified, family: SystemFamily, column: np.n
         dv = shares[-1] * _strained(plant, other_v - end_v)
     expected = float(np.abs(one.multipliers[0]))
     value = family.ranges[0].at(node.p)
-    return OrbitVerification(value, one.stable, deviation, _growth(waves, shares), expected, _PERIODS * k)
+    return {"check": OrbitVerification(value, one.stable, deviation, _growth(waves, shares), expected, _PERIODS * k)}
 
 
 def _growth(waves: list[np.ndarray], shares: list[float]) -> float:

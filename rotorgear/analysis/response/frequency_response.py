@@ -5,8 +5,9 @@ Ewins, Modal Testing, 2nd ed., chapter 2 (Research Studies Press 2000).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,17 +18,20 @@ from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
+from rotorgear.analysis.common.stream import Piece, Stream, unkept
+from rotorgear.analysis.common.stream import pieces as kept_pieces
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.mesh import aims, damped_plant, highest_peaks, meshed
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError
-from rotorgear.model.model import Model
+from rotorgear.model.model import Model, model_hash
 from rotorgear.note import Note
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.laws import about_state, law_rows
 from rotorgear.solvers.frequency.frequency_range import FrequencyRange
+from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.bubble_errors import ForcedChanges
@@ -60,6 +64,7 @@ def frf(
     modal_damping: float = 0.0,
     elements: int | None = None,
     accuracy: float | None = None,
+    stream: Stream | None = None,
     progress: Progress = silent,
 ) -> FrequencyResponse:
     """Return receptances between places, with the model's damping and, at a speed, its gyroscopic moments.
@@ -78,6 +83,7 @@ def frf(
         elements: as in `response`.
         accuracy: refine the mesh until each response is estimated to be within this share of its largest (default: modes up to
             the highest frequency are refined to 1e-3, whatever that makes of the responses).
+        stream: keeps solutions while frequencies are solved (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -93,6 +99,8 @@ def frf(
         raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
     check_modal_damping(modal_damping)
     places = checked_places(model, inputs, outputs)
+    asked = (hz.tolist(), tuple(inputs), tuple(outputs), turns, modal_damping, elements, accuracy)
+    piece = kept_pieces(stream, {"model": model_hash(model), "run": repr(asked)})
     given = model
     model, few = with_casing_modes(model, float(hz[-1]))
     zeta = modal_damping + model.damping.modal_ratio
@@ -102,11 +110,11 @@ def frf(
         progress(0.02, "discretisation")
         system = meshed(model, about, turns, float(hz[-1]), elements, aim)
         limit = damped_up_to(system, 2.0 * np.pi * float(hz[-1]))
-        solved = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress)
+        solved = _solved(system, turns, hz, (inputs, outputs), (limit, zeta), progress, piece)
         receptance = solved.receptance
         progress(0.96, "error estimate")
         where = (inputs, outputs), (limit, zeta)
-        estimate = receptance_error(system, turns, hz, receptance, solved.bubble_change, *where)
+        estimate = receptance_error(system, turns, hz, receptance, solved.bubble_change, *where, piece)
         if solved.error > _ROUNDING:
             estimate = max(estimate, solved.error)
         if accuracy is None or estimate <= accuracy:
@@ -193,38 +201,72 @@ def _solved(
     places: tuple[Sequence[str], Sequence[str]],
     damping: tuple[float, float],
     progress: Progress,
+    piece: Piece = unkept,
 ) -> _Solved:
     """Solve each frequency for forces at the first of the places and displacements at the second ones.
 
-    `damping`: frequency in rad/s up to which modes have a damping ratio beside the damping of the model, and that ratio.
+    Args:
+        system, speed, hz, places: what is solved.
+        damping: frequency in rad/s up to which modes have a damping ratio beside the damping of the model, and that ratio.
+        progress: is told how far it is.
+        piece: does the work of a piece, or takes it over.
     """
     dynamics = damped_plant(system, speed, *damping).dynamics(speed)
     inputs, outputs = (moving_rows(system, names) for names in places)
     w = 2.0 * np.pi * hz
     f = inputs.T
-    bubbles = ForcedChanges.of(system)
-    receptance = np.zeros((len(hz), len(outputs), len(inputs)), complex)
-    change = np.zeros((len(hz), len(inputs)))
-    worst = 0.0
-    moved = np.zeros(len(inputs))
-    largest = np.zeros(len(inputs))
+
+    def solve(at: np.ndarray) -> Sequence[np.ndarray]:
+        done = piece(lambda: {"solutions": tuple(np.ascontiguousarray(dynamics.solve(float(one), f)) for one in at)})
+        solutions: tuple[np.ndarray, ...] = done["solutions"]
+        return solutions
+
+    with single_thread(system.n):
+        found = FrequencyRange(dynamics, w, f, part_of(progress, 0.05, 0.5), solve)
+        rows = []
+        for at in found.blocks():
+            progress(0.5 + 0.45 * at[0] / len(hz), f"{hz[at[0]]:.5g} Hz")
+            rows.append(
+                piece(partial(_block, system, dynamics, speed, w[at], f, outputs, partial(found.solutions, at)))
+            )
+    receptance, change = (np.concatenate([row[name] for row in rows]) for name in ("receptance", "change"))
+    residual, moved, largest = (
+        np.max([row[name] for row in rows], axis=0) for name in ("residual", "moved", "largest")
+    )
+    rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
+    return _Solved(receptance, change, float(residual.max()), max(rounding, found.error), found.method)
+
+
+def _block(
+    system: System,
+    dynamics: Dynamics,
+    speed: float,
+    w: np.ndarray,
+    f: np.ndarray,
+    outputs: np.ndarray,
+    solve: Callable[[], np.ndarray],
+) -> dict[str, np.ndarray]:
+    """Receptances at some frequencies w (b,) in rad/s, and what shares in their errors: the largest of each input (i,)."""
+    solutions = solve()
     size_K = abs(system.stiffness(speed))
     size_M = abs(system.mass)
-    with single_thread(system.n):
-        found = FrequencyRange(dynamics, w, f, part_of(progress, 0.05, 0.5))
-        for at, solutions in found.blocks():
-            progress(0.5 + 0.45 * at[0] / len(hz), f"{hz[at[0]]:.5g} Hz")
-            receptance[at] = outputs @ solutions
-            for k in range(len(inputs)):
-                q = solutions[:, :, k].T
-                worst = max(worst, dynamics.relative_residual(w[at], f[:, [k]], q))
-                change[at, k] = bubbles.change(speed, w[at], q, turning=False)
-                size = np.abs(q)
-                felt = EPS * np.sum(size * (size_K @ size + w[at] ** 2 * (size_M @ size)), axis=0)
-                moved[k] = max(moved[k], float(felt.max()))
-                largest[k] = max(largest[k], float(np.abs(f[:, k] @ q).max()))
-    rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
-    return _Solved(receptance, change, worst, max(rounding, found.error), found.method)
+    bubbles = ForcedChanges.of(system)
+    columns: list[tuple[np.ndarray, float, float, float]] = []
+    for k in range(f.shape[1]):
+        q = solutions[:, :, k].T
+        size = np.abs(q)
+        felt = EPS * np.sum(size * (size_K @ size + w**2 * (size_M @ size)), axis=0)
+        columns.append(
+            (
+                bubbles.change(speed, w, q, turning=False),
+                dynamics.relative_residual(w, f[:, [k]], q),
+                float(felt.max()),
+                float(np.abs(f[:, k] @ q).max()),
+            )
+        )
+    change, residual, moved, largest = map(np.array, zip(*columns, strict=True))
+    found = {"receptance": outputs @ solutions, "change": change.T}
+    return {**found, "residual": residual, "moved": moved, "largest": largest}
 
 
 def receptance_error(
@@ -235,18 +277,18 @@ def receptance_error(
     bubble_change: np.ndarray,
     places: tuple[Sequence[str], Sequence[str]],
     damping: tuple[float, float],
+    piece: Piece = unkept,
 ) -> float:
     """Change of receptances (f, o, i) at rising frequencies (f,) in Hz by a finer mesh, over the largest of each response.
 
     The finer mesh is looked at where a response has its highest peak, and at the peaks of `bubble_change` (f, i), what the
-    elements lack: a higher mode may have the larger error where the response itself is low. `damping`: a frequency and a ratio,
-    as in `_solved`.
+    elements lack: a higher mode may have the larger error where the response itself is low. `damping`, `piece`: as in `_solved`.
     """
     if not any(system.nodes.elements.values()):
         return 0.0
     highest = highest_peaks(np.abs(receptance).reshape(len(hz), -1), 1)
     at = np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))
-    there = _solved(system.with_plan(all_finer(system)), speed, hz[at], places, damping, silent).receptance
+    there = _solved(system.with_plan(all_finer(system)), speed, hz[at], places, damping, silent, piece).receptance
     return relative_change(there, receptance[at], np.abs(receptance).max(axis=0))
 
 

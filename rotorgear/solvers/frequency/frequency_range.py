@@ -8,7 +8,7 @@ Dynamical Systems (SIAM 2005), chapter 11.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -43,17 +43,29 @@ def largest_peaks(residuals: np.ndarray, most: int) -> list[tuple[int, int]]:
 class FrequencyRange:
     """Solutions of Z(w) q = f at rising w (p,) in rad/s for forces f (n, i).
 
+    Args:
+        dynamics: Z. w, f: frequencies and forces. progress: is told how far the basis is.
+        solve: gives the direct solutions (n, i) at some frequencies that a basis is made of (default: those of `dynamics`).
+
     Attributes:
         method: in words.
         error: largest relative error against direct solutions, 0 where all are direct.
     """
 
-    def __init__(self, dynamics: Dynamics, w: np.ndarray, f: np.ndarray, progress: Progress = silent) -> None:
+    def __init__(
+        self,
+        dynamics: Dynamics,
+        w: np.ndarray,
+        f: np.ndarray,
+        progress: Progress = silent,
+        solve: Callable[[np.ndarray], Sequence[np.ndarray]] | None = None,
+    ) -> None:
         self.method = "direct sparse LU at every frequency"
         self.error = 0.0
         self._dynamics = dynamics
         self._w = w
         self._f = f
+        self._solve = solve or self._direct
         self._basis: np.ndarray | None = None
         self._proved: np.ndarray | None = None
         n = len(f)
@@ -63,19 +75,23 @@ class FrequencyRange:
         elif len(w) > _FEW:
             self._grow(progress)
 
-    def blocks(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Numbers (b,) of some frequencies and the solutions (b, n, i) there, one block after the other.
+    def blocks(self) -> list[np.ndarray]:
+        """Numbers (b,) of the frequencies whose solutions are looked at together, rising."""
+        size = max(1, _NUMBERS // max(self._f.size, 1))
+        return [np.arange(begin, min(begin + size, len(self._w))) for begin in range(0, len(self._w), size)]
+
+    def solutions(self, at: np.ndarray) -> np.ndarray:
+        """The solutions (b, n, i) at the frequencies of some numbers (b,).
 
         Raises:
             ConvergenceError: of `Dynamics.solve`.
         """
-        size = max(1, _NUMBERS // max(self._f.size, 1))
-        for begin in range(0, len(self._w), size):
-            at = np.arange(begin, min(begin + size, len(self._w)))
-            if self._basis is None:
-                yield at, np.array([self._dynamics.solve(float(w), self._f) for w in self._w[at]])
-            else:
-                yield at, self._basis @ (self._in_basis(at) if self._proved is None else self._proved[at])
+        if self._basis is None:
+            return np.array(self._direct(self._w[at]))
+        return self._basis @ (self._in_basis(at) if self._proved is None else self._proved[at])
+
+    def _direct(self, w: np.ndarray) -> list[np.ndarray]:
+        return [self._dynamics.solve(float(one), self._f) for one in w]
 
     def _take(self, basis: np.ndarray) -> None:
         self._basis = basis
@@ -106,7 +122,7 @@ class FrequencyRange:
         scale[scale == 0.0] = scale[scale > 0.0].min(initial=1.0)
         few = np.unique(np.linspace(0, len(w) - 1, _LOOKED_AT).round().astype(int))
         first = np.unique(np.linspace(0, len(w) - 1, _FIRST).round().astype(int))
-        solved = {int(k): D.solve(float(w[k]), self._f) for k in first}
+        solved = dict(zip(first.tolist(), self._solve(w[first]), strict=True))
         new = list(solved.values())
         basis = np.zeros((len(self._f), 0))
         looked_at = few
@@ -151,9 +167,8 @@ class FrequencyRange:
         places = list(dict.fromkeys(place for place, _ in worst))
         error = 0.0
         new = []
-        for place in places:
-            k = int(at[place])
-            exact = solved[k] = self._dynamics.solve(float(self._w[k]), self._f)
+        for place, exact in zip(places, self._solve(self._w[at[places]]), strict=True):
+            solved[int(at[place])] = exact
             length = np.linalg.norm(scale[:, None] * exact, axis=0)
             off = np.linalg.norm(scale[:, None] * (exact - q[place]), axis=0)
             error = max(error, float(np.max(off / np.where(length > 0.0, length, 1.0), initial=0.0)))

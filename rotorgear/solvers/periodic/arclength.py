@@ -7,7 +7,7 @@ Keller, in: Applications of Bifurcation Theory (Academic Press 1977) 359; Seydel
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -164,62 +164,83 @@ class Walk:
     high: float = 1.0
 
 
-def walk(
-    equations: Equations, start: Node, step: float, plan: Walk, heard: Callable[[Node], bool]
-) -> tuple[list[Node], str]:
-    """Follow a branch from a solution until it leaves the range; returns the nodes behind the start and why it ended.
+@dataclass(frozen=True)
+class Position:
+    """Where a walk is: its last node, the length of the next step, nodes behind the start, and why it ended, "" while it goes on.
+
+    It ends with "end" where the range was left, "closed" where the branch came back, "stopped" where whoever hears of nodes says
+    so, "most", or the reason of a failure.
+    """
+
+    here: Node
+    length: float
+    count: int = 0
+    ended: str = ""
+
+
+def step_on(equations: Equations, start: Node, at: Position, plan: Walk) -> tuple[Position, bool]:
+    """Go to the next node of a branch; returns the position behind it, and whether there is a node.
 
     Args:
-        equations: r(y, p). start: where to begin, its tangent the way to go. step: first length.
-        heard: is told each node; False ends the walk.
-
-    Returns:
-        The nodes, and "end" where the range was left, "closed" where the branch came back, "most" or the reason of a failure.
+        equations: r(y, p). start: where the walk began. at: a position of it that goes on. plan: how far it goes.
     """
-    nodes: list[Node] = []
-    here = start
-    length = min(step, plan.longest)
-    while len(nodes) < plan.most:
-        longest = plan.longest * max(1.0, float(np.linalg.norm(here.y)))
+    here = at.here
+    length = at.length
+    longest = plan.longest * max(1.0, float(np.linalg.norm(here.y)))
+    while True:
         guess = here.z + length * here.tangent
         try:
             found = corrected(equations, guess, here.tangent, here.tangent)
         except ConvergenceError as error:
             length *= 0.4
             if length < _SHORTEST:
-                return nodes, str(error)
+                return replace(at, ended=str(error)), False
             continue
-        moved = found.z - here.z
         turned = float(found.tangent @ here.tangent)
         if turned < _LEAST_COSINE and length > 100.0 * _SHORTEST:
             length *= 0.5
             continue
-        if np.linalg.norm(moved) > 2.0 * length:
-            length *= 0.4
-            if length < _SHORTEST:
-                return nodes, "the branch can't be followed any further"
-            continue
-        outside = [edge for edge in (plan.low, plan.high) if (found.p - edge) * (here.p - edge) < 0.0]
-        if outside:
-            share = (outside[0] - here.p) / (found.p - here.p)
-            try:
-                last = at_value(equations, here.y + share * (found.y - here.y), outside[0])
-                ahead = float(np.dot(last.tangent, here.tangent)) >= 0.0
-                last = last if ahead else Node(last.z, -last.tangent, last.iterations)
-                nodes.append(last)
-                heard(last)
-            except ConvergenceError:
-                return nodes, "the end of the range"
-            return nodes, "end"
-        nodes.append(found)
-        back = np.linalg.norm(found.z - start.z) < 0.5 * length and len(nodes) > 5
-        if not heard(found):
-            return nodes, "stopped"
-        if back:
-            return nodes, "closed"
-        if found.iterations <= _FEW and turned > 0.97:
-            length = min(_LONGER * length, longest)
-        elif found.iterations >= _MANY:
-            length *= _SHORTER
-        here = found
-    return nodes, "most"
+        if np.linalg.norm(found.z - here.z) <= 2.0 * length:
+            break
+        length *= 0.4
+        if length < _SHORTEST:
+            return replace(at, ended="the branch can't be followed any further"), False
+    if outside := [edge for edge in (plan.low, plan.high) if (found.p - edge) * (here.p - edge) < 0.0]:
+        last = _at_edge(equations, here, found, outside[0])
+        if last is None:
+            return replace(at, ended="the end of the range"), False
+        return Position(last, length, at.count + 1, "end"), True
+    count = at.count + 1
+    back = np.linalg.norm(found.z - start.z) < 0.5 * length and count > 5
+    ended = "closed" if back else "most" if count == plan.most else ""
+    if found.iterations <= _FEW and turned > 0.97:
+        length = min(_LONGER * length, longest)
+    elif found.iterations >= _MANY:
+        length *= _SHORTER
+    return Position(found, length, count, ended), True
+
+
+def _at_edge(equations: Equations, here: Node, found: Node, edge: float) -> Node | None:
+    """The solution at the end of the range, between two nodes; None where it is not found."""
+    share = (edge - here.p) / (found.p - here.p)
+    try:
+        last = at_value(equations, here.y + share * (found.y - here.y), edge)
+    except ConvergenceError:
+        return None
+    ahead = float(np.dot(last.tangent, here.tangent)) >= 0.0
+    return last if ahead else Node(last.z, -last.tangent, last.iterations)
+
+
+def walk(equations: Equations, start: Node, step: float, plan: Walk, heard: Callable[[Node], bool]) -> Position:
+    """Follow a branch from a solution until it leaves the range; returns the position where it ended.
+
+    Args:
+        equations: r(y, p). start: where to begin, its tangent the way to go. step: first length. plan: how far to go.
+        heard: is told each node behind the start; False ends the walk.
+    """
+    at = Position(start, min(step, plan.longest))
+    while not at.ended:
+        at, there = step_on(equations, start, at, plan)
+        if there and not heard(at.here) and at.ended != "end":
+            at = replace(at, ended="stopped")
+    return at

@@ -42,8 +42,10 @@ class HarmonicOrbits:
         self._receptances = receptances or Receptances(grid.harmonics, grid.order)
         # Receptances (H + 1, m, m) at values that are kept, and the watched displacements (H, p, m) of unit forces there.
         self._kept: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self._basis: ModalBasis | None = None
-        self._basis_of: Plant | None = None
+        # Values that `memory` has not told of yet.
+        self._new: dict[float, None] = {}
+        # The bases of the map over a period that the begin of the range and the last plant have.
+        self._bases: list[tuple[Plant, ModalBasis]] = []
 
     @property
     def size(self) -> int:
@@ -62,9 +64,40 @@ class HarmonicOrbits:
             self._solve_at(p)
 
     def _keep(self, p: float, R: np.ndarray, watched: np.ndarray) -> None:
+        for known in (self._kept, self._new):
+            known.pop(p, None)
+        # In one order in memory, as they come back from a file: products depend on it in the last digit.
+        self._kept[p] = (np.ascontiguousarray(R), np.ascontiguousarray(watched))
+        self._new[p] = None
         if len(self._kept) > _MOST_KEPT:
-            self._kept.clear()
-        self._kept[p] = (R, watched)
+            oldest = next(iter(self._kept))
+            del self._kept[oldest]
+            self._new.pop(oldest, None)
+
+    def memory(self) -> dict[str, np.ndarray]:
+        """What answers depend on, beside what is asked: what was kept since the last call, and where exact solutions are.
+
+        Returns:
+            `places` (k,), values of the last exact solutions; `values` (j,) whose receptances are kept, `receptances`
+            (j, H + 1, m, m) and `watched` (j, H, p, m) there.
+        """
+        values = list(self._new)
+        self._new.clear()
+        sides = zip(*(self._kept[p] for p in values), strict=True) if values else (np.zeros((0, 0, 0, 0)),) * 2
+        R, watched = map(np.array, sides)
+        return {
+            "places": np.array(self._receptances.places),
+            "values": np.array(values),
+            "receptances": R,
+            "watched": watched,
+        }
+
+    def recall(self, memory: dict[str, np.ndarray]) -> None:
+        """Go on as equations that have told this `memory`, after all those that they told before."""
+        for p, R, watched in zip(memory["values"].tolist(), memory["receptances"], memory["watched"], strict=True):
+            self._keep(p, R, watched)
+        self._new.clear()
+        self._receptances.recall(memory["places"].tolist(), self._plant_at)
 
     def _solve_at(self, p: float) -> np.ndarray:
         """Displacements (H, n, m) of unit local forces at a value."""
@@ -83,6 +116,10 @@ class HarmonicOrbits:
     def along(self, plant_at: PlantAt) -> HarmonicOrbits:
         """The same for other plants of the same structure: both share receptances between exact ones."""
         return HarmonicOrbits(plant_at, self.grid, self.scale, self._receptances)
+
+    def apart(self) -> HarmonicOrbits:
+        """The same without what was asked before."""
+        return HarmonicOrbits(self._plant_at, self.grid, self.scale)
 
     def coefficients(self, y: np.ndarray) -> np.ndarray:
         """c (H + 1, m) in m or rad from unknowns."""
@@ -141,20 +178,27 @@ class HarmonicOrbits:
         return J
 
     def _modes(self, plant: Plant) -> ModalBasis:
-        """The basis of the map over a period: that of the last plant where inertia and stiffness are the same."""
+        """The basis of the map over a period: that of the begin of the range where inertia and stiffness are the same."""
+        if not self._bases:
+            first = self._plant_at(0.0)
+            self._bases = [(first, self._basis_at(first))]
+        for known, basis in self._bases:
+            if known is plant or (known is self._bases[0][0] and known.K is plant.K):
+                return basis
+        self._bases = [self._bases[0], (plant, self._basis_at(plant))]
+        return self._bases[-1][1]
+
+    def _basis_at(self, plant: Plant) -> ModalBasis:
         from rotorgear.solvers.time.local_system import contact_rates
 
-        if self._basis is None or self._basis_of is None or self._basis_of.K is not plant.K:
-            contact = plant.forces.reference_stiffness
-            root = np.sqrt(np.maximum(np.diag(contact), 0.0))
-            R = plant.static.R * root * root[:, None]
-            alive = np.linalg.eigvalsh(0.5 * (R + R.T)).max(initial=0.0)
-            w = self.grid.frequency(plant.speed)
-            # The highest frequency at which a contact alone would vibrate on the inertia it meets.
-            own = float(contact_rates(plant.M, plant.B, contact).max(initial=0.0)) if alive > 0.0 else 0.0
-            self._basis = basis_of(plant, max(_BASES * w, _CONTACTS * own))
-            self._basis_of = plant
-        return self._basis
+        contact = plant.forces.reference_stiffness
+        root = np.sqrt(np.maximum(np.diag(contact), 0.0))
+        R = plant.static.R * root * root[:, None]
+        alive = np.linalg.eigvalsh(0.5 * (R + R.T)).max(initial=0.0)
+        w = self.grid.frequency(plant.speed)
+        # The highest frequency at which a contact alone would vibrate on the inertia it meets.
+        own = float(contact_rates(plant.M, plant.B, contact).max(initial=0.0)) if alive > 0.0 else 0.0
+        return basis_of(plant, max(_BASES * w, _CONTACTS * own))
 
     def modes(self, p: float) -> ModalBasis:
         """The basis of the map over a period at a value."""

@@ -80,30 +80,27 @@ PlantAt = Callable[[float], Plant]
 
 
 class Plants:
-    """Makes plants of systems and keeps what neighbours share.
+    """Makes plants of systems and keeps what they share with the first one and with the last one.
 
-    Systems that differ in speed and load only share their static solution and their motions without strain.
+    Systems that differ in speed and load only share their static solution and their motions without strain. No number of a plant
+    depends on those made before but the first: a continuation that is broken off goes on to the same digits.
     """
 
     def __init__(self) -> None:
-        self._last: Plant | None = None
-        self._places = sp.csc_array((0, 0))
+        self._known: list[tuple[Plant, sp.csc_array]] = []
 
     def of(self, system: LocalSystem) -> Plant:
         """The plant of a system at the (constant) speed of its rotation."""
         speed = float(system.rotation.speeds[0])
         K = system.stiffness_about
         C = system.damping_about
-        old = self._last
-        if old is None or not (_alike(old.K, K) and _alike(old.M, system.M) and _alike(self._places, system.B)):
-            B = system.B.toarray()
-            # The motions of the last plant, unless they strain this one.
-            R = np.zeros((system.n, 0)) if old is None else old.free
-            kept = R.shape[1] and np.all(np.abs(K @ R) <= _FREE * (abs(K) @ np.abs(R)) + 1e-300)
-            free = R if kept else free_motions(system.M, K)
-            plant = Plant(system.M, C, system.G, K, B, system.load, system.forces, speed, system.watched_vectors, free)
-            self._places = system.B
-        else:
+        alike = [
+            old
+            for old, places in self._known
+            if _alike(old.K, K) and _alike(old.M, system.M) and _alike(places, system.B)
+        ]
+        if alike:
+            old = alike[0]
             C = old.C if _alike(old.C, C) else C
             G = old.gyroscopic if _alike(old.gyroscopic, system.G) else system.G
             plant = Plant(
@@ -113,7 +110,14 @@ class Plants:
             plant.__dict__["elastic"] = old.elastic
             if np.array_equal(old.load, system.load):
                 plant.__dict__["static"] = old.static
-        self._last = plant
+        else:
+            B = system.B.toarray()
+            # The motions of the first plant, unless they strain this one.
+            R = self._known[0][0].free if self._known else np.zeros((system.n, 0))
+            kept = R.shape[1] and np.all(np.abs(K @ R) <= _FREE * (abs(K) @ np.abs(R)) + 1e-300)
+            free = R if kept else free_motions(system.M, K)
+            plant = Plant(system.M, C, system.G, K, B, system.load, system.forces, speed, system.watched_vectors, free)
+        self._known = [*self._known[:1], (plant, system.B)]
         return plant
 
 

@@ -15,7 +15,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.solvers.periodic.plant import Plant
+from rotorgear.solvers.periodic.plant import Plant, PlantAt
 from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 
@@ -36,7 +36,9 @@ class Receptances:
         self._h = np.arange(1, harmonics + 1)
         self._order = order
         self._known: list[tuple[np.ndarray, np.ndarray]] = []
-        self._places: list[float] = []
+        # Values of the parameter of the exact solutions; those of an interrupted run are solved for again when they are needed.
+        self.places: list[float] = []
+        self._plant_at: PlantAt | None = None
         # By the solutions left out and whether watched places are in it.
         self._bases: dict[tuple[int, bool], tuple[np.ndarray, np.ndarray]] = {}
         self._small: dict[tuple[int, bool], tuple[Plant, list[np.ndarray], np.ndarray | None]] = {}
@@ -46,7 +48,26 @@ class Receptances:
     @property
     def begun(self) -> bool:
         """Whether there is an exact solution."""
-        return bool(self._known)
+        return bool(self.places)
+
+    def recall(self, places: list[float], plant_at: PlantAt) -> None:
+        """Go on as if these were the values of the last exact solutions, of these plants."""
+        if places != self.places:
+            self.places = places
+            self._plant_at = plant_at
+            self._forget()
+
+    def _forget(self) -> None:
+        self._known = []
+        self._bases.clear()
+        self._small.clear()
+
+    @property
+    def _pairs(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """X and Y of the exact solutions."""
+        if len(self._known) < len(self.places) and self._plant_at is not None:
+            self._known = [self._solved(self._plant_at(place)) for place in self.places]
+        return self._known
 
     def frequencies(self, plant: Plant) -> np.ndarray:
         """Of the harmonics from the first on, rad/s."""
@@ -57,6 +78,15 @@ class Receptances:
 
         `place`: of the plant along the parameter.
         """
+        known = self._pairs
+        found = self._solved(plant)
+        self._forget()
+        self._known = [*known, found][-_KEPT:]
+        self.places = [*self.places, place][-_KEPT:]
+        return found[0]
+
+    def _solved(self, plant: Plant) -> tuple[np.ndarray, np.ndarray]:
+        """X and Y (H, n, m + p) of both sides."""
         w = self.frequencies(plant)
         B = np.hstack([plant.B, plant.watched]).astype(complex)
         n, m = B.shape
@@ -80,19 +110,15 @@ class Receptances:
                 Y[i] = factor.solve(B, transposed=True)
         if not np.all(np.isfinite(X)):
             raise ConvergenceError(_SINGULAR)
-        self._known = [*self._known, (X, Y)][-_KEPT:]
-        self._places = [*self._places, place][-_KEPT:]
-        self._bases.clear()
-        self._small.clear()
-        return X
+        return X, Y
 
     def holds_for(self, plant: Plant, place: float) -> bool:
         """Whether the rational form is exact but for rounding at a plant: without its oldest solution it gives the same."""
         # Bases cost as much as half a solution: not where a form of so few can't reach.
-        low = min(self._places, default=0.0)
-        high = max(self._places, default=0.0)
+        low = min(self.places, default=0.0)
+        high = max(self.places, default=0.0)
         beyond = _REACH * (high - low)
-        if len(self._known) < _KEPT or not low - beyond <= place <= high + beyond:
+        if len(self.places) < _KEPT or not low - beyond <= place <= high + beyond:
             return False
         try:
             best = self.near(plant)[1:]
@@ -121,7 +147,7 @@ class Receptances:
                 s = B.shape[1]
                 # Columns of one size, orthonormal: two values next to each other give nearly the same ones.
                 V, Y = (
-                    np.concatenate([pair[side][:, :, :s] for pair in self._known[leave:]], axis=2) for side in (0, 1)
+                    np.concatenate([pair[side][:, :, :s] for pair in self._pairs[leave:]], axis=2) for side in (0, 1)
                 )
                 self._bases[key] = (_orthonormal(V), _orthonormal(Y).transpose(0, 2, 1))
             V, left = self._bases[key]

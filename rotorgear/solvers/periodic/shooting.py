@@ -166,9 +166,20 @@ class ShootingOrbits:
         other._known = {}
         return other
 
+    def apart(self) -> ShootingOrbits:
+        """The same without what was asked before."""
+        return self.along(self._plant_at)
+
+    def memory(self) -> dict[str, np.ndarray]:
+        """What answers depend on, beside what is asked: nothing."""
+        return {}
+
+    def recall(self, memory: dict[str, np.ndarray]) -> None:
+        """Go on as equations that have told this `memory`."""
+
     def finer(self) -> ShootingOrbits:
         """The same motions to a tighter tolerance, at twice the instants."""
-        other = self.along(self._plant_at)
+        other = self.apart()
         other.tolerance = _TIGHTER
         other.instants = 2 * self.instants
         return other

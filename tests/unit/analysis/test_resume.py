@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +17,10 @@ import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
 from rotorgear.export.stream import ChunkStream
-from tests.models import pair_file
+from tests.models import pair_file, spur_pair
 from tests.overhung import overhung_disk
 from tests.paths import ROOT
+from validation.studies.dead_zone import DeadZone
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
 
@@ -87,6 +88,71 @@ def test_a_study_keeps_its_rows_with_their_times(tmp_path: Path) -> None:
     assert list(study.rungs[:2]) == [chunk["rung"] for chunk in first.chunks]
     with pytest.raises(RotorgearError, match="another model or other settings"):
         rg.accuracy(overhung_disk(), "modal", stream=rg.stream(path, resume=True))
+
+
+def differences(a: Any, b: Any, where: str = "") -> list[str]:
+    """Where two results differ in any bit of what is no time."""
+    if is_dataclass(a):
+        names = [field.name for field in fields(a) if field.name not in ("seconds", "cpu_per_point")]
+        return [text for name in names for text in differences(getattr(a, name), getattr(b, name), f"{where}.{name}")]
+    if isinstance(a, tuple) and len(a) == len(b):
+        pairs = enumerate(zip(a, b, strict=True))
+        return [text for i, (own, other) in pairs for text in differences(own, other, f"{where}[{i}]")]
+    if isinstance(a, dict) and list(a) == list(b):
+        return [text for key in a for text in differences(a[key], b[key], f"{where}[{key}]")]
+    if isinstance(a, np.ndarray):
+        same = a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+    else:
+        same = type(a) is type(b) and repr(a) == repr(b)
+    return [] if same else [where]
+
+
+def pair_over_speed(stream: ChunkStream | None) -> rg.OrbitsResult:
+    """Branches of shafts and a mesh, by harmonic balance with few exact solutions."""
+    model = spur_pair()
+    ends = [157.0, 163.0]
+    return rg.orbits(model, {"operation.speed": ends}, harmonics=3, step=0.25, points=12, elements=1, stream=stream)
+
+
+def doubling_over_two_parameters(stream: ChunkStream | None) -> rg.OrbitsResult:
+    """A period doubling, a branch behind it, its curve, and transients beside the motions."""
+    case = DeadZone(amplitude=0.2)
+    over = {"operation.speed": [case.speed(1.61), case.speed(1.6)], "loads.drive.ripple": [4.0, 4.004]}
+    asked: dict[str, Any] = {"method": "harmonic balance", "harmonics": 4, "step": 0.5, "points": 6}
+    return rg.orbits(rg.loads(case.text(1.6)), over, switch=True, stream=stream, **asked)
+
+
+def pair_over_frequency(stream: ChunkStream | None) -> rg.FrequencyResponse:
+    """Solutions in a basis of few, and others on a finer mesh."""
+    places = ["gears.pinion:y", "housing"]
+    return rg.frf(spur_pair(), inputs=places, outputs=places, fmax=9000.0, points=90, elements=4, stream=stream)
+
+
+def pair_over_speeds(stream: ChunkStream | None) -> rg.CampbellResult:
+    """Modes in a basis of few over speeds."""
+    return rg.campbell(spur_pair(), points=3, modes=4, elements=1, stream=stream)
+
+
+@pytest.mark.parametrize(
+    ("run", "each"),
+    [(pair_over_speed, 3), (doubling_over_two_parameters, 5), (pair_over_frequency, 2), (pair_over_speeds, 2)],
+)
+def test_a_run_that_is_killed_again_and_again_ends_with_the_same_bits(
+    run: Callable[[ChunkStream | None], rg.Result], each: int, tmp_path: Path
+) -> None:
+    whole = run(None)
+    path = tmp_path / "run.h5"
+    stream = Counted(path, most=each)
+    starts = 1
+    found = None
+    while found is None:
+        try:
+            found = run(stream)
+        except _StopError:
+            starts += 1
+            stream = Counted(path, resume=True, most=each)
+    assert starts >= 3
+    assert differences(whole, found) == []
 
 
 def without_speed() -> str:

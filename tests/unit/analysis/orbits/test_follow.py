@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rotorgear.analysis.orbits.follow import Branch, followed, main_branches
+from rotorgear.analysis.common.stream import unkept
+from rotorgear.analysis.orbits.follow import Branch, certified, followed, main_branches
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import silent
 from rotorgear.solvers.periodic.arclength import Linear, Node, Walk, at_value
@@ -40,8 +41,8 @@ class Cubic:
 
 
 def _branch(equations: Any, y: float, p: float) -> Branch:
-    start = at_value(equations, np.array([y]), p)
-    return followed(equations, start, 0.01, Walk(longest=0.1), "1T", 1, silent, 0.0, both=True)
+    start = certified(equations, at_value(equations, np.array([y]), p))
+    return followed(equations, start, 0.01, Walk(longest=0.1), "1T", 1, silent, 0.0, unkept, both=True)
 
 
 @pytest.mark.parametrize(("y", "p"), [(-0.94, 0.0), (0.0, 0.5), (0.65, 0.6)])
@@ -102,7 +103,7 @@ class Apart:
 @pytest.mark.parametrize(("at_rest", "count"), [(0.0, 1), (1.6, 2), (None, 2)])
 def test_a_branch_that_comes_in_at_the_other_end_is_followed_too(at_rest: float | None, count: int) -> None:
     equations: Any = Apart(at_rest)
-    first = at_value(equations, np.zeros(1), 0.0)
+    first = certified(equations, at_value(equations, np.zeros(1), 0.0))
     found = main_branches(equations, first, Walk(longest=0.1), silent, lambda p: np.array([1.6]))
     assert [branch.name for branch in found] == ["1T", "1T from the end"][:count]
     assert [branch.ended for branch in found] == ["the end of the range"] * count

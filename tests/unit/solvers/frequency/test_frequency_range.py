@@ -23,9 +23,9 @@ def chain(n: int, damping: float, skew: float = 0.0) -> Dynamics:
 
 def whole(found: FrequencyRange, count: int) -> np.ndarray:
     """All solutions (p, n, i)."""
-    blocks = list(found.blocks())
-    assert np.array_equal(np.concatenate([at for at, _ in blocks]), np.arange(count))
-    return np.concatenate([q for _, q in blocks])
+    blocks = found.blocks()
+    assert np.array_equal(np.concatenate(blocks), np.arange(count))
+    return np.concatenate([found.solutions(at) for at in blocks])
 
 
 @pytest.mark.parametrize(
