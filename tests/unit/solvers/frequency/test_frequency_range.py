@@ -8,7 +8,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.frequency.frequency_range import TOLERANCE, FrequencyRange
-from rotorgear.solvers.frequency.harmonic import Dynamics
+from rotorgear.solvers.frequency.harmonic import Dynamics, projected
 
 
 def chain(n: int, damping: float, skew: float = 0.0) -> Dynamics:
@@ -42,6 +42,26 @@ def test_solutions_in_a_basis_are_the_direct_ones(damping: float, skew: float) -
     direct = np.array([system.solve(value, f) for value in w])
     off = np.linalg.norm(q - direct, axis=1) / np.linalg.norm(direct, axis=1)
     assert off.max() < 10.0 * TOLERANCE
+
+
+@pytest.mark.parametrize("at_resonance", [False, True])
+def test_damping_of_single_modes_acts_as_the_matrix_that_it_stands_for(at_resonance: bool) -> None:
+    """Near a resonance of the structure without it too, where the formula divides by next to nothing."""
+    plain = chain(24, 1e-5, 2.0)
+    P = np.random.default_rng(8).standard_normal((24, 3))
+    d = np.array([2.0, 0.5, 7.0])
+    f = np.eye(24)[:, [3, 20]]
+    assembled = Dynamics(plain.M, sp.csc_array(plain.D + P @ np.diag(d) @ P.T), plain.K)
+    squares = np.linalg.eigvals(np.linalg.solve(plain.M.toarray(), plain.K.toarray()))
+    w = float(np.sqrt(np.sort(squares.real)[4])) * (1.0 if at_resonance else 0.9)
+    if at_resonance:
+        plain = Dynamics(plain.M, 0.0 * plain.D, plain.K)
+        assembled = Dynamics(plain.M, sp.csc_array(P @ np.diag(d) @ P.T), plain.K)
+    low_rank = Dynamics(plain.M, plain.D, plain.K, (P, d))
+    exact = np.linalg.solve((assembled.K + 1j * w * assembled.D - w**2 * assembled.M).toarray(), f)
+    np.testing.assert_allclose(low_rank.solve(w, f), exact, rtol=1e-9, atol=1e-11 * np.abs(exact).max())
+    pencil = projected(low_rank, np.eye(24))
+    np.testing.assert_allclose(pencil.D, assembled.D.toarray(), rtol=1e-12, atol=1e-12)
 
 
 def test_small_systems_are_solved_all_at_once() -> None:
