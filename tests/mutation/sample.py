@@ -1,7 +1,7 @@
 """Faults of one operator, function or number, drawn at random from the arithmetic of the package, and the tests nearest to them.
 
-A draw is the same for the same seed and sources. Some of its faults change nothing that matters; a survivor is read before it
-becomes a test, and then an entry of the list.
+A draw is the same for the same seed and sources. Shares of a progress bar are not drawn: they change no result. Some other faults
+change nothing that matters either; a survivor is read before it becomes a test, and then an entry of the list.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ _FUNCTIONS = {
     "minimum": "maximum",
     "maximum": "minimum",
 }
+# Functions that are told a share of the work.
+_OF_PROGRESS = ("progress", "tell", "part_of")
 # Laws that every part of a kind holds; quick, and run behind the tests that mirror a module.
 _OF_LAWS = {
     "forces": "test_force_laws.py",
@@ -50,19 +52,36 @@ def packages(root: Path = ROOT) -> list[str]:
 def nearest_tests(file: str, root: Path = ROOT) -> tuple[str, ...]:
     """Paths of tests of a file below rotorgear/, the nearest first.
 
-    Those that import it, those of its name wherever they stand, the folder that mirrors its own, and those of laws.
+    Those that import it, those of its name wherever they stand, the folder that mirrors its own, those that import what imports
+    it, and those of laws.
     """
-    module = "rotorgear." + file.removesuffix(".py").replace("/", ".")
+    module = _module(file)
     places = [root / "tests" / "unit" / parent for parent in Path(file).parents]
     mirror = next(place for place in places if place.is_dir())
     contract = root / "tests" / "contract"
     every = sorted([*(root / "tests" / "unit").rglob("test_*.py"), *contract.glob("test_*.py")])
-    direct = [test for test in every if f"from {module} import" in test.read_text(encoding="utf-8")]
+    direct = _that_import([module], every)
     direct += [test for test in every if test.name.startswith(f"test_{Path(file).stem}") and test not in direct]
     around = [] if mirror.name == "unit" else sorted(set(mirror.rglob("test_*.py")) - set(direct))
+    package = root / "rotorgear"
+    users = [
+        _module(user.relative_to(package).as_posix()) for user in _that_import([module], sorted(package.rglob("*.py")))
+    ]
+    of_users = [test for test in _that_import(users, every) if test not in direct and test not in around]
     kind = file.partition("/")[0]
-    laws = sorted(set(contract.glob(_OF_LAWS[kind])) - set(direct)) if kind in _OF_LAWS else []
-    return tuple(test.relative_to(root).as_posix() for test in (*direct, *around, *laws))
+    laws = sorted(set(contract.glob(_OF_LAWS[kind])) - {*direct, *of_users}) if kind in _OF_LAWS else []
+    return tuple(test.relative_to(root).as_posix() for test in (*direct, *around, *of_users, *laws))
+
+
+def _module(file: str) -> str:
+    """The name under which a file below rotorgear/ is imported."""
+    return "rotorgear." + file.removesuffix(".py").replace("/", ".")
+
+
+def _that_import(modules: list[str], files: list[Path]) -> list[Path]:
+    """Those of some files that import one of the modules."""
+    wanted = [f"from {module} import" for module in modules]
+    return [file for file in files if any(each in file.read_text(encoding="utf-8") for each in wanted)]
 
 
 def faults_of(text: str) -> list[tuple[int, int, str, str]]:
@@ -101,11 +120,13 @@ def faults_of(text: str) -> list[tuple[int, int, str, str]]:
 
 
 def _arithmetic(node: ast.AST, inside: bool = False) -> Iterator[ast.AST]:
-    """Nodes of the bodies of functions, without annotations, defaults and texts of messages."""
+    """Nodes of the bodies of functions, without annotations, defaults, texts of messages and shares of progress."""
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "args") and isinstance(node, (ast.FunctionDef, ast.AnnAssign)):
             continue
         for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.Call) and isinstance(child.func, ast.Name) and child.func.id in _OF_PROGRESS:
+                continue
             if isinstance(child, ast.AST) and not isinstance(child, (ast.JoinedStr, ast.Raise)):
                 within = inside or isinstance(node, ast.FunctionDef)
                 if within:

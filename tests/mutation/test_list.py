@@ -54,6 +54,7 @@ def f(x: float | None = 2.0) -> float:
     """x / 2.0"""
     é = "a - b" + f"{x - 1.0}"
     y: int | None = 3
+    progress(0.3 + 0.2 * x, "half")
     return np.sin(x) * 0.5 if x < y else x
 '''
     found = [(old, new) for *_, old, new in faults_of(text)]
@@ -79,5 +80,8 @@ def test_every_package_is_drawn_from_and_the_tests_that_import_a_module_come_fir
     tests = nearest_tests("rexs/bearings.py")
     assert tests[0] == "tests/unit/rexs/test_import.py"
     assert set(tests) > {"tests/unit/rexs/test_numbers.py", "tests/unit/rexs/test_other_files.py"}
+    of_user = nearest_tests("solvers/frequency/contact_basis.py")
+    assert of_user[0] == "tests/unit/solvers/frequency/test_contact_basis.py"
+    assert "tests/unit/analysis/sweep/test_sweep_reduction.py" in of_user
     assert "tests/contract/test_force_laws.py" in nearest_tests("forces/law.py")
     assert "tests/contract/test_conventions_of_the_mesh.py" in nearest_tests("system/groups.py")
