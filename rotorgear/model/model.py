@@ -20,9 +20,11 @@ from rotorgear.files.read import UnreadableError, digest_of_named
 from rotorgear.model.address import with_values
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
+from rotorgear.model.layout.carriers import repeated
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
+from rotorgear.model.parts.carrier import MARK
 from rotorgear.model.parts.fields import MOTIONS, Name
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.model.parts.tables import Tables
@@ -42,15 +44,49 @@ class Model(Tables):
 
     shafts: dict[Name, Shaft] = Field(min_length=1, description="shafts")
 
+    # Of a model with planets: the tables as the file has them, and what single planets have otherwise.
+    _once: dict[str, Any] = {}  # noqa: RUF012 - pydantic gives each model its own
+    _overrides: dict[str, dict[str, Any]] = {}  # noqa: RUF012
+
     def __init__(self, /, **data: Any) -> None:
+        given, overrides = without_overrides(data)
         try:
-            BaseModel.__init__(self, **data)
+            BaseModel.__init__(self, **given)
         except ValidationError:
-            problems, rest, broken = repaired(data)
-            raise ModelError([*problems, *find_problems(Layout(rest), broken)]) from None
-        problems = find_problems(self.layout)
+            problems, rest, broken = repaired(given)
+            raise ModelError([*problems, *find_problems(rest, overrides, broken)]) from None
+        if self.carriers:
+            once = {name: getattr(self, name) for name in type(self).model_fields}
+            whole, problems = repeated(self, overrides)
+            # The fields of a frozen part: what the analyses see are the parts of the whole gearbox.
+            self.__dict__.update({name: getattr(whole, name) for name in once})
+            self._once = {name: part for name, part in once.items() if part is not getattr(self, name)}
+            self._overrides = overrides
+        problems = find_problems(self.written, overrides, layout=self.layout)
         if problems:
             raise ModelError(problems)
+
+    @property
+    def written(self) -> Model:
+        """The parts as the file has them: planets once, and not on every pin. It is the model itself where it has none."""
+        if not self._once:
+            return self
+        twin = self.model_copy(update=self._once)
+        twin._once = {}
+        return twin
+
+    def model_dump(self, **options: Any) -> dict[str, Any]:
+        """The fields as the file has them; see pydantic."""
+        fields = BaseModel.model_dump(self.written, **options)
+        for table, parts in self._overrides.items():
+            fields[table] |= {name: dict(keys) for name, keys in parts.items()}
+        return fields
+
+    def model_dump_json(self, **options: Any) -> str:
+        """The same as a text; see pydantic."""
+        if not self._overrides:
+            return BaseModel.model_dump_json(self.written, **options)
+        return json.dumps(self.model_dump(mode="json", **options))
 
     def with_(self, address: str | Mapping[str, Any], value: Any = None) -> Model:
         """Return this model with another value at an address, or with several; checked like a new one.
@@ -82,7 +118,8 @@ class Model(Tables):
 
     def _counts(self) -> str:
         """How many parts of each kind there are."""
-        tables = {name: getattr(self, name) for name in type(self).model_fields}
+        written = self.written
+        tables = {name: getattr(written, name) for name in type(self).model_fields}
         return ", ".join(counted(len(value), key) for key, value in tables.items() if isinstance(value, dict) and value)
 
     @cached_property
@@ -119,6 +156,28 @@ class Model(Tables):
         """Old name of `torque_flow`."""
         warnings.warn("Model.mean_load is now Model.torque_flow", FutureWarning, stacklevel=2)
         return self.torque_flow(direction)
+
+
+def without_overrides(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """The tables of a file without the keys of single planets, such as [meshes."sun_planet#2"], and those keys by table."""
+    if not data.get("carriers"):
+        return data, {}
+    given = dict(data)
+    overrides = {}
+    for table, parts in data.items():
+        named = (
+            [name for name, keys in parts.items() if MARK in name and isinstance(keys, dict)]
+            if _is_table(parts)
+            else []
+        )
+        if named:
+            given[table] = {name: part for name, part in parts.items() if name not in named}
+            overrides[table] = {name: parts[name] for name in named}
+    return given, overrides
+
+
+def _is_table(parts: Any) -> bool:
+    return isinstance(parts, dict) and all(isinstance(name, str) for name in parts)
 
 
 __all__ = ["MOTIONS", "SCHEMA_VERSION", "Model"]
@@ -169,8 +228,9 @@ def _hash(model: Model) -> str:
                 del part[key]
     if not fields["casings"]:
         del fields["casings"]  # a model without them keeps the name that it had before there were any
-    if not fields["scatter"]:
-        del fields["scatter"]
+    for table in ("scatter", "carriers"):
+        if not fields[table]:
+            del fields[table]
     text = json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.elements.gear_mesh import face_strains
-from rotorgear.model.layout.state import MeshForce
-from rotorgear.system.groups import contact_geometry, face_of
+from rotorgear.model.layout.state import MeshForce, contact_geometry
+from rotorgear.system.groups import face_of
 from rotorgear.system.system import System
 
 

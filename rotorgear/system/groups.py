@@ -26,7 +26,7 @@ from rotorgear.elements.spring import between, rigid_transfer, spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.spring import matrix_rows
-from rotorgear.model.layout.state import MeshForce, State
+from rotorgear.model.layout.state import MeshForce, State, contact_geometry
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import CASING, Element, Nodes
 
@@ -199,6 +199,13 @@ def relative_motion(layout: Layout, nodes: Nodes, address: str) -> tuple[np.ndar
         relative = between(*points)
         relative[:, 6:] = relative[:, 6:] @ mate.six
         return np.concatenate([dofs, node_dofs(nodes.at(*other[0]))[0]]), relative
+    pins = layout.carrier_pin(address) if table == "bearings" else None
+    if pins is not None:
+        # Of a planet's bearing, the carrier carries its end of it rigidly.
+        place, arm = pins
+        seen = layout.model.shafts[place.shaft].frame.sees(frame)
+        carried = seen.six.T @ rigid_transfer(arm)
+        return np.concatenate([node_dofs(nodes.at(*place))[0], dofs]), np.hstack([-carried, np.eye(6)])
     seat = layout.seat(address) if table in ("bearings", "nonlinear_elements") else None
     if seat is not None:
         casing, number, arm = seat
@@ -266,28 +273,6 @@ def element_data(model: Tables, name: str, elements: list[Element]) -> ShaftElem
     stiffness = ends([s.stiffness_diameters() for s in shaft.sections])
     mass = ends([s.mass_diameters() for s in shaft.sections])
     return ShaftElements(length, stiffness, mass, E, G, nu, rho, kappas)
-
-
-def contact_geometry(force: MeshForce) -> ContactGeometry:
-    """Geometry of one contact with its driving flank, in the middle of its face."""
-    c = force.contact
-    # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
-    past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
-    return ContactGeometry(
-        psi=c.psi,
-        pressure_angle=c.pressure_angle,
-        base_helix_angle=c.base_helix_angle,
-        hand=c.hand,
-        torque_sense=force.torque_sense,
-        pinion_base_radius=c.pinion_base_radius,
-        gear_base_radius=c.gear_base_radius,
-        pinion_offset=c.contact_z - c.pinion_place.z,
-        gear_offset=c.gear_contact_z - c.gear_place.z,
-        contact_position=past_pitch_point,
-        turn=c.turn,
-        gear_node=c.gear_node,
-        cone=c.cone,
-    )
 
 
 def face_of(layout: Layout, force: MeshForce) -> Face:

@@ -6,6 +6,7 @@ import numpy as np
 
 from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.model.parts.load import Load
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
 
 
@@ -42,6 +43,20 @@ def wrench_load(system: System, load: ExternalLoad, wrench: np.ndarray) -> np.nd
     for place in load.places:
         node = system.nodes.at(*place)
         f[6 * node : 6 * node + 6] += wrench / len(load.places)
+    return f
+
+
+def centrifugal_loads(system: System, speed: float) -> np.ndarray:
+    """Steady centrifugal load of planets outwards, W^2 r M e, at a reference speed in rad/s, over all dofs (a,)."""
+    f = np.zeros(system.dofs.transform.shape[0])
+    for planets in turning_carriers(system.layout):
+        W = system.train.ratio(planets.shaft) * speed
+        for group in system.groups:
+            if group.shaft in planets.planets and group.matrices.mass is not None:
+                # The motions of an element's nodes come first, six each.
+                outwards = (group.dofs % 6 == 0) & (group.dofs < 6 * len(system.nodes))
+                load = np.einsum("eij,ej->ei", group.matrices.mass, outwards.astype(float))
+                np.add.at(f, group.dofs, W**2 * planets.radius * load)
     return f
 
 

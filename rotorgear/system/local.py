@@ -17,12 +17,12 @@ import scipy.sparse as sp
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.model.layout.mesh_layout import POSITIONS
-from rotorgear.model.layout.state import MeshForce
+from rotorgear.model.layout.state import MeshForce, contact_geometry
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
-from rotorgear.system.groups import ElementGroup, contact_geometry, face_of, mesh_damping, mesh_dofs
+from rotorgear.system.groups import ElementGroup, face_of, mesh_damping, mesh_dofs
 from rotorgear.system.loads import outer_loads
 from rotorgear.system.local_parts import (
     LocalPart,
@@ -220,10 +220,9 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
 
     model = system.model
     contact = force.contact
-    mesh = system.layout.mesh(contact.mesh).part
-    pinion = system.layout.gear(contact.pinion)
-    teeth = pinion.part.teeth or 0
-    order = teeth * abs(system.train.ratio(pinion.shaft)) * system.direction
+    both = system.layout.mesh(contact.mesh)
+    mesh = both.part
+    order = both.order * system.direction
 
     # Damping grows over a small share of the mean deflection; penetration damping refers to that deflection itself.
     deflection = (force.normal_force / contact.stiffness) or _UNLOADED

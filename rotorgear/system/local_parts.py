@@ -162,7 +162,7 @@ def friction_part(
     # With the gear driving, the contacts run from the end of the path to its start: mirror them.
     sense = 1.0 if force.pinion_drives else -1.0
     ends = sorted((sense * pair.start_of_contact, sense * pair.end_of_contact))
-    pinion, gear = (float(system.train.ratio(g.shaft)) for g in both.gears)
+    pinion, gear = (both.turns(gear) for gear in both.gears)
     rolling = 2.0 * teeth.base_radius * np.tan(geometry.pressure_angle) * abs(pinion)
     law = MeshFriction(
         contact=contact,

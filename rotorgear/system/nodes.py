@@ -12,8 +12,8 @@ import numpy as np
 
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.errors import AnalysisError
-from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.references import ON_SHAFTS
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.plan import Plan
 
@@ -135,6 +135,8 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
             continue
         for place in layout.places(address):
             found[place.shaft].append((place.z, address))
+    for name, carrier in model.carriers.items():
+        found[carrier.shaft].append((layout.at(carrier.shaft, carrier.at).z, f"carriers.{name}"))
     # Teeth that are cut on a shaft tilt with it between the ends of their face.
     for mesh in layout.meshes:
         for gear in mesh.gears if mesh.part.tilt else ():

@@ -36,8 +36,8 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     for group in groups:
         B = group.matrices.strain
         D = group.matrices.modulus
-        if B is None or D is None:
-            continue
+        if B is None or D is None or group.part.startswith("carriers."):
+            continue  # what turning planets bring is no spring: their train turns freely in it
         Z = group.matrices.circulation
         used = np.any(D != 0.0, axis=2) if Z is None else np.any((D != 0.0) | (Z != 0.0), axis=2)
         e = len(group.dofs)

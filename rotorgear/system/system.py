@@ -21,6 +21,7 @@ from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
+from rotorgear.system.planets import pin_load_groups, planet_groups, turning_carriers
 
 
 @dataclass(frozen=True)
@@ -147,16 +148,41 @@ class System:
     def has_tables(self) -> bool:
         """Whether stiffness or damping of some part depends on speed in another way than in proportion: tables, gear bodies."""
         bodies = any(gear.body.mesh for gear in self.model.gears.values())
-        return bodies or any(spring.varies for spring in self.state.springs.values())
+        return (
+            bodies
+            or bool(turning_carriers(self.layout))
+            or any(spring.varies for spring in self.state.springs.values())
+        )
 
     @cached_property
     def groups(self) -> list[ElementGroup]:
         """Element groups without the bearings that have tables."""
+        return [*self._constant, *self._going_round[0]]
+
+    @cached_property
+    def _constant(self) -> list[ElementGroup]:
         return constant_groups(self.state, self.nodes)
+
+    @cached_property
+    def _going_round(self) -> tuple[list[ElementGroup], AnalysisError | None]:
+        """What planets bring where their carriers turn, or why that is not built."""
+        try:
+            return planet_groups(self.layout, self._constant), None
+        except AnalysisError as error:
+            return [], error
 
     def groups_at(self, speed: float) -> list[ElementGroup]:
         """All element groups at a reference speed in rad/s."""
-        return [group.at(speed) for group in self.groups] + table_groups(self.state, self.nodes, speed)
+        return [group.at(speed) for group in self.groups] + self.groups_of(speed)
+
+    def groups_of(self, speed: float) -> list[ElementGroup]:
+        """Those of them that are of one speed alone: bearings with tables, and loads of planets' pins."""
+        error = self._going_round[1]
+        if speed and error is not None:
+            raise error
+        tables = table_groups(self.state, self.nodes, speed)
+        tables += planet_groups(self.layout, tables) if speed else []
+        return tables + pin_load_groups(self.layout, self.nodes, self.dofs, [*self.groups, *tables], speed)
 
     @cached_property
     def mass(self) -> sp.csc_array:

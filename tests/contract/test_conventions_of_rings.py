@@ -8,7 +8,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import contact_vector
 from rotorgear.elements.spring import rigid_transfer
-from rotorgear.system.groups import contact_geometry
+from rotorgear.model.layout.state import contact_geometry
 from tests.turned import turned
 from tests.unit.system.test_internal import star
 

@@ -22,7 +22,7 @@ DOCS = ROOT / "docs"
 TODAY = datetime.date.today().toordinal()
 # What takes about a second; one of them is tried each day.
 QUICK_MODELS = ("geared_pair", "jeffcott", "split_torque", *(name for name in estimates.SHOWN if "/" in name))
-QUICK_CASES = ("dynamic_factor", "helical_geometry", "iso6336_stiffness", "marine_turbines", "roller_bearing")
+QUICK_CASES = ("iso6336_stiffness", "jeffcott_rotor", "three_disk_rotor")
 
 
 def test_pictures_and_long_tables_are_no_older_than_what_they_show() -> None:

@@ -16,8 +16,12 @@ import scipy.sparse as sp
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.system.assembly import assemble, strain_forms
 from rotorgear.system.components import groups_with_inertia, independent_groups
-from rotorgear.system.groups import ElementGroup, table_groups
+from rotorgear.system.groups import ElementGroup
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
+
+# Speeds between which the stiffness by loads of planets' pins is taken as linear: 1e-5 of it are left out.
+PIN_LOADS = 65
 
 
 class SpeedFamily:
@@ -39,7 +43,7 @@ class SpeedFamily:
 
     def _table(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """Damping and stiffness of the bearings with tables at a speed, sparse (n, n)."""
-        bearings = table_groups(self.system.state, self.system.nodes, float(speed))
+        bearings = self.system.groups_of(float(speed))
 
         def whole(group: ElementGroup) -> np.ndarray | None:
             K = group.matrices.stiffness
@@ -53,7 +57,7 @@ class SpeedFamily:
 
     def _square(self, system: System) -> sp.csr_array:
         """Growth of the modulus of all strains with the square of the reference speed, sparse (s, s)."""
-        if not system.nodes.bodies:
+        if not (system.nodes.bodies or turning_carriers(system.layout)):
             return sp.csr_array(self._constant.modulus.shape)
         growing = []
         for group in system.groups:
@@ -128,6 +132,9 @@ def table_speeds(system: System, low: float, high: float) -> np.ndarray:
             speed = sign * row / ratio
             if low < speed < high:
                 found.add(float(speed))
+    if turning_carriers(system.layout):
+        # The load of a planet's pin grows a little faster than with the square of the speed.
+        found |= set(np.linspace(low, high, PIN_LOADS).tolist())
     return merged(sorted(found), high - low)
 
 

@@ -11,10 +11,10 @@ from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.elements.gear_mesh import flank_normal
 from rotorgear.model.checks.names import TABLES
+from rotorgear.model.layout.state import contact_geometry
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
-from rotorgear.system.groups import contact_geometry
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System, flow_system
 

@@ -52,7 +52,7 @@ def excitation_orders(
             # A fault of a gear comes round once a turn and modulates the mesh order: lines at the distance of its speed.
             for gear in model.layout.mesh(name).gears if once else ():
                 for k in range(1, sidebands + 1):
-                    distance = k * abs(train.ratio(gear.shaft))
+                    distance = k * abs(model.layout.mesh(name).turns(gear))
                     add("sideband", f"{order:g}x + {k}x {gear.shaft}", order * once + distance, name)
                     add("sideband", f"{order:g}x - {k}x {gear.shaft}", order * once - distance, name)
     return tuple(

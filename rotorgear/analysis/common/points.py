@@ -9,9 +9,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.references import ON_SHAFTS
 from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.modal import NodeTable

@@ -50,9 +50,14 @@ _ZERO = 1e-9
 
 def damped_group(problem: Problem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
-    found = _near_undamped(problem, count, below)
-    if found is not None:
-        return found, ""
+    if problem.rigid is not None and problem.rigid.shape[1]:
+        more = None if count is None else count + problem.rigid.shape[1]
+        undamped = _undamped(problem, count, below)
+        found = by_strains(problem, _by_matrices(problem, more, below, undamped))
+        return _without_drift(found, float(undamped.frequencies[0]), count), ""
+    near = _near_undamped(problem, count, below)
+    if near is not None:
+        return near, ""
     undamped = _undamped(problem, None, None)  # the softest modes suffer most
     rigid = undamped.rigid
     noise = relative_noise(problem, undamped.frequencies, undamped.elastic)
@@ -71,6 +76,27 @@ def damped_group(problem: Problem, count: int | None, below: float | None) -> tu
         V = found.vectors[:, ~found.rigid]
         basis = np.hstack([undamped.elastic, V.real, V.imag])
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
+
+
+# Share of the softest elastic frequency below which a motion is the drift of a train with planets.
+_DRIFT = 1e-5
+
+
+def _without_drift(modes: DampedModes, softest: float, count: int | None) -> DampedModes:
+    """The modes without the second zero of each free rotation of a train with planets.
+
+    Pins give d under the centrifugal load, and dampers beside them see d where the rotation drifts, by (d/r)^2 of their work:
+    what is exactly zero becomes a number far below all frequencies.
+    """
+    kept = modes.rigid | (np.abs(modes.eigenvalues) > _DRIFT * softest)
+    kept &= np.cumsum(kept) <= (len(kept) if count is None else count)
+    return replace(
+        modes,
+        eigenvalues=modes.eigenvalues[kept],
+        vectors=modes.vectors[:, kept],
+        rigid=modes.rigid[kept],
+        backward_error=modes.backward_error[kept],
+    )
 
 
 def _by_matrices(

@@ -18,6 +18,8 @@ from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
 from rotorgear.system.assembly import StrainForms
 from rotorgear.system.plan import Plan
+from rotorgear.system.planets import turning_carriers
+from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
@@ -35,7 +37,8 @@ class Problem:
 
     `inertial` is the part alpha M + spin G of D, and `make_forms()` what C and K are made of, which keeps what it made.
     `symmetric` says whether K is, `damped` whether anything takes energy out, `guess` where the first elastic eigenvalue may be,
-    `dofs` names the dofs of a group, all of them where it is empty.
+    `dofs` names the dofs of a group, all of them where it is empty. `rigid` (n, r) are the motions that no spring resists, where
+    planets go round: what they add to K cancels in the rotation of their train, which no strain tells then.
     """
 
     system: System
@@ -50,6 +53,7 @@ class Problem:
     damped: bool
     guess: float | None = None
     dofs: bytes = b""
+    rigid: np.ndarray | None = None
 
     @classmethod
     def at(cls, system: System, speed: float | None, *, damped: bool = True) -> Problem:
@@ -63,7 +67,8 @@ class Problem:
         K_symmetric = system.stiffness(at)
         K = sp.csc_array(K_symmetric + circulatory) if circulatory.nnz else K_symmetric
         S = system.strain_factor(at)
-        if S is None and circulatory.nnz:
+        turning = bool(at and turning_carriers(system.layout))
+        if S is None and circulatory.nnz and not turning:
             # A film at a small load: the symmetric part of its stiffness is no stable spring, while the whole and its damping
             # may well be. Undamped modes serve to find rigid motions and the scale of frequencies only.
             K_symmetric = system.definite_stiffness(at)
@@ -80,6 +85,7 @@ class Problem:
                 whole = replace(whole, viscosity=0.0 * whole.viscosity)
             return whole if damped else replace(whole, circulation=0.0 * whole.circulation)
 
+        rigid = rigid_motions(system, system.groups_at(at)) if turning else None
         guess = None
         if damped and system.n >= _LARGE:
             # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
@@ -97,6 +103,7 @@ class Problem:
             symmetric=not circulatory.nnz,
             damped=damped and speed is not None and bool(system.damping(at).nnz),
             guess=guess,
+            rigid=rigid,
         )
 
     @property
@@ -143,12 +150,20 @@ class Problem:
             symmetric=self.symmetric or not (K - K_symmetric).nnz,
             damped=self.damped and bool((D + D.T).nnz),
             dofs=group.tobytes(),
+            rigid=None if self.rigid is None else self.rigid[group][:, np.any(self.rigid[group] != 0.0, axis=0)],
         )
 
     def undamped(self, count: int | None, below: float | None, *, counted: bool = True) -> UndampedModes:
         """The lowest undamped modes: `count` of them, or up to |s| = `below` in rad/s; `counted` by Sturm's sequence."""
         return lowest_modes(
-            self.M, self.K_symmetric, count=count, below=below, strain=self.strain, guess=self.guess, counted=counted
+            self.M,
+            self.K_symmetric,
+            count=count,
+            below=below,
+            strain=self.strain,
+            guess=self.guess,
+            counted=counted,
+            rigid=0 if self.rigid is None else self.rigid.shape[1],
         )
 
     def lowest(self, count: int | None, below: float | None, *, counted: bool = True) -> UndampedModes:

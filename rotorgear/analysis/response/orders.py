@@ -199,8 +199,7 @@ def _meshes(setup: Setup, blank: Order, left: list[Note]) -> Iterable[_Part]:
     for k, state in enumerate(setup.lines.states):
         mesh = system.layout.mesh(state.contact.mesh)
         phase = load.phase(state.contact)
-        teeth = mesh.pinion.part.teeth
-        ratio = abs(system.train.ratio(mesh.pinion.shaft)) * (teeth or 0)
+        ratio = mesh.order
         if phase is None or ratio == 0.0:
             continue
         for row, harmonic, amplitude in _harmonics(setup, k, mesh.part, left):

@@ -20,9 +20,9 @@ from rotorgear.analysis.common.points import coordinates, located
 from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.files.numbers import is_count
-from rotorgear.model.checks.names import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.references import ON_SHAFTS
 from rotorgear.model.parts.shaft import Place as ShaftPlace
 from rotorgear.note import Note
 from rotorgear.quantity import counted

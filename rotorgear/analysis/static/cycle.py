@@ -104,8 +104,7 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
         return None
     phases = [load.path_phase(state.contact) for state in lines.states]
     # Mesh frequencies over the speed of the reference shaft, -1 without a map.
-    pinions = [equilibrium.system.layout.mesh(state.contact.mesh).pinion for state in lines.states]
-    turning = [abs(equilibrium.system.train.ratio(pinion.shaft)) * (pinion.part.teeth or 0) for pinion in pinions]
+    turning = [equilibrium.system.layout.mesh(state.contact.mesh).order for state in lines.states]
     ratios = [ratio if mapped else -1.0 for ratio, mapped in zip(turning, have, strict=True)]
     frequencies = {round(ratio, 9): ratio for ratio in ratios if ratio >= 0.0}
     number = {key: g for g, key in enumerate(frequencies)}

@@ -23,12 +23,13 @@ from rotorgear.model.layout.state import OperatingPoint
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.note import Note
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.solvers.sparse.factor import factor_symmetric
 from rotorgear.solvers.sparse.newton import EVALUATIONS, local_equilibrium
 from rotorgear.solvers.sparse.nullspace import StaticSolver, UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.groups import ElementGroup
-from rotorgear.system.loads import outer_loads
+from rotorgear.system.loads import centrifugal_loads, outer_loads
 from rotorgear.system.local_parts import LocalPart, expansion_stiffness, without_linear_part
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
@@ -163,20 +164,60 @@ class _PushedMotionError(AnalysisError):
     """The loads push a motion that nothing holds."""
 
 
+# Forces of planets that go round are known where the largest of them changes by less than this share; rounds that are tried.
+_SETTLED = 1e-13
+_ROUNDS = 60
+
+
 def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawState]) -> Equilibrated:
+    """The equilibrium of some contacts, with what planets that go round add to the stiffness as loads of their displacements.
+
+    These loads do no work on free rotations: what the linear terms leave there is of the order that they neglect, as the torque
+    of a mesh at the radius to which the pins give.
+    """
+    turning = [group for group in system.groups_at(speed) if group.part.startswith("carriers.")]
+    if not turning:
+        return _solve_under(system, speed, closed, near, np.zeros(system.n))
+    D = assemble(turning, system.dofs, lambda g: g.matrices.stiffness)
+    D = D + assemble(turning, system.dofs, lambda g: g.circulatory_at(speed))
+    f = np.zeros(system.n)
+    for _ in range(_ROUNDS):
+        found = _solve_under(system, speed, closed, near, f)
+        before = f
+        f = -(D @ found.q)
+        R = found.motions
+        f = f - R @ np.linalg.lstsq(R, f)[0] if R.shape[1] else f
+        if np.abs(f - before).max(initial=0.0) <= _SETTLED * np.abs(f).max(initial=0.0):
+            T = system.dofs.transform
+            on_all = T @ before if system.dofs.selects else T @ factor_symmetric(sp.csc_array(T.T @ T)).solve(before)
+            return replace(found, loads=found.loads + on_all)
+    raise AnalysisError(
+        f"no equilibrium of planets that go round was found at {speed * RPM_PER_RAD_S:.6g} rpm: near this speed their "
+        "centrifugal load grows as fast as what holds them"
+    )
+
+
+def _solve_under(
+    system: System, speed: float, closed: np.ndarray, near: Sequence[LawState], beside: np.ndarray
+) -> Equilibrated:
     lines = contact_lines(system)
     meshes = iter(closed)
     groups = [
         group
         for group in system.groups_at(speed)
-        if not group.part.startswith("nonlinear_elements.") and (not group.part.startswith("meshes.") or next(meshes))
+        if not group.part.startswith(("nonlinear_elements.", "carriers."))
+        and (not group.part.startswith("meshes.") or next(meshes))
     ]
     groups, notes = without_torsion_to_ground(system, groups)
     at_rest = np.zeros(system.n)
-    loads = outer_loads(system)
-    f = system.dofs.transform.T @ loads - (
-        lines.vectors @ np.where(closed, lines.force(at_rest), 0.0)
-        + lines.tilt @ np.where(closed, lines.moment(at_rest), 0.0)
+    loads = outer_loads(system) + centrifugal_loads(system, speed)
+    f = (
+        system.dofs.transform.T @ loads
+        + beside
+        - (
+            lines.vectors @ np.where(closed, lines.force(at_rest), 0.0)
+            + lines.tilt @ np.where(closed, lines.moment(at_rest), 0.0)
+        )
     )
     parts = without_linear_part(system)
     size = max(float(np.abs(loads).max(initial=0.0)), 1.0)
@@ -316,7 +357,8 @@ def without_torsion_to_ground(
     """
     train = system.train
     model = system.model
-    held = {train.group[s.shaft] for s in model.supports.values() if {"torsion", "all"} & set(s.fixed)}
+    fixed = [s.shaft for s in model.supports.values() if {"torsion", "all"} & set(s.fixed)]
+    held = {train.group[shaft] for shaft in fixed if train.ratios[shaft] != 0}
     kept = []
     notes = []
     for group in groups:

@@ -58,7 +58,7 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
         strict=True,
     )
     pinion, wheel = geometry
-    spin = abs(model.layout.train.ratio(order[0].shaft) * speed)
+    spin = abs(mesh.turns(order[0]) * speed)
     line_load = mesh.part.application_factor * base_force * math.cos(pinion.transverse_pressure_angle) / teeth.width
     velocity = 0.5 * pinion.reference_diameter * spin
     ratio = abs(wheel.teeth / pinion.teeth)
@@ -258,7 +258,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         stiffness_definition=curve.definition if curve else None,
         stiffness_body=curve.body if curve else None,
         pitch_line_velocity_m_per_s=(
-            0.5 * g1.reference_diameter * abs(model.layout.train.ratio(mesh.pinion.shaft) * speed) if speed else None
+            0.5 * g1.reference_diameter * abs(mesh.turns(mesh.pinion) * speed) if speed else None
         ),
         tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
         base_tangential_force_n=force * base if force else None,

@@ -16,7 +16,7 @@ def positions(model: Tables) -> Iterator[Problem]:
     """Where an axis is inclined all shafts have positions."""
     inclined = next((name for name, shaft in model.shafts.items() if shaft.frame.is_turned), None)
     for name, shaft in model.shafts.items() if inclined else ():
-        if shaft.position is None:
+        if shaft.position is None and shaft.carrier is None:
             why = f"of its z = 0 in space: the axes of shaft '{inclined}' are not those of the model"
             yield missing(f"shafts.{name}.position", why)
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks.names import PartName, unknown
+from rotorgear.model.checks.names import unknown
 from rotorgear.model.checks.sizes import six_by_six
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.casing import Seat
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.model.parts.gear import BLANK
 from rotorgear.model.parts.problems import missing, not_default, shown, told
+from rotorgear.model.parts.references import PartName
 from rotorgear.model.parts.tables import Tables
 
 # Keys that say something of a casing which was reduced elsewhere; all others are of meshes.

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks.names import PartName
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.operation import Operation
 from rotorgear.model.parts.problems import not_default, told
+from rotorgear.model.parts.references import PartName
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import LARGEST
 

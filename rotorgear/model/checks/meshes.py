@@ -201,12 +201,12 @@ def _on_shafts(address: str, mesh: MeshLayout) -> Iterator[Problem]:
 def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:
     line = mesh.centre_line
     found: list[Problem] = []
-    if line is not None:
+    if line is not None and not mesh.has_own_angle:
         for key in ("centre_line_angle", "pressure_angle"):
             if (angle := getattr(mesh.part, key)) is not None:
                 hint = "it follows from the positions of the shafts"
                 found.append(Problem(f"{address}.{key}", degrees(angle), "nothing here", hint))
-    elif in_bending:  # torsion alone needs no direction of the mesh force
+    elif in_bending and line is None:  # torsion alone needs no direction of the mesh force
         pinion = mesh.pinion.part
         gear = mesh.gear.part
         if mesh.part.centre_line_angle is None:
@@ -217,7 +217,7 @@ def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Probl
             why = "positions of both shafts, or the working transverse pressure angle here"
             found.append(missing(f"{address}.pressure_angle", why))
     try:
-        found += [] if line is None else _distance(address, mesh, line[0])
+        found += [] if line is None or mesh.has_own_angle else _distance(address, mesh, line[0])
         if not found:
             _ = mesh.pair  # derived here, so that teeth that can't mesh are told now
             found += _tips(address, mesh)

@@ -8,47 +8,14 @@ from typing import Any, get_origin
 from rotorgear.errors import Problem
 from rotorgear.model.parts.problems import address as address_of
 from rotorgear.model.parts.problems import shown, told
+from rotorgear.model.parts.references import ON_SHAFTS, PartName, references
 from rotorgear.model.parts.shaft import LIBRARY
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import nearest
 
-PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
-
 # Tables of parts by name.
 _FIELDS = Tables.model_fields.items()
 TABLES = tuple(key for key, field in _FIELDS if get_origin(field.annotation) is dict and key != "scatter")
-
-ON_SHAFTS = ("disks", "point_masses", "gears", "bearings", "supports", "nonlinear_elements")
-
-
-# Keys of a part that name another one, with the table of that one.
-_NAMES: tuple[tuple[str, dict[str, str]], ...] = (
-    *((table, {"shaft": "shafts"}) for table in (*ON_SHAFTS, "unbalances")),
-    ("loads", {"shaft": "shafts", "gear": "gears", "point": "points", "order_of": "shafts"}),
-    ("meshes", {"pinion": "gears", "gear": "gears"}),
-    ("couplings", {"from_shaft": "shafts", "to_shaft": "shafts"}),
-    ("bearings", {"casing": "casings"}),
-    ("nonlinear_elements", {"casing": "casings"}),
-    ("nonlinear_elements", {"to_shaft": "shafts"}),
-)
-
-
-def references(model: Tables) -> Iterator[tuple[PartName, str, PartName]]:
-    """Yield a part, its key, and the shaft, gear or other part that the key names (materials apart)."""
-    for table, keys in _NAMES:
-        for name, part in getattr(model, table).items():
-            for key, named in keys.items():
-                if (target := getattr(part, key)) is not None:
-                    yield (table, name), key, (named, target)
-    for name, point in model.points.items():
-        if point.on is not None:
-            table, _, part = point.on.partition(".")
-            yield ("points", name), "on", (table, part)
-        elif point.shaft is not None:
-            yield ("points", name), "shaft", ("shafts", point.shaft)
-    for key in ("input_shaft", "output_shaft") if model.operation else ():
-        if (shaft := getattr(model.operation, key)) is not None:
-            yield ("operation", ""), key, ("shafts", shaft)
 
 
 def part_of(address: str) -> PartName:

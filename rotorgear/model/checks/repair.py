@@ -13,8 +13,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks.names import TABLES, PartName
+from rotorgear.model.checks.names import TABLES
 from rotorgear.model.parts.problems import Loc, class_at, from_validation, guessed_key, root_causes
+from rotorgear.model.parts.references import PartName
 from rotorgear.model.parts.tables import Tables
 
 

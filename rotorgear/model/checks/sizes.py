@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from itertools import islice, pairwise
 
 from rotorgear.errors import AnalysisError, Problem
-from rotorgear.model.checks.names import ON_SHAFTS, unknown
+from rotorgear.model.checks.names import unknown
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.problems import shown, told
+from rotorgear.model.parts.references import ON_SHAFTS
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
     Bearing,

@@ -30,6 +30,7 @@ from dataclasses import dataclass, field
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.carrier import written_name
 
 
 @dataclass
@@ -63,9 +64,11 @@ def put_together(
         rigid: pairs of shafts that couplings keep at one angle.
         clocking: gear -> clocking that the file gives (rad).
     """
-    waiting = [mesh for mesh in meshes if mesh.has_teeth]
+    every = [mesh for mesh in meshes if mesh.has_teeth]
+    waiting = list(every)
     done = Assembly({train.reference: 0.0}, dict(clocking))
     couplings = list(rigid)
+    held: dict[str, int] = {}  # shaft -> by which parts of a turn all its meshes let it be put in elsewhere
     fixed: set[str] = set()  # gears that a mesh holds already: they are not free to close a loop
     while True:
         for first, second in couplings:
@@ -86,11 +89,15 @@ def put_together(
         if reached[mesh.name] == 2:
             # The clocking of a gear that is free yet closes the loop; without one a part of a pitch is missing.
             rest = _wrapped(sum(_pitches(done, mesh, gear) for gear in mesh.gears) + 0.5, 1.0)
-            rest = 0.0 if abs(rest) < 1e-9 else rest
+            rest = 0.0 if abs(rest) < 1e-9 else _next_tooth(done, mesh, rest, held)
             free = [gear for gear in mesh.gears if gear.name not in fixed and gear.name not in done.clocking]
             for gear in free[:1]:
                 pitch = 2.0 * math.pi / (gear.part.teeth or 1)
-                done.clocking[gear.name] = _wrapped(_side(mesh, gear) * pitch * rest, pitch)
+                angle = _wrapped(_side(mesh, gear) * pitch * rest, pitch)
+                # Planets are cut as one: all sisters of a gear have its place on their shafts.
+                sisters = (one for other in every for one in other.gears)
+                alike = {one.name for one in sisters if written_name(one.name) == written_name(gear.name)}
+                done.clocking |= dict.fromkeys(alike if gear.carrier_shaft else (gear.name,), angle)
             done.loops.append((mesh.name, free[0].name if free else "", _side(mesh, mesh.pinion) * rest))
         else:
             wanted, known = mesh.gears if mesh.gear.shaft in done.shaft else (mesh.gear, mesh.pinion)
@@ -99,6 +106,26 @@ def put_together(
             tooth = _towards_pitch_point(mesh, wanted) + pitch * fit
             done.shaft[wanted.shaft] = tooth - done.clocking.get(wanted.name, 0.0)
         fixed |= {gear.name for gear in mesh.gears}
+        for gear in mesh.gears:
+            held[gear.shaft] = math.gcd(held.get(gear.shaft, 0), gear.part.teeth or 0)
+
+
+def _next_tooth(done: Assembly, mesh: MeshLayout, rest: float, held: Mapping[str, int]) -> float:
+    """What a loop misses where a stepped planet is put in at those of its teeth that fit best.
+
+    Turned by a part 1/h of a turn, which its other meshes do not see, its gear moves on by z/h pitches here.
+    """
+    for gear in mesh.gears:
+        h = held.get(gear.shaft, 0)
+        z = gear.part.teeth or 0
+        if gear.carrier_shaft is None or h <= 1 or z % h == 0:
+            continue
+        side = _side(mesh, gear)
+        steps = min(range(h), key=lambda j: abs(_wrapped(rest - side * j * z / h, 1.0)))
+        done.shaft[gear.shaft] += steps * 2.0 * math.pi / h
+        left = _wrapped(rest - side * steps * z / h, 1.0)
+        return 0.0 if abs(left) < 1e-9 else left
+    return rest
 
 
 def _pitches(done: Assembly, mesh: MeshLayout, gear: GearLayout) -> float:
@@ -129,7 +156,6 @@ def _wrapped(value: float, period: float) -> float:
 
 def tooth_numbers(
     assembly: Assembly,
-    train: Train,
     meshes: Iterable[MeshLayout],
     direction: int,
     pressed: Mapping[str, tuple[int, bool]],
@@ -137,7 +163,7 @@ def tooth_numbers(
     """Find where maps of loaded teeth begin.
 
     Args:
-        assembly: angles of the gears. train: senses of their shafts.
+        assembly: angles of the gears.
         meshes: those of the model.
         direction: +1 or -1, sense in which the reference shaft turns.
         pressed: mesh -> which flanks carry: the sense of the torque on the pinion about +z, and whether the pinion drives.
@@ -149,7 +175,7 @@ def tooth_numbers(
     wanted: dict[str, list[tuple[GearLayout, int]]] = {}
     unknown = []
     for name, shared in unlike_gears(meshes).items():
-        numbers = [_tooth(assembly, train, direction, mesh, name, pressed[mesh.name][0]) for mesh in shared]
+        numbers = [_tooth(assembly, direction, mesh, name, pressed[mesh.name][0]) for mesh in shared]
         # Where the gear drives in one mesh and the pinion in another, the map of one runs against the order of the teeth.
         senses = {pressed[mesh.name][1] for mesh in shared}
         known = [number for number in numbers if number is not None]
@@ -183,7 +209,7 @@ def unlike_gears(meshes: Iterable[MeshLayout]) -> dict[str, list[MeshLayout]]:
     return {name: shared for name, shared in found.items() if len(shared) > 1}
 
 
-def _tooth(assembly: Assembly, train: Train, direction: int, mesh: MeshLayout, name: str, pressed: int) -> int | None:
+def _tooth(assembly: Assembly, direction: int, mesh: MeshLayout, name: str, pressed: int) -> int | None:
     """Number of the tooth of a gear that stands at the pitch point of a mesh; None where the file gives the phase instead."""
     is_pinion = mesh.pinion.name == name
     if mesh.part.phase is not None or not {mesh.pinion.shaft, mesh.gear.shaft} <= assembly.shaft.keys():
@@ -191,7 +217,7 @@ def _tooth(assembly: Assembly, train: Train, direction: int, mesh: MeshLayout, n
 
     def turns(gear: GearLayout, towards: float, half: float) -> float:
         pitches = (gear.part.teeth or 0) * (assembly.angle(gear) - towards) / (2.0 * math.pi)
-        return direction * train.sense(gear.shaft) * (pitches + pressed * half)
+        return direction * mesh.sense(gear) * (pitches + pressed * half)
 
     half = mesh.half_tooth * (mesh.pinion.part.teeth or 0) / (2.0 * math.pi)
     phase = turns(mesh.pinion, mesh.psi, half) % 1.0

@@ -62,7 +62,8 @@ class ExternalLoad:
 def external_loads(model: Tables, train: Train, places: Callable[[str], tuple[Place, ...]]) -> tuple[ExternalLoad, ...]:
     """All forces and moments of a model; `places` tells the places of a load by its address."""
     fixed = [support.shaft for support in model.supports.values() if {"torsion", "all"} & set(support.fixed)]
-    held = {train.group[shaft] for shaft in fixed}
+    # A shaft that stands still, such as a ring, holds nothing that turns.
+    held = {train.group[shaft] for shaft in fixed if train.ratios[shaft] != 0}
     found = []
     for name, load in model.loads.items():
         if load.is_torque:

@@ -44,6 +44,12 @@ class GearLayout:
         self.material = model.material_of(self.shaft, name=self.part.material)
 
     @property
+    def carrier_shaft(self) -> str | None:
+        """Name of the shaft of the carrier that it goes round with; None of a gear that is no planet."""
+        carrier = self.shaft_part.carrier
+        return None if carrier is None else self._model.carriers[carrier].shaft
+
+    @property
     def geometry(self) -> GearGeometry | None:
         """ISO 21771 geometry; None for a lumped gear."""
         return self.part.geometry

@@ -14,11 +14,14 @@ from typing import TYPE_CHECKING, Any
 from rotorgear.errors import Problem
 from rotorgear.gears.geometry.blank import RigidBody, hollow_cylinder
 from rotorgear.model.layout.assembly import Assembly, put_together
+from rotorgear.model.layout.carriers import PlanetSet, planet_sets
 from rotorgear.model.layout.casings import BearingSeat, find_seat, reduced
 from rotorgear.model.layout.external_loads import ExternalLoad, external_loads
 from rotorgear.model.layout.gear_layout import GearLayout, given_body, inertia_is_given
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.layout.train import Train, walk
+from rotorgear.model.layout.train import Train
+from rotorgear.model.layout.walk import walk
+from rotorgear.model.parts.carrier import MARK
 from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.shaft import Place
 from rotorgear.model.parts.tables import Tables
@@ -27,6 +30,8 @@ from rotorgear.model.parts.tables import Tables
 MOST_MISSED = 0.25
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from rotorgear.casings.reduced_body import ReducedBody
     from rotorgear.casings.wheel import ReducedWheel
     from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
@@ -135,6 +140,11 @@ class Layout:
         return put_together(self.train, self.meshes, rigid, clocking)
 
     @cached_property
+    def planets(self) -> tuple[PlanetSet, ...]:
+        """The planets of all carriers."""
+        return planet_sets(self.model) if self.model.carriers else ()
+
+    @cached_property
     def clocking_gaps(self) -> dict[str, float]:
         """Mesh that closes a loop which the clockings of the file miss -> by how far its pinion's teeth stand behind, about +z.
 
@@ -151,7 +161,7 @@ class Layout:
         pinion = self.mesh(mesh).pinion
         if pinion.part.teeth is None:
             return None
-        return abs(self.train.ratio(pinion.shaft) * speed) * pinion.part.teeth / (2.0 * math.pi)
+        return abs(self.mesh(mesh).turns(pinion) * speed) * pinion.part.teeth / (2.0 * math.pi)
 
     def places(self, address: str) -> tuple[Place, ...]:
         """Where a part stands, such as "bearings.left": both ends of a coupling, both nodes of a herringbone gear, else one.
@@ -192,6 +202,32 @@ class Layout:
         """Where a torque acts."""
         end = "start" if load.kind == "input" else "end"
         return self.at(load.on_shaft, end if load.at is None else load.at)
+
+    def carrier_place(self, mesh: str) -> Place | None:
+        """Where the pins of the carrier are held that a mesh goes round with; None of one that stands still."""
+        gears = self.mesh(mesh).gears
+        carrier = next((name for gear in gears if (name := gear.shaft_part.carrier) is not None), None)
+        if carrier is None:
+            return None
+        part = self.model.carriers[carrier]
+        return self.at(part.shaft, part.at)
+
+    def pin_error(self, shaft: str) -> tuple[float, float] | None:
+        """How far the pin of a planet's shaft is off its place, onwards and outwards (m); None where it is not."""
+        carrier = self.model.shafts[shaft].carrier
+        errors = () if carrier is None else self.model.carriers[carrier].pin_errors
+        return errors[int(shaft.partition(MARK)[2]) - 1] if errors else None
+
+    def carrier_pin(self, bearing: str) -> tuple[Place, np.ndarray] | None:
+        """Where a planet's bearing is held: the carrier's node, and the arm (3,) in m from it along the carrier's axes."""
+        place = self.place(bearing)
+        planet = self.model.shafts[place.shaft]
+        if planet.carrier is None:
+            return None
+        part = self.model.carriers[planet.carrier]
+        held = self.at(part.shaft, part.at)
+        arm = self.model.shafts[part.shaft].frame.inside(planet.frame.at(place.z)) - [0.0, 0.0, held.z]
+        return held, arm
 
     def disk_body(self, name: str) -> RigidBody:
         """Mass and inertias of a disk, given or of a plain cylinder.

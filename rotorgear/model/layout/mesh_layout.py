@@ -125,6 +125,26 @@ class MeshLayout:
         return self.pinion, self.gear
 
     @property
+    def carrier(self) -> str | None:
+        """Name of the shaft of the carrier that the mesh goes round with; None of one that stands still."""
+        return self.pinion.carrier_shaft or self.gear.carrier_shaft
+
+    def turns(self, gear: GearLayout) -> float:
+        """Speed of one of its gears as the mesh sees it, over that of the reference shaft: relative to its carrier."""
+        if self.carrier is None:
+            return self.train.ratio(gear.shaft)
+        return float(self.train.ratios[gear.shaft] - self.train.ratios[self.carrier])
+
+    def sense(self, gear: GearLayout) -> int:
+        """+1 or -1: sense in which one of its gears turns against the mesh; +1 at rest."""
+        return -1 if self.turns(gear) < 0.0 else 1
+
+    @property
+    def order(self) -> float:
+        """Mesh frequency over that of the reference shaft; 0 without teeth."""
+        return abs(self.turns(self.pinion)) * (self.pinion.part.teeth or 0)
+
+    @property
     def helices(self) -> int:
         """Helices of the mesh: 2 for a herringbone pair."""
         return self.pinion.helices
@@ -200,13 +220,19 @@ class MeshLayout:
         """Working transverse pressure angle in rad; of bevel gears at the mean point."""
         if self.bevel is not None:
             return self.bevel.pressure_angle
-        if self.centre_line is not None:
+        if self.centre_line is not None and not self.has_own_angle:
             return math.acos(min(abs(self.pinion.base_radius + self.gear_base_radius) / self.centre_line[0], 1.0))
         if self.part.pressure_angle is not None:
             return self.part.pressure_angle
         if self.pinion.geometry and self.gear.geometry:
             return working_pressure_angle_from_shifts(self.pinion.geometry, self.gear.geometry)
         return self.pinion.part.transverse_pressure_angle or self.gear.part.transverse_pressure_angle or 0.0
+
+    @property
+    def has_own_angle(self) -> bool:
+        """Whether its lumped gears go round with a carrier and say their pressure angle: radii need not fit the pin's then."""
+        angles = (self.part.pressure_angle, *(gear.part.transverse_pressure_angle for gear in self.gears))
+        return self.carrier is not None and self.pinion.part.lumped and any(angle is not None for angle in angles)
 
     @property
     def width(self) -> float:
@@ -294,7 +320,7 @@ class MeshLayout:
         gear_node = None
         if self.gear_frame.is_turned:
             turn = tuple(map(tuple, self.gear_frame.axes.T.tolist()))
-            if self.centre_line is not None:
+            if self.centre_line is not None and not self.has_own_angle:
                 gear_node = tuple((self.gear_frame.at(gear_place.z) - [0.0, 0.0, pinion_place.z]).tolist())
         return Contact(
             mesh=self.name,
@@ -565,7 +591,7 @@ class MeshLayout:
 
         The path runs from approach to recess of a pinion that a torque of the given sense about +z drives.
         """
-        return (sense * self.train.sense(self.pinion.shaft) * self.part.stagger) % 1.0
+        return (sense * self.sense(self.pinion) * self.part.stagger) % 1.0
 
     def both_helices(self, helices: tuple[MeshStiffness, ...], sense: int = 1) -> MeshStiffness:
         """Stiffness of the whole mesh from that of its helices, which stand in parallel, one ahead of the other."""

@@ -21,6 +21,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
+from rotorgear.elements.gear_mesh import ContactGeometry, flank_normal
 from rotorgear.model.layout.assembly import tooth_numbers
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
@@ -112,7 +113,23 @@ class MeshForce:
         own = (-index_error if self.turned else index_error) + self.clocking_gap(layout)
         if self.behind:
             own = (mesh.backlash or 0.0) - own
+        own -= self._pin_approach(layout)
         return own if self.face is None else own + self.face.shift
+
+    def _pin_approach(self, layout: Layout) -> float:
+        """How far the flanks approach (m) where pins are off their places: displacements of planets count from there."""
+        import numpy as np
+
+        contact = self.contact
+        found = 0.0
+        for name, side in ((contact.pinion, 1.0), (contact.gear, -1.0)):
+            off = layout.pin_error(layout.gear(name).shaft)
+            if off is not None:
+                n = flank_normal(contact_geometry(self))
+                if side < 0.0 and contact.turn is not None:
+                    n = np.array(contact.turn) @ n
+                found += side * float(n[0] * off[1] + n[1] * off[0])
+        return found
 
     def about_face(self, face: FaceLoad, given: float, kind: Kind) -> MeshForce:
         """The contact linear about the load along its face; `given` is the misalignment (m) before the shafts tilt."""
@@ -132,6 +149,28 @@ class MeshForce:
         tilt_stiffness = self.contact.stiffness * mesh.width**2 / 12.0
         slope = mesh.part.misalignment / mesh.width
         return replace(self, face=FaceState(0.0, tilt_stiffness, 0.0, -tilt_stiffness * slope))
+
+
+def contact_geometry(force: MeshForce) -> ContactGeometry:
+    """Geometry of one contact with its driving flank, in the middle of its face."""
+    c = force.contact
+    # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
+    past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
+    return ContactGeometry(
+        psi=c.psi,
+        pressure_angle=c.pressure_angle,
+        base_helix_angle=c.base_helix_angle,
+        hand=c.hand,
+        torque_sense=force.torque_sense,
+        pinion_base_radius=c.pinion_base_radius,
+        gear_base_radius=c.gear_base_radius,
+        pinion_offset=c.contact_z - c.pinion_place.z,
+        gear_offset=c.gear_contact_z - c.gear_place.z,
+        contact_position=past_pitch_point,
+        turn=c.turn,
+        gear_node=c.gear_node,
+        cone=c.cone,
+    )
 
 
 # Tables of the file whose parts linear analyses take as springs.
@@ -221,7 +260,12 @@ class State:
     def shaft_ratio(self, address: str) -> float:
         """Speed of the shaft of a bearing or an element, whatever its sense, over that of the reference."""
         table, _, name = address.partition(".")
-        return abs(self.layout.train.ratio(getattr(self.layout.model, table)[name].shaft))
+        part = getattr(self.layout.model, table)[name]
+        carrier = self.layout.model.shafts[part.shaft].carrier
+        if carrier is None:
+            return abs(self.layout.train.ratio(part.shaft))
+        ratios = self.layout.train.ratios
+        return abs(float(ratios[part.shaft] - ratios[self.layout.model.carriers[carrier].shaft]))
 
     def spring_at(self, address: str, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness and damping (6, 6) of a part at a speed of the reference shaft in rad/s.
@@ -333,7 +377,7 @@ class State:
             return None
         theta = self.layout.assembly.angle(pinion)
         flank = self.of_mesh(name)[0].torque_sense * mesh.half_tooth
-        sense = self.direction * self.layout.train.sense(pinion.shaft)
+        sense = self.direction * mesh.sense(pinion)
         return (sense * pinion.part.teeth * (theta + flank - mesh.psi)) % (2.0 * math.pi)
 
     def phase(self, contact: Contact) -> float | None:
@@ -348,7 +392,7 @@ class State:
         """Where the maps of loaded teeth begin in the meshes of a gear whose teeth differ, and where that is not known."""
         pressed = {force.contact.mesh: (force.torque_sense, force.pinion_drives) for force in reversed(self.forces)}
         layout = self.layout
-        return tooth_numbers(layout.assembly, layout.train, layout.meshes, self.direction, pressed)
+        return tooth_numbers(layout.assembly, layout.meshes, self.direction, pressed)
 
     def path_phase(self, contact: Contact) -> float | None:
         """Phase of one helix in rad on the map of its loaded teeth, which counts the teeth; None without teeth."""

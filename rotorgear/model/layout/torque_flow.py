@@ -18,6 +18,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError, ConvergenceError, Problem
+from rotorgear.model.layout.carrier_train import given_ratio
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact
 from rotorgear.model.layout.state import AppliedTorque, MeshForce, State, misalignments_of
@@ -79,7 +80,8 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
     largest = max((abs(force) for force in squeeze), default=0.0)
     states = []
     for contact, force in zip(lines, squeeze, strict=True):
-        pinion_sense = train.sense(contact.pinion_place.shaft)
+        mesh = layout.mesh(contact.mesh)
+        pinion_sense = mesh.sense(mesh.pinion)
         unloaded = abs(force) <= UNLOADED * largest
         if unloaded:  # the shaft nearer to the input is taken to drive, in its own sense
             drives = train.depth[contact.pinion_place.shaft] <= train.depth[contact.gear_place.shaft]
@@ -189,6 +191,9 @@ def _balanced(
     for group in sorted({train.group[shaft] for shaft in shafts}):
         given = [item for item in found if train.group[item.shaft] == group]
         ends = [end for end in open_ends if train.group[end[2].shaft] == group]
+        if len(train.free_rotations(group)) > 1:
+            problems += _balanced_differential(train, group, given, ends, found)
+            continue
         excess = sum(item.torque * train.ratio(item.shaft) for item in given)
         scale = max((abs(item.torque * train.ratio(item.shaft)) for item in given), default=0.0)
         if len(ends) > 1:
@@ -215,6 +220,42 @@ def _balanced(
             item = found[largest]
             found[largest] = replace(item, torque=item.torque - excess / train.ratio(item.shaft))
     return found, problems
+
+
+def _balanced_differential(
+    train: Train,
+    group: int,
+    given: Sequence[AppliedTorque],
+    ends: Sequence[tuple[str, Load, Place]],
+    found: list[AppliedTorque],
+) -> list[Problem]:
+    """The same for a part of the train with several free rotations: the torques do no work in any of them."""
+    import numpy as np
+
+    rotations = train.free_rotations(group)
+    work = np.array([[float(rotation[end[2].shaft]) for end in ends] for rotation in rotations])
+    parts = np.array([[item.torque * float(rotation[item.shaft]) for item in given] for rotation in rotations])
+    excess = parts.sum(axis=1)
+    torques = np.linalg.lstsq(work, -excess)[0] if ends else np.zeros(0)
+    sizes = np.abs(parts).sum(axis=1) + np.abs(work) @ np.abs(torques)
+    if ends and np.linalg.matrix_rank(work) < len(ends):
+        names = ", ".join(name for name, _, _ in ends)
+        return [
+            Problem(
+                "loads", f"{names} without torque or power", f"at most {len(rotations)} of them: they take the rest"
+            )
+        ]
+    if np.any(np.abs(excess + work @ torques) > _ROUNDED * sizes):
+        hint = f"{len(rotations)} speeds are given: leave the torque of as many shafts out, and they take the rest"
+        return [
+            Problem(
+                "loads", "torques that leave the members of a differential out of balance", "torques that balance", hint
+            )
+        ]
+    found += [
+        AppliedTorque(name, *place, float(torque)) for (name, _, place), torque in zip(ends, torques, strict=True)
+    ]
+    return []
 
 
 # Places on a shaft nearer than this to each other (relative, and of a millimetre) are one.
@@ -256,6 +297,8 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
 
     places = [place for line in lines for place in (line.pinion_place, line.gear_place)]
     places += [place for first, second, _ in layout.turning_couplings for place in (first, second)]
+    carriers = {line.mesh: pins for line in lines if (pins := layout.carrier_place(line.mesh)) is not None}
+    places += carriers.values()
     places += [Place(item.shaft, item.z) for item in applied]
     node, springs, count = _network(layout.model, places)
     springs += [(node[one], node[two], k) for one, two, k in layout.turning_couplings]
@@ -271,6 +314,9 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
         gear = elastic.get((line.gear, line.gear_place), node[line.gear_place])
         for number, lever in zip((pinion, gear), line.levers, strict=True):
             row[number] += lever * np.cos(line.base_helix_angle)
+            # Teeth of planets feel rotations against their carrier.
+            if line.mesh in carriers:
+                row[node[carriers[line.mesh]]] -= lever * np.cos(line.base_helix_angle)
     stiffness = np.array([line.stiffness for line in lines])
     # K = sum of the springs + S^T diag(k) S
     K = np.zeros((count, count))
@@ -285,11 +331,7 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
         torques[node[Place(item.shaft, item.z)]] += item.torque
     # Shafts that turn together have one rotation that strains nothing: K q = torques is solved with one node of each held.
     first_node = {place.shaft: number for place, number in reversed(node.items())}
-    held: dict[int, int] = {}
-    for shaft, group in layout.train.group.items():
-        if shaft in first_node:
-            held.setdefault(group, first_node[shaft])
-    free = np.setdiff1d(np.arange(count), list(held.values()))
+    free = np.setdiff1d(np.arange(count), [first_node[shaft] for shaft in _held(layout, list(first_node))])
     twist = np.zeros(count)
     try:
         twist[free] = np.linalg.solve(K[np.ix_(free, free)], torques[free])
@@ -299,6 +341,25 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
             "than numbers can hold. Check the smallest and the largest of them."
         ) from None
     return [float(force) for force in stiffness * (squeeze @ twist)]
+
+
+def _held(layout: Layout, shafts: Sequence[str]) -> list[str]:
+    """Those of some shafts that are held while forces are looked for: one for each free rotation, and those that stand still."""
+    train = layout.train
+    first: dict[int, str] = {}
+    for shaft, group in train.group.items():
+        if shaft in shafts and group not in train.rotations:
+            first.setdefault(group, shaft)
+    found = list(first.values())
+    for rotations in train.rotations.values():
+        for rotation in rotations:
+            others = [other for other in rotations if other is not rotation]
+            found += [name for name in shafts if rotation.get(name) and not any(other.get(name) for other in others)][
+                :1
+            ]
+    return found + [
+        name for name in shafts if train.group[name] in train.rotations and given_ratio(layout.model, name) == 0
+    ]
 
 
 def _stretch(

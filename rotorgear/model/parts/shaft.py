@@ -117,7 +117,24 @@ class Shaft(Part):
         0.0, description="viscous rotating damping eta of the material: C = eta K of the shaft"
     )
     speed_ratio: si.SignedRatio | None = Field(
-        None, description="speed relative to the input shaft, only where no mesh or coupling leads to this shaft"
+        None,
+        description="speed relative to the input shaft, where no mesh or coupling leads to this shaft, or as the second given "
+        "speed of a train with carriers; 0: the shaft is held",
+    )
+    speed: si.Speed | None = Field(
+        None,
+        description="the same as a speed at the operating point; with another input speed it changes in proportion",
+    )
+    carrier: str | None = Field(
+        None, description="name of the carrier on whose pins the shaft runs, in place of a position: it is a planet's"
+    )
+    radius: si.PositiveLength | None = Field(
+        None, description="a planet's: radius of its pins' circle; default: the carrier's, or that of its meshes"
+    )
+    offset: si.Angle | None = Field(
+        None,
+        description="a planet's: angle of its pins ahead of those of the carrier; default: 0, or where it meshes with another "
+        "planet",
     )
 
     @model_validator(mode="after")

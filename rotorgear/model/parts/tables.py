@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from rotorgear.model.parts.carrier import Carrier
 from rotorgear.model.parts.casing import Casing
 from rotorgear.model.parts.fields import Name, Part
 from rotorgear.model.parts.gear import Gear
@@ -28,6 +29,7 @@ class Tables(Part):
     operation: Operation | None = Field(None, description="operating point")
     materials: dict[Name, Material] = Field(default_factory=dict, description="materials besides the library")
     shafts: dict[Name, Shaft] = Field(default_factory=dict, description="shafts")
+    carriers: dict[Name, Carrier] = Field(default_factory=dict, description="planet carriers")
     disks: dict[Name, Disk] = Field(default_factory=dict, description="rigid disks")
     point_masses: dict[Name, PointMass] = Field(default_factory=dict, description="point masses")
     gears: dict[Name, Gear] = Field(default_factory=dict, description="gears")

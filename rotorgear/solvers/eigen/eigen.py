@@ -112,6 +112,7 @@ def lowest_modes(
     strain: Strain | None = None,
     guess: float | None = None,
     counted: bool = True,
+    rigid: int = 0,
 ) -> UndampedModes:
     """The lowest undamped modes of a symmetric positive semidefinite pair, rigid modes included.
 
@@ -125,6 +126,7 @@ def lowest_modes(
         guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
         counted: False leaves the Sturm count out, and of the upper modes a part of their accuracy: for a basis of other modes,
             which are corrected and counted themselves.
+        rigid: how many of the lowest modes are known to be rigid, of a stiffness whose terms cancel in them.
 
     Raises:
         LooseDofError: a dof has neither inertia nor stiffness (`dofs`).
@@ -155,7 +157,7 @@ def lowest_modes(
         modes = None
         for _ in range(_ATTEMPTS):
             V, sure, finite, method = _ritz_basis(operator, massless, target, spare)
-            values, V, noise, rigid = _refined(operator, V, strain)
+            values, V, noise, free = _refined(operator, V, strain, rigid)
             keep = int(np.count_nonzero(values <= limit))
             if count is not None:
                 keep = min(keep, count)
@@ -172,7 +174,7 @@ def lowest_modes(
                 modes = UndampedModes(
                     eigenvalues=values[:keep],
                     vectors=V[:, :keep],
-                    rigid_count=min(rigid, keep),
+                    rigid_count=min(free, keep),
                     backward_error=errors[:keep],
                     available=finite,
                     sturm_shift=sturm_shift,
@@ -215,11 +217,11 @@ def _ritz_basis(
 
 
 def _refined(
-    operator: ShiftInvert, V: np.ndarray, strain: Strain | None
+    operator: ShiftInvert, V: np.ndarray, strain: Strain | None, known: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Ascending Rayleigh quotients (m,) of Ritz vectors V (n, m), which are overwritten, M-orthonormal vectors, and their noise.
 
-    The last number says how many of them are rigid.
+    The last number says how many of them are rigid, `known` at least.
     """
     orthonormalise(operator.mass, V)
     if strain is None:
@@ -228,9 +230,9 @@ def _refined(
         values, turn = strain_ritz(strain, V)
         combine(V, turn)
     noise = rounding_noise(operator.size_K, V, operator.sigma)
-    if values.size and values[0] < -_UNSTABLE * noise[0]:
-        raise unstable(float(values[0]))
-    rigid = count_rigid(operator, values, V, noise, strain is not None)
+    if known < values.size and values[known] < -_UNSTABLE * noise[known]:
+        raise unstable(float(values[known]))
+    rigid = max(count_rigid(operator, values, V, noise, strain is not None), min(known, values.size))
     if strain is None:
         values[:rigid] = 0.0
     return values, V, noise, rigid

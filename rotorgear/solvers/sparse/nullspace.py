@@ -89,6 +89,14 @@ def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarr
     return L
 
 
+def settled_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarray:
+    """Orthonormal basis (n, r) of the null space of K from one that is nearly it, by inverse iteration beside zero."""
+    factor = factor_general(sp.csc_array(K + 1e-6 * M))
+    for _ in range(4):
+        R = np.linalg.qr(factor.solve(M @ R))[0]
+    return R
+
+
 def supported_solver(K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> Solve:
     """What solves K q = f, each (n,) or (n, m), for f orthogonal to L; q is zero at the support dofs of R.
 

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotorgear.errors import ModelError
-from rotorgear.model.layout.train import Train, links, walk
+from rotorgear.model.layout.train import Link, Train
+from rotorgear.model.layout.walk import links, mesh_factors, walk
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
@@ -176,11 +177,15 @@ def test_mesh_frequencies_are_one_for_both_gears_and_none_without_teeth(pair: Da
     assert lumped.layout.mesh_frequency("lumped", speed) is None
 
 
+def _links(model: Model) -> list[Link]:
+    return links(model, mesh_factors(model))
+
+
 def test_links_are_the_meshes_and_the_stiff_couplings(everything: Data) -> None:
-    found = {part: ratio for part, _, _, ratio in links(Model(**everything))}
+    found = {part: ratio for part, _, _, ratio in _links(Model(**everything))}
     assert found == {"meshes.toothed": Fraction(-1, 2), "meshes.lumped": pytest.approx(-0.5), "couplings.membrane": 1}
 
 
 def test_bodies_take_no_part_in_the_train(pair: Data) -> None:
     pair["disks"] = {"d": Disk(shaft="input", at=0.1, mass=1, polar_inertia=1, diametral_inertia=1)}
-    assert len(links(Model(**pair))) == 1
+    assert len(_links(Model(**pair))) == 1

@@ -16,7 +16,7 @@ import rotorgear as rg
 from rotorgear.elements.gear_mesh import contact_vector, tilt_vector
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.export.solids import build_solids
-from rotorgear.system.groups import contact_geometry
+from rotorgear.model.layout.state import contact_geometry
 from tests.bar_casing import write_bar
 from tests.paths import MODELS
 from tests.turned import PLACE, TURN, far_off, turned
