@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from rotorgear.elements.gear_mesh import face_strains
+from rotorgear.model.layout.carriers import PlanetSet
 from rotorgear.model.layout.state import MeshForce, contact_geometry
+from rotorgear.model.parts.carrier import MARK, written_name
 from rotorgear.system.groups import face_of
+from rotorgear.system.planets import sister_turn, turning_carriers
 from rotorgear.system.system import System
 
 
@@ -28,6 +32,7 @@ class ContactLines:
         tilt_stiffness: N m, (c,), 0 where a contact does not resist the tilt.
         start: N, force of a contact whose flanks have not approached, (c,): F = start + k (v . q - gap).
         couple: N m about the contact's place without tilt, (c,): M - e F = couple + k_t (v_t . q).
+        turning: of planets that go round, (c, c): what their contacts s see as a rate beside s' is -W (turning s); else None.
     """
 
     states: tuple[MeshForce, ...]
@@ -42,6 +47,12 @@ class ContactLines:
     tilt_stiffness: np.ndarray
     start: np.ndarray
     couple: np.ndarray
+    turning: np.ndarray | None = None
+
+    def forces(self, s: np.ndarray, w: np.ndarray, speed: float) -> np.ndarray:
+        """Forces (o, c) of amplitudes s (o, c) of the approach at frequencies w (o,) and a reference speed, both in rad/s."""
+        found = (self.stiffness + 1j * w[:, None] * self.damping) * s
+        return found if self.turning is None else found - speed * self.damping * (s @ self.turning.T)
 
     def force(self, q: np.ndarray) -> np.ndarray:
         """Force (c,) along the flank normals at the displacements q (n,) of the free dofs, were all contacts closed."""
@@ -81,7 +92,8 @@ def contact_lines(system: System) -> ContactLines:
             state.start or 0.0,
             state.face.couple if state.face else 0.0,
         )
-    return ContactLines(states, *(system.dofs.transform.T @ v for v in vectors), *numbers)
+    lines = ContactLines(states, *(system.dofs.transform.T @ v for v in vectors), *numbers)
+    return replace(lines, turning=_turning(system, states)) if system.layout.planets else lines
 
 
 def rotation_vector(state: MeshForce) -> np.ndarray:
@@ -97,3 +109,24 @@ def _quarter_turn(vector: np.ndarray) -> np.ndarray:
     turned[0::3] = -vector[1::3]
     turned[1::3] = vector[0::3]
     return turned
+
+
+def sister_contacts(states: Iterable[MeshForce], planets: PlanetSet) -> np.ndarray:
+    """Numbers (k, N) of the contacts of planets of one kind, each row the same one of all sisters."""
+    own: dict[tuple[str, int], list[int]] = {}
+    for number, state in enumerate(states):
+        contact = state.contact
+        shafts = (contact.pinion_place.shaft, contact.gear_place.shaft)
+        # A mesh of two planets of one carrier is counted with its pinion.
+        if next((shaft for shaft in shafts if MARK in shaft), "") in planets.planets:
+            own.setdefault((written_name(contact.mesh), contact.helix), []).append(number)
+    return np.array(list(own.values()), dtype=int).reshape(-1, len(planets.planets))
+
+
+def _turning(system: System, states: tuple[MeshForce, ...]) -> np.ndarray | None:
+    """W T of the contacts of planets that go round for unit reference speed, (c, c); None without any."""
+    found = np.zeros((len(states), len(states)))
+    for planets in turning_carriers(system.layout):
+        for sisters in sister_contacts(states, planets):
+            found[np.ix_(sisters, sisters)] = system.train.ratio(planets.shaft) * sister_turn(planets.angles)
+    return found if found.any() else None

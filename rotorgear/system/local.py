@@ -16,6 +16,7 @@ import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
 from rotorgear.elements.matrices import ElementMatrices
+from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce, contact_geometry
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
@@ -36,6 +37,7 @@ from rotorgear.system.local_parts import (
     unbalance_parts,
     without_linear_part,
 )
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -85,7 +87,15 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         speed: at which bearings with tables and internal damping are taken, in rad/s.
         along_faces: loaded teeth that feel the tilt of their shafts follow it in time, by maps at several tilts; otherwise they
             keep the tilt of the static state, and resist another one by the tangent about it.
+
+    Raises:
+        AnalysisError: planets go round with a carrier that turns.
     """
+    for planets in turning_carriers(system.layout):
+        raise AnalysisError(
+            f"carriers.{planets.carrier}: motions in time of planets that go round are not built: their meshes turn with the "
+            f"carrier. Hold it, speed_ratio = 0 of shafts.{planets.shaft}, as in a star gear, or ask for a linear analysis."
+        )
     from rotorgear.solvers.time.local_forces import gather
 
     laws = {f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law}

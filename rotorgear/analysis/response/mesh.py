@@ -16,7 +16,8 @@ from rotorgear.analysis.common.request import FINEST
 from rotorgear.analysis.modal.modal import ModalRequest, modes_about
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer
 from rotorgear.analysis.modal.solve import Wanted, solve
-from rotorgear.analysis.response.orders import Order, orders_of
+from rotorgear.analysis.response.order import Order
+from rotorgear.analysis.response.orders import orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import answer
 from rotorgear.analysis.static.mean_state import Setup

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 
@@ -32,12 +32,14 @@ from rotorgear.analysis.response.cycle_harmonics import (
     strong,
     that_matter,
 )
+from rotorgear.analysis.response.order import Order
+from rotorgear.analysis.response.sidebands import require_plain_teeth, with_sidebands
 from rotorgear.analysis.static.joint_state import Cycle
 from rotorgear.analysis.static.mean_state import Setup
+from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.load import COMPONENTS, LoadHistory
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.note import Note
-from rotorgear.system.contacts import ContactLines
 from rotorgear.system.loads import varying_load, wrench_load
 from rotorgear.system.local import cycle_pieces
 from rotorgear.system.system import System
@@ -45,56 +47,7 @@ from rotorgear.system.system import System
 # What has one frequency: "shaft" or "mesh", the multiple of its frequency, and the ratio to the reference speed.
 _Key = tuple[str, int | float | Fraction, float]
 # With that, the name of what excites, and its part of the order, a `blank` one with what it adds.
-_Part = tuple[_Key, str, "Order"]
-
-
-# Excitations of an order, which add up where several parts have one frequency.
-_ADD_UP = ("unbalance", "error", "force", "couple", "applied")
-
-
-@dataclass(frozen=True)
-class Order:
-    """Excitations of one frequency.
-
-    Attributes:
-        name: "shaft input 1x" or "mesh stage_1a, stage_1b 2x".
-        ratio: frequency in rad/s over the size of the reference speed; fixed: what of it does not go with the speed, in rad/s.
-        unbalance: force per square of the reference speed at the free dofs, (n,).
-        error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
-        applied: force at the free dofs whatever the speed, (n,) or 0.
-        couple: of loaded teeth that feel the tilt of their shafts, about the place of each contact along its face, (c,) N m.
-        minor: whether it is one of the many small orders that loaded teeth need for their peak to peak only.
-    """
-
-    name: str
-    ratio: float
-    unbalance: np.ndarray
-    error: np.ndarray
-    force: np.ndarray
-    couple: np.ndarray
-    minor: bool = False
-    applied: np.ndarray | float = 0.0
-    fixed: float = 0.0
-
-    def plus(self, other: Order) -> Order:
-        """Both together; they have one frequency, or this one excites nothing."""
-        sums = {name: getattr(self, name) + getattr(other, name) for name in _ADD_UP}
-        minor = self.minor and other.minor
-        return replace(self, ratio=self.ratio or other.ratio, fixed=other.fixed, minor=minor, **sums)
-
-    def frequency_at(self, speed: float) -> float:
-        """Frequency in rad/s at a reference speed in rad/s."""
-        return self.ratio * abs(speed) + self.fixed
-
-    def load(self, lines: ContactLines, speed: float) -> np.ndarray:
-        """Force on the free dofs at a reference speed in rad/s, (n,)."""
-        w = self.frequency_at(speed)
-        return np.asarray(
-            speed**2 * self.unbalance
-            + self.applied
-            + lines.vectors @ ((lines.stiffness + 1j * w * lines.damping) * self.error - self.force)
-            - lines.tilt @ self.couple
-        )
+_Part = tuple[_Key, str, Order]
 
 
 def orders_of(setup: Setup) -> tuple[list[Order], tuple[Note, ...]]:
@@ -102,6 +55,7 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[Note, ...]]:
 
     What has one frequency is one order, with its phases, which follow from the teeth.
     """
+    require_plain_teeth(setup.system)
     left: list[Note] = []
     nothing = np.zeros(setup.system.n, complex)
     rest = np.zeros(len(setup.lines.states), complex)
@@ -119,7 +73,10 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[Note, ...]]:
     for (kind, harmonic, _), (names, order) in found.items():
         multiple = f"{harmonic:g}" if isinstance(harmonic, float) else f"{harmonic}"
         unit = " Hz" if order.fixed else "x"
-        orders.append(replace(order, name=f"{kind} {', '.join(names)} {multiple}{unit}"))
+        name = f"{kind} {', '.join(dict.fromkeys(map(written_name, names)))} {multiple}{unit}"
+        orders += [
+            replace(part, name=name + beside) for beside, part in with_sidebands(setup.system, setup.lines, order)
+        ]
     return sorted(orders, key=lambda order: (order.ratio, order.fixed)), tuple(dict.fromkeys(left))
 
 
@@ -182,14 +139,16 @@ def _unbalances(system: System, blank: Order) -> Iterable[_Part]:
         ratio = system.train.ratio(item.shaft)
         if ratio == 0.0:
             continue
-        sense = system.direction * system.train.sense(item.shaft)
+        # In the axes of a planet, which go round with its carrier, it turns with what is left of the speed.
+        turns = system.layout.turns(item.shaft)
+        sense = system.direction * (-1 if turns < 0.0 else 1)
         f = np.zeros(system.dofs.transform.shape[0], complex)
         node = nodes.at(*system.layout.place(f"unbalances.{name}"))
         size = item.magnitude * ratio**2 * cmath.exp(1j * sense * item.phase)
         f[6 * node] = size
         f[6 * node + 1] = -1j * sense * size
-        part = replace(blank, ratio=abs(ratio), unbalance=system.dofs.transform.T @ f, minor=False)
-        yield ("shaft", 1, round(abs(ratio), 9)), item.shaft, part
+        part = replace(blank, ratio=abs(turns), unbalance=system.dofs.transform.T @ f, minor=False)
+        yield ("shaft", 1, round(abs(turns), 9)), item.shaft, part
 
 
 def _meshes(setup: Setup, blank: Order, left: list[Note]) -> Iterable[_Part]:

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.common.stations import part_nodes
-from rotorgear.analysis.response.orders import Order
+from rotorgear.analysis.response.order import Order
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRank
 from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import contact_lines
@@ -220,9 +220,8 @@ class Plant:
         lines = self.lines
         error = np.array([order.error for order in orders])
         varied = np.array([order.force for order in orders])
-        impedance = lines.stiffness + 1j * w[:, None] * lines.damping
         approach = (lines.vectors.T @ q).T
-        force = impedance * (approach - error) + varied
+        force = lines.forces(approach - error, w, speed) + varied
         held, seated = (-(K @ q + (C @ q) * (1j * w)).T for K, C in self._force_rows(speed))
         moved = (self._points @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)

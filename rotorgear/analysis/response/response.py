@@ -16,7 +16,8 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.mesh import aims, damped_modes, mesh_error, meshed, parting, speed_warnings
-from rotorgear.analysis.response.orders import Order, orders_of
+from rotorgear.analysis.response.order import Order
+from rotorgear.analysis.response.orders import orders_of
 from rotorgear.analysis.response.plant import READ, Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.response.second_order import peaks_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.analysis.response.orders import Order
+from rotorgear.analysis.response.order import Order
 from rotorgear.analysis.response.plant import Plant, Readings, gathered
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, part_of

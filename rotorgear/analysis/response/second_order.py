@@ -19,7 +19,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from rotorgear.analysis.response.orders import Order
+from rotorgear.analysis.response.order import Order
 from rotorgear.analysis.response.plant import Plant, Readings, gathered
 from rotorgear.analysis.response.run_up import answer
 from rotorgear.analysis.static.joint_state import Cycle, JointState

@@ -156,6 +156,13 @@ class Layout:
             if not closing and rest and abs(rest) <= MOST_MISSED
         }
 
+    def turns(self, shaft: str) -> float:
+        """Speed of a shaft over that of the reference shaft in its own axes: those of a planet go round with its carrier."""
+        carrier = self.model.shafts[shaft].carrier
+        if carrier is None:
+            return self.train.ratio(shaft)
+        return float(self.train.ratios[shaft] - self.train.ratios[self.model.carriers[carrier].shaft])
+
     def mesh_frequency(self, mesh: str, speed: float) -> float | None:
         """Mesh frequency in Hz at a speed of the reference shaft in rad/s; None where no teeth are given."""
         pinion = self.mesh(mesh).pinion

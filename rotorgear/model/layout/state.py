@@ -260,12 +260,7 @@ class State:
     def shaft_ratio(self, address: str) -> float:
         """Speed of the shaft of a bearing or an element, whatever its sense, over that of the reference."""
         table, _, name = address.partition(".")
-        part = getattr(self.layout.model, table)[name]
-        carrier = self.layout.model.shafts[part.shaft].carrier
-        if carrier is None:
-            return abs(self.layout.train.ratio(part.shaft))
-        ratios = self.layout.train.ratios
-        return abs(float(ratios[part.shaft] - ratios[self.layout.model.carriers[carrier].shaft]))
+        return abs(self.layout.turns(getattr(self.layout.model, table)[name].shaft))
 
     def spring_at(self, address: str, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness and damping (6, 6) of a part at a speed of the reference shaft in rad/s.
