@@ -102,8 +102,10 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
     by_motion += int((inside & ~follows).sum())
     groups = rigid_groups(model, nodes)
     counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}
-    if groups or nodes.feet:
-        return _with_feet(_tied(nodes, held, inside, groups, counts), layout, nodes)
+    follow = layout.planets if not model.has("bending") else ()
+    if groups or nodes.feet or follow:
+        tied = _with_feet(_tied(nodes, held, inside, groups, counts), layout, nodes)
+        return _with_planets(tied, layout, nodes) if follow else tied
     free = np.flatnonzero(~np.concatenate([held.ravel(), inside]))
     size = held.size + inside.size
     column = np.full(size, -1, dtype=INDEX)
@@ -161,6 +163,24 @@ def _tied(
     places = (np.concatenate(rows).astype(INDEX), np.concatenate(cols).astype(INDEX))
     T = sp.csr_array((np.concatenate(values), places), shape=(size, n))
     return DofMap(T, np.full(size, -1), False, counts)
+
+
+def _with_planets(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:
+    """The map of a model without bending, whose planets stay on their pins: they go onwards as their carrier turns."""
+    size = dofs.transform.shape[0]
+    rows = []
+    columns = []
+    values = []
+    for planets in layout.planets:
+        carrier = 6 * nodes.at(*layout.at(planets.shaft, planets.part.at)) + 5
+        for planet in planets.planets:
+            for node in nodes.on_shaft(planet):
+                rows.append(6 * int(node) + 1)
+                columns.append(carrier)
+                values.append(planets.radius)
+    follow = sp.csr_array(sp.coo_array((values, (rows, columns)), shape=(size, size)))
+    T = sp.csr_array(dofs.transform + follow @ dofs.transform)
+    return DofMap(T, dofs.column, False, dofs.held)
 
 
 def _with_feet(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:

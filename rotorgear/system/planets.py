@@ -263,7 +263,9 @@ def pin_loads(
             # Only what moves in the plane of the carrier feels it; the carrier itself stands still.
             rows = np.flatnonzero(inside)
             T = dofs.transform[rows].toarray()
-            free = np.flatnonzero(np.any(T != 0.0, axis=0))
+            # Without bending planets stay on their pins.
+            moves = np.any(T != 0.0, axis=0) if layout.model.has("bending") else np.zeros(T.shape[1], dtype=bool)
+            free = np.flatnonzero(moves)
             T = T[:, free]
             along = rows < 6 * len(nodes)
             e = (along & (rows % 6 == 0)).astype(float)
@@ -274,7 +276,7 @@ def pin_loads(
             # A planet that nothing keeps from tilting tilts under no load of its own.
             size = 1.0 / np.sqrt(np.where(pull.diagonal() != 0.0, np.abs(pull.diagonal()), 1.0))
             scaled = pull * size[:, None] * size
-            give = size[:, None] * la.lstsq(scaled, size[:, None] * load, cond=_SINGULAR)[0]
+            give = size[:, None] * la.lstsq(scaled, size[:, None] * load, cond=_SINGULAR)[0] if free.size else load
             if speed and free.size and not load[:, 0] @ give[:, 0] > 0.0:
                 raise AnalysisError(
                     f"shafts.{written_name(planet)}: at {abs(W):.6g} rad/s of its carrier the centrifugal load grows faster with "

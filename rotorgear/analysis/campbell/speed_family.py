@@ -20,8 +20,9 @@ from rotorgear.system.groups import ElementGroup
 from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
 
-# Speeds between which the stiffness by loads of planets' pins is taken as linear: 1e-5 of it are left out.
-PIN_LOADS = 65
+# Speeds between which what the loads of planets' pins have beyond the square of the speed is taken as linear: where the pins give
+# by a hundredth of their circle, that leaves out 2e-4 of this load, and less than 1e-6 of a frequency.
+PIN_LOADS = 9
 
 
 class SpeedFamily:

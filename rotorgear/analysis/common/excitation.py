@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from rotorgear.model.model import Model
+from rotorgear.model.parts.carrier import written_name
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.comparison import ExcitationLine
 
@@ -56,6 +57,8 @@ def excitation_orders(
                     add("sideband", f"{order:g}x + {k}x {gear.shaft}", order * once + distance, name)
                     add("sideband", f"{order:g}x - {k}x {gear.shaft}", order * once - distance, name)
     return tuple(
-        ExcitationOrder(f"{_PARTS[kind]} {', '.join(names)} {label}", kind, tuple(names), order)
+        ExcitationOrder(
+            f"{_PARTS[kind]} {', '.join(dict.fromkeys(map(written_name, names)))} {label}", kind, tuple(names), order
+        )
         for (kind, label, order), names in found.items()
     )

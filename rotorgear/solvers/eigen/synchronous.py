@@ -31,6 +31,7 @@ _HEAVY = 0.7  # |Re s| / |s| from which on a mode no longer oscillates in a way 
 _BEYOND = 0.15  # of a speed, how far damped roots may move when they are polished
 _MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
 _CONVERGED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
+_FREE = 1e-9  # stiffness along a motion over that of its terms, below which it is none
 BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
 
 
@@ -197,6 +198,9 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
         speed -= step
     residual = abs(value.imag - order * speed) / (order * speed)
     if residual > BACK_SUBSTITUTED:
+        held = abs(np.vdot(v, K @ v))
+        if held <= _FREE * float(np.abs(v) @ (abs(K) @ np.abs(v))):
+            return None  # a free motion, whose stiffness is what rounding leaves of terms that cancel
         raise ConvergenceError(f"residual {residual:.1e} at a critical speed near {speed * RPM_PER_RAD_S:.6g} rpm")
     return Synchronous(float(speed), complex(value), v, float(residual))
 
