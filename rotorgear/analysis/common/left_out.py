@@ -18,6 +18,7 @@ from rotorgear.model.parts.fields import in_words
 from rotorgear.model.parts.load import COMPONENTS
 from rotorgear.model.parts.supports import element_law
 from rotorgear.note import Note
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
 
 # "modes" are modal, campbell and critical; "frf" is state space too; "time" are transients, sweeps and orbits.
@@ -370,6 +371,8 @@ def _turns(system: System, analysis: Analysis, speed: float | None) -> bool:
         return tables or damped or bool(speed and system.gyroscopic.nnz)
     if analysis != "response" and not speed:
         return False
+    if turning_carriers(system.layout):
+        return True
     if analysis == "static":
         return tables or damped or bool(system.layout.elastic_bodies)
     return analysis == "response" or tables or damped or bool(system.gyroscopic.nnz)

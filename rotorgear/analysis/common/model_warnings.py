@@ -38,7 +38,7 @@ def model_warnings(system: System) -> Iterator[str]:
     yield from gear_body_warnings(system)
     train = system.train
     for name in model.shafts:
-        if train.ratios[name] == 0:
+        if train.ratios[name] == 0 and model.shafts[name].speed_ratio != 0.0:
             by = f"nothing drives it from shaft '{train.reference}', so it stands still"
             yield f"shafts.{name}: {by}; give speed_ratio if it turns"
     if not system.state.applied and model.meshes:

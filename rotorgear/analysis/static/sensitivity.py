@@ -42,9 +42,11 @@ def sensitivities(
         terms.append((f"meshes.{mesh}.stiffness", "N", right, mine))
     terms += [(part, "N", right, np.zeros(len(active))) for part, right in _stiffness_terms(equilibrium).items()]
     turning = lines.turned.T @ equilibrium.q
+    layout = equilibrium.system.layout
     cylindrical = {state.contact.mesh for state in lines.states if state.contact.cone is None}
     for mesh, own in masks.items():
-        if mesh not in cylindrical:  # what turns about an axis leaves the other axis of a bevel pair
+        # What turns about an axis leaves the other axis of a bevel pair, and a planet has its place from its carrier.
+        if mesh not in cylindrical or layout.mesh(mesh).carrier is not None:
             continue
         right = -(lines.turned @ (own * equilibrium.force) + lines.vectors @ (own * active * turning))
         right -= lines.tilted @ (own * equilibrium.moment)

@@ -187,6 +187,8 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
                 mesh, closing, math.degrees(together.clocking.get(closing, 0.0)), rest, clocking_gap.get(mesh) or 0.0
             )
             for mesh, closing, rest in together.loops
+            # That planets can be put in has been checked.
+            if closing or system.layout.mesh(mesh).carrier is None
         ),
         torque={item.name: item.torque for item in system.state.applied},
         load_force={load.address: load.constant for load in system.layout.external_loads},

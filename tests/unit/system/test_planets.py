@@ -278,9 +278,15 @@ def test_a_planet_that_its_pin_does_not_hold_is_refused() -> None:
 
 def test_in_torsion_alone_planets_go_round_with_their_carrier() -> None:
     """A stage between two flywheels on rigid teeth: the carrier has I_c + N m r^2, and turns freely at any speed."""
-    stiff = helical_stage(ground={"ring": {"torsion": 2e13}}).replace("600000000.0", "6e14").replace("750000000.0", "7.5e14")
+    stiff = (
+        helical_stage(ground={"ring": {"torsion": 2e13}})
+        .replace("600000000.0", "6e14")
+        .replace("750000000.0", "7.5e14")
+    )
     shaft = '[shafts.wheel]\n[disks.wheel]\nshaft = "wheel"\nat = 0\nmass = 1\npolar_inertia = 0.4\ndiametral_inertia = 0.2\n'
-    coupling = '[couplings.c]\nfrom_shaft = "wheel"\nfrom_at = 0\nto_shaft = "sun"\nto_at = 0\nstiffness = {torsion = 3e5}'
+    coupling = (
+        '[couplings.c]\nfrom_shaft = "wheel"\nfrom_at = 0\nto_shaft = "sun"\nto_at = 0\nstiffness = {torsion = 3e5}'
+    )
     model = rg.loads('motions = ["torsion"]\n' + stiff + "\n" + shaft + coupling)
     ratios = {name: float(ratio) for name, ratio in model.layout.train.ratios.items()}
     r = model.layout.planets[0].radius
@@ -288,8 +294,6 @@ def test_in_torsion_alone_planets_go_round_with_their_carrier() -> None:
     wanted = np.sqrt(3e5 * (1 / 0.4 + 1 / train))
     for speed in (0.0, 900.0):
         system = flow_system(model)
-        s = eigenvalues(
-            system.mass.toarray(), np.zeros((system.n, system.n)), system.stiffness(speed).toarray()
-        )
+        s = eigenvalues(system.mass.toarray(), np.zeros((system.n, system.n)), system.stiffness(speed).toarray())
         assert np.sort(s.imag[s.imag > 10.0])[0] == pytest.approx(wanted, rel=1e-6)
         assert np.abs(s).min() < 1.0
