@@ -205,10 +205,12 @@ class System:
     @cached_property
     def gyroscopic(self) -> sp.csc_array:
         """Gyroscopic matrix for unit spin of the reference shaft, sparse (n, n), skew."""
-        return self._sum(
+        G = self._sum(
             self.groups,
             lambda g: None if g.matrices.gyroscopic is None or not g.spin else g.spin * g.matrices.gyroscopic,
         )
+        # Sums over the sisters of a planet round on both sides of the diagonal.
+        return sp.csc_array(0.5 * (G - G.T)) if self.layout.planets else G
 
     @cached_property
     def stiffness_per_square(self) -> sp.csc_array:
