@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import rotorgear as rg
-from rotorgear.analysis.modal.mode_count import expected_modes
+from rotorgear.analysis.modal.mode_count import MOST_MODES, check_count, expected_modes
+from rotorgear.errors import AnalysisError
 from tests.models import NU, RHO, STEEL, E, G
 
 LENGTH = 2.0
@@ -55,3 +57,11 @@ def test_expected_modes_add_up_over_shafts_and_lengths() -> None:
     one = {"length": LENGTH, "outer_diameter": OUTER, "bore": BORE}
     twice = rg.Model(materials=STEEL, shafts={"left": {"sections": [one, one]}, "right": {"sections": [one]}})
     assert expected_modes(twice, 1e5) == pytest.approx(3.0 * expected_modes(shaft(), 1e5), rel=1e-12)
+
+
+def test_a_frequency_is_refused_from_where_more_modes_lie_below_it_than_can_be_used() -> None:
+    model = shaft()
+    hertz = float(brentq(lambda f: expected_modes(model, 2.0 * np.pi * f) - MOST_MODES, 1e3, 1e8))
+    check_count(model, 0.99 * hertz)
+    with pytest.raises(AnalysisError, match=f"more than {MOST_MODES}"):
+        check_count(model, 1.01 * hertz)
