@@ -70,6 +70,25 @@ def test_the_simple_form_gives_the_factors_that_a_study_of_two_herringbone_pairs
         assert round(found.value, 2) == printed
 
 
+@pytest.mark.parametrize(
+    ("grade", "spur", "helical"), [(3, 2.1, 1.9), (6, 14.9, 13.3), (9, 52.8, 47.0), (12, 146.3, 130.3)]
+)
+def test_the_simple_form_has_the_constants_of_its_table_and_is_straight_between_spur_and_helical(
+    grade: int, spur: float, helical: float
+) -> None:
+    """K_v = 1 + (K1 / (F_t K_A / b) + K2) v z1/100 sqrt(u^2 / (1 + u^2)), DIN 3990-1, table 3."""
+    speed = 8.0 * 25 / 100.0 * 2.0 / math.sqrt(5.0)
+
+    def found(overlap: float, line_load: float = 3e5) -> float:
+        return simple_dynamic_factor(8.0, 25, 2.0, line_load, overlap, grade).value
+
+    assert found(0.0) == pytest.approx(1.0 + (spur / 300.0 + 0.0193) * speed, rel=1e-12)
+    assert found(1.0) == found(1.7) == pytest.approx(1.0 + (helical / 300.0 + 0.0087) * speed, rel=1e-12)
+    assert found(0.25) == pytest.approx(0.75 * found(0.0) + 0.25 * found(1.0), rel=1e-12)
+    # Light loads count as 100 N/mm.
+    assert found(0.0, 2e4) == found(0.0, 1e5) > found(0.0)
+
+
 def test_two_equal_disks_have_half_the_mass_of_one_at_the_base_circle() -> None:
     assert reduced_mass((0.02, 0.02), (0.1, 0.1), 0.05) == pytest.approx(0.02 / 0.1**2 / 2 / 0.05, rel=1e-14)
 
