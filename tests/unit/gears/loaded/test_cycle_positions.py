@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 from rotorgear.gears.loaded.cycle_positions import sampled
-from rotorgear.gears.loaded.helix_cycles import contact_events, known_events
+from rotorgear.gears.loaded.helix_cycles import HelixCycles, contact_events, known_events
 from rotorgear.gears.loaded.mesh_cycle import loaded_cycle, mesh_cycle, with_more
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from tests.unit.gears.tooth_pairs import LOAD, spur
@@ -147,3 +150,58 @@ def test_the_mean_of_a_step_is_not_swung_by_the_positions_beside_it() -> None:
     # Where nothing steps it is the integral of the cubics.
     smooth = CycleCurve(u, np.exp(u)[:, None], 1.0, np.array([True, *(5 * [False])]))
     assert smooth.mean_of_steps()[0] == pytest.approx(smooth.mean()[0], rel=1e-2)
+
+
+class Smooth:
+    """A sine and its second harmonic."""
+
+    def add(self, positions: np.ndarray) -> np.ndarray:
+        return (np.sin(2.0 * np.pi * positions) + 0.3 * np.cos(4.0 * np.pi * positions + 0.4))[:, None]
+
+    def events(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.empty(0), np.empty(0)
+
+
+@pytest.mark.parametrize("count", [8, 16, 24])
+def test_errors_of_a_smooth_curve_are_told_no_larger_than_some_times_what_they_are(count: int) -> None:
+    found = sampled(Smooth().add, Smooth().events, count, 1.0, np.empty(0), np.array([2]))
+    actual = np.abs(np.abs(found.curve.harmonics(2)[:, 0]) - [1.0, 0.3]).max()
+    assert actual < found.harmonics_error(2).max() < 5.0 * actual
+
+
+def openings(u: np.ndarray, opening: np.ndarray) -> Any:
+    """A cycle of one pair, which has slices where its opening is finite."""
+    there = np.flatnonzero(np.isfinite(opening))
+    slices = SimpleNamespace(pair=np.zeros(len(there), int), position=there)
+    return SimpleNamespace(position=u, slices=slices, opening=opening[there])
+
+
+@pytest.mark.parametrize("comes", [True, False])
+@pytest.mark.parametrize("first", [0, 3])
+def test_where_an_opening_is_straight_its_zero_is_met_at_once(comes: bool, first: int) -> None:
+    """Of a pair that comes and of one that goes, whether it has slices before the bracket or none."""
+    u = np.arange(10) / 10.0
+    place = 0.337 if comes else 0.537
+    opening = 1e-6 * (place - u if comes else u - place)
+    # The rest is in contact or too far away to have slices.
+    far = u < 0.1 * first - 0.05 if comes else u > 0.95 - 0.1 * first
+    opening[far] = np.inf
+    guesses, nearest = contact_events(openings(u, opening), 1.0)
+    assert np.abs(guesses - place).min() < 1e-12
+    assert nearest[np.abs(guesses - place).argmin()] == pytest.approx(0.3 if comes else 0.5)
+
+
+def test_a_guess_keeps_away_from_positions_that_are_solved() -> None:
+    u = np.arange(10) / 10.0
+    opening = np.where(u < 0.35, np.inf, -1e-6)
+    opening[3:5] = 1e-6, -1e-26  # as good as zero at a position
+    guesses, _ = contact_events(openings(u, opening), 1.0)
+    assert np.abs(guesses[:, None] - np.append(u, 1.0)).min() > 5e-5
+
+
+def test_numbers_of_positions_are_those_they_were_solved_at_but_for_rounding() -> None:
+    cycles = HelixCycles((spur(),), LOAD)
+    u = np.array([0.0, 0.2, 0.50001, 0.50002, 0.9])
+    cycles.cycles.append(SimpleNamespace(position=u))  # type: ignore[arg-type]
+    for rounding in (-1e-15, 0.0, 1e-15):
+        assert list(cycles.numbers(u + rounding)) == [0, 1, 2, 3, 4]
