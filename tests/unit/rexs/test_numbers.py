@@ -195,3 +195,21 @@ def test_diameters_of_tip_and_root_count_where_a_tooth_can_have_them(
     assert gear.dedendum_factor == pytest.approx(dedendum if root_taken else 1.25, rel=1e-9)
     said = {item.address.rpartition(".")[2] for item in result.assumptions if f"_{number}." in item.address}
     assert ("tip_diameter" in said, "dedendum_factor" in said) == (not tip_taken, not root_taken)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_positive_helix_angle_is_a_right_hand(mirrored: bool, tmp_path: Path) -> None:
+    document = sample()
+    key = "helix_angle_reference_diameter"
+    angles = {}
+    for gear in document.of_type("cylindrical_gear"):
+        given = gear.attributes[key]
+        angle = float(str(given.raw))
+        angles[gear.id] = -angle if mirrored else angle
+        document = changed(document, gear.id, **{key: Value(angles[gear.id], given.unit)})
+    gears = rg.loads(rg.import_rexs(write_json(document, tmp_path / "gearbox.rexsj")).toml).gears
+    assert len(gears) == len(angles) == 6
+    for name, gear in gears.items():
+        angle = angles[name.rpartition("_")[2]]
+        assert gear.hand == ("right" if angle > 0.0 else "left")
+        assert gear.helix_angle == pytest.approx(math.radians(abs(angle)), rel=1e-9)
