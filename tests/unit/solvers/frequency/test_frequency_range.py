@@ -44,6 +44,21 @@ def test_solutions_in_a_basis_are_the_direct_ones(damping: float, skew: float) -
     assert off.max() < 10.0 * TOLERANCE
 
 
+@pytest.mark.parametrize("size", [1.0, 2.0**30, 2.0**-30])
+def test_a_residual_is_relative_to_the_forces_inside_and_does_not_know_their_size(size: float) -> None:
+    system = chain(20, 1e-5, 2.0)
+    f = size * np.eye(20)[:, [3, 7]].astype(complex)
+    q = system.solve(40.0, f)
+    assert system.relative_residual(40.0, f, q) < 1e-13
+    # Without the motion all of the force is left over, and nothing else is there to compare it with.
+    assert system.relative_residual(40.0, f, 0.0 * q) == 1.0
+    off = q.copy()
+    off[:, 1] *= 1.0 + 1e-3
+    inside = np.abs(system.K) @ np.abs(off) + 40.0**2 * (np.abs(system.M) @ np.abs(off))
+    share = 1e-3 * size / (np.linalg.norm(inside[:, 1]) + size)
+    assert system.relative_residual(40.0, f, off) == pytest.approx(share, rel=1e-6)
+
+
 @pytest.mark.parametrize("at_resonance", [False, True])
 def test_damping_of_single_modes_acts_as_the_matrix_that_it_stands_for(at_resonance: bool) -> None:
     """Near a resonance of the structure without it too, where the formula divides by next to nothing."""
