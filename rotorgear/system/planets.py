@@ -206,100 +206,94 @@ def quarter_turn(group: ElementGroup) -> np.ndarray:
 
 @dataclass(frozen=True)
 class PinLoad:
-    """The steady centrifugal load of one planet, and how the planet gives under it.
+    """What the steady centrifugal load of one planet on its pin follows from.
+
+    With K_p and M of a planet and its bearings on a carrier at rest, its give d is
+
+        (K_p + W^2 (M S S + w G S)) d = W^2 r M e,      f = W^2 (r e' M e + e' M d),
+
+    for the direction e of its arm and its own spin w over that of the carrier. The matrices are those of its free motions in the
+    plane of the carrier, none in a model without bending, where planets stay on their pins.
 
     Attributes:
-        planets: those of its kind; planet: name of its shaft.
-        force: f in N on its pin, outwards.
-        dofs: the free dofs of the planet (k,).
-        onwards: what the planet moves onwards beside its carrier for each radian of that (k,), the give of the pin along its arm,
-            which turns with the arm.
+        planets: those of its kind.
+        node: of their carrier.
+        stiffness: K_p (k, k); inertia: M S S + w G S (k, k).
+        pull: M e on the free motions (k,); mass: e' M e in kg.
     """
 
     planets: PlanetSet
-    planet: str
-    force: float
-    dofs: np.ndarray
-    onwards: np.ndarray
+    node: int
+    stiffness: np.ndarray
+    inertia: np.ndarray
+    pull: np.ndarray
+    mass: float
 
+    def force(self, W: float) -> float:
+        """f in N at a speed of the carrier in rad/s.
 
-def pin_loads(
-    layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[ElementGroup], speed: float
-) -> Iterator[PinLoad]:
-    """The loads of the pins of all carriers that turn.
+        Raises:
+            AnalysisError: the bearings on the pin hold less than the load grows by with the way out.
+        """
+        r = self.planets.radius
+        if not len(self.pull):
+            return W**2 * r * self.mass
+        A = self.stiffness + W**2 * self.inertia
+        load = W**2 * r * self.pull
+        # A planet that nothing keeps from tilting tilts under no load of its own.
+        size = 1.0 / np.sqrt(np.where(A.diagonal() != 0.0, np.abs(A.diagonal()), 1.0))
+        give = size * la.lstsq(A * size[:, None] * size, size * load, cond=_SINGULAR)[0]
+        if not load @ give > 0.0:
+            raise AnalysisError(
+                f"shafts.{written_name(self.planets.planets[0])}: at {abs(W):.6g} rad/s of its carrier the centrifugal load "
+                "grows faster with the way out than the bearings on its pin hold: give them radial stiffness, or stiffer ones, a "
+                "lighter planet or a lower speed."
+            )
+        return W**2 * (r * self.mass + float(self.pull @ give))
 
-    With K_p and M of a planet and its bearings on a carrier at rest, its give d is (K_p + W^2 M S S + W W_s G S) d = W^2 r M e
-    for the direction e of its arm, and f = W^2 e' M (r e + d).
-
-    Args:
-        groups: of all elements, at the speed. speed: of the reference shaft in rad/s.
-
-    Raises:
-        AnalysisError: the bearings on the pin hold less than the load grows by with the way out.
-    """
-    own: dict[str, list[ElementGroup]] = {}
-    for group in groups:
-        own.setdefault(group.shaft, []).append(group)
-    for planets in turning_carriers(layout):
-        W = layout.train.ratio(planets.shaft) * speed
-        for planet in planets.planets:
-            parts = [group for group in own.get(planet, []) if not group.part.startswith("carriers.")]
-            spin = layout.train.ratio(planet) * speed
-            K, M = (np.zeros((dofs.transform.shape[0],) * 2) for _ in "KM")
-            inside = np.zeros(len(K), dtype=bool)
-            for group in parts:
-                m = group.matrices
-                S = quarter_turn(group)
-                for number, on in enumerate(group.dofs):
-                    at = np.ix_(on, on)
-                    if m.stiffness is not None:
-                        K[at] += m.stiffness[number]
-                    if m.gyroscopic is not None:
-                        K[at] += spin * W * m.gyroscopic[number] @ S
-                    if m.mass is not None:
-                        M[at] += m.mass[number]
-                        K[at] += W**2 * m.mass[number] @ S @ S
-                        inside[on[np.any(S != 0.0, axis=0)]] = True
-            # Only what moves in the plane of the carrier feels it; the carrier itself stands still.
-            rows = np.flatnonzero(inside)
-            T = dofs.transform[rows].toarray()
-            # Without bending planets stay on their pins.
-            moves = np.any(T != 0.0, axis=0) if layout.model.has("bending") else np.zeros(T.shape[1], dtype=bool)
-            free = np.flatnonzero(moves)
-            T = T[:, free]
-            along = rows < 6 * len(nodes)
-            e = (along & (rows % 6 == 0)).astype(float)
-            onwards = (along & (rows % 6 == 1)).astype(float)
-            M = M[np.ix_(rows, rows)]
-            pull = T.T @ K[np.ix_(rows, rows)] @ T
-            load = W**2 * planets.radius * (T.T @ M @ np.column_stack([e, onwards]))
-            # A planet that nothing keeps from tilting tilts under no load of its own.
-            size = 1.0 / np.sqrt(np.where(pull.diagonal() != 0.0, np.abs(pull.diagonal()), 1.0))
-            scaled = pull * size[:, None] * size
-            give = size[:, None] * la.lstsq(scaled, size[:, None] * load, cond=_SINGULAR)[0] if free.size else load
-            if speed and free.size and not load[:, 0] @ give[:, 0] > 0.0:
-                raise AnalysisError(
-                    f"shafts.{written_name(planet)}: at {abs(W):.6g} rad/s of its carrier the centrifugal load grows faster with "
-                    "the way out than the bearings on its pin hold: give them radial stiffness, or stiffer bearings, a lighter "
-                    "planet or a lower speed."
-                )
-            force = W**2 * float(e @ M @ (planets.radius * e + T @ give[:, 0]))
-            yield PinLoad(planets, planet, force, free, give[:, 1])
-
-
-def pin_load_groups(
-    layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[ElementGroup], speed: float
-) -> list[ElementGroup]:
-    """K_g of the pins' centrifugal loads at a reference speed in rad/s, on the nodes of the carriers; see `pin_loads`."""
-    found = []
-    for load in pin_loads(layout, nodes, dofs, groups, speed) if speed else ():
-        planets = load.planets
-        if load.planet != planets.planets[0]:
-            continue  # the sum over the sisters is that of equal ones
+    def group(self, ratio: float, speed: float) -> ElementGroup:
+        """K_g on the carrier, the sum over all sisters, at a speed of the reference shaft; `ratio` is that of the carrier."""
+        count = len(self.planets.planets)
         rotation = np.zeros((1, 3, 6))
         rotation[0, :, 3:] = np.eye(3)
-        K = load.force * planets.radius * len(planets.planets) * np.diag([0.5, 0.5, 1.0])
-        node = nodes.at(*layout.at(planets.shaft, planets.part.at))
+        K = self.force(ratio * speed) * self.planets.radius * count * np.diag([0.5, 0.5, 1.0])
         matrices = ElementMatrices(strain=rotation, modulus=K[None])
-        found.append(ElementGroup(f"carriers.{planets.carrier}", planets.shaft, matrices, node_dofs(node)))
+        return ElementGroup(f"carriers.{self.planets.carrier}", self.planets.shaft, matrices, node_dofs(self.node))
+
+
+def pin_loads(layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[ElementGroup]) -> list[PinLoad]:
+    """The loads of the pins of all carriers that turn; `groups` are the elements, with bearings of one speed where those vary."""
+    every = list(groups)
+    found = []
+    for planets in turning_carriers(layout):
+        planet = planets.planets[0]
+        ratio = layout.train.ratio(planet) / layout.train.ratio(planets.shaft)
+        size = dofs.transform.shape[0]
+        K, M, inertia = (np.zeros((size, size)) for _ in "KMI")
+        inside = np.zeros(size, dtype=bool)
+        for group in every:
+            if group.shaft != planet or group.part.startswith("carriers."):
+                continue
+            m = group.matrices
+            S = quarter_turn(group)
+            for number, on in enumerate(group.dofs):
+                at = np.ix_(on, on)
+                if m.stiffness is not None:
+                    K[at] += m.stiffness[number]
+                if m.gyroscopic is not None:
+                    inertia[at] += ratio * m.gyroscopic[number] @ S
+                if m.mass is not None:
+                    M[at] += m.mass[number]
+                    inertia[at] += m.mass[number] @ S @ S
+                    inside[on[np.any(S != 0.0, axis=0)]] = True
+        # Only what moves in the plane of the carrier feels it; the carrier itself stands still.
+        rows = np.flatnonzero(inside)
+        T = dofs.transform[rows].toarray()
+        moves = np.any(T != 0.0, axis=0) if layout.model.has("bending") else np.zeros(T.shape[1], dtype=bool)
+        T = T[:, moves]
+        e = ((rows < 6 * len(nodes)) & (rows % 6 == 0)).astype(float)
+        here = np.ix_(rows, rows)
+        pull = M[here] @ e
+        node = nodes.at(*layout.at(planets.shaft, planets.part.at))
+        found.append(PinLoad(planets, node, T.T @ K[here] @ T, T.T @ inertia[here] @ T, T.T @ pull, float(e @ pull)))
     return found

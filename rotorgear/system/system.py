@@ -21,7 +21,7 @@ from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
-from rotorgear.system.planets import pin_load_groups, planet_groups, turning_carriers
+from rotorgear.system.planets import PinLoad, pin_loads, planet_groups, turning_carriers
 
 
 @dataclass(frozen=True)
@@ -181,8 +181,34 @@ class System:
         if speed and error is not None:
             raise error
         tables = table_groups(self.state, self.nodes, speed)
-        tables += planet_groups(self.layout, tables) if speed else []
-        return tables + pin_load_groups(self.layout, self.nodes, self.dofs, [*self.groups, *tables], speed)
+        if not speed or not turning_carriers(self.layout):
+            return tables
+        return tables + planet_groups(self.layout, tables) + self._pin_groups(speed, tables)
+
+    @cached_property
+    def has_varying_springs(self) -> bool:
+        """Whether some bearing, support, coupling or element has a table over speed."""
+        return any(spring.varies for spring in self.state.springs.values())
+
+    @cached_property
+    def _pins(self) -> list[PinLoad]:
+        return pin_loads(self.layout, self.nodes, self.dofs, self.groups)
+
+    def _pin_groups(self, speed: float, tables: list[ElementGroup]) -> list[ElementGroup]:
+        """The loads of planets' pins at a reference speed in rad/s."""
+        loads = self._pins
+        if tables:
+            loads = pin_loads(self.layout, self.nodes, self.dofs, [*self.groups, *tables])
+        return [load.group(self.train.ratio(load.planets.shaft), speed) for load in loads]
+
+    @cached_property
+    def _in_powers(self) -> tuple[sp.csc_array, sp.csc_array, sp.csc_array, sp.csc_array] | None:
+        """K and N of unit powers of the speed where nothing but planets that go round depends on it; None elsewhere."""
+        if not turning_carriers(self.layout) or self.has_varying_springs or self.layout.elastic_bodies:
+            return None
+        still = self._sum(self.groups, lambda g: g.matrices.stiffness)
+        plain = self._sum(self.groups, lambda g: g.circulatory_at(0.0))
+        return still, self.stiffness_per_square, plain, self._sum(self.groups, lambda g: g.circulatory_at(1.0)) - plain
 
     @cached_property
     def mass(self) -> sp.csc_array:
@@ -220,18 +246,26 @@ class System:
     @_kept
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
         """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""
+        if self._in_powers is not None:
+            K, square = self._in_powers[:2]
+            return sp.csc_array(
+                K + speed**2 * square + self._sum(self.groups_of(speed), lambda g: g.matrices.stiffness)
+            )
         return self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness)
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
         if not (self.has_tables or self._circulates):
             return sp.csc_array((self.n, self.n))
+        if self._in_powers is not None:
+            return sp.csc_array(self._in_powers[2] + speed * self._in_powers[3])
         return self._sum(self.groups_at(speed), lambda g: g.circulatory_at(speed))
 
     @_kept
     def damping(self, speed: float = 0.0) -> sp.csc_array:
         """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
-        C = self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
+        every = self.groups if self._in_powers is not None else self.groups_at(speed)
+        C = self._sum(every, lambda g: g.matrices.damping)
         given = self.model.damping
         if given.rayleigh_alpha:
             C = C + given.rayleigh_alpha * self.mass

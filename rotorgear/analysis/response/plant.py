@@ -257,7 +257,7 @@ class Plant:
     def _force_rows(self, speed: float) -> tuple[tuple[np.ndarray, ...], tuple[sp.csr_array, ...]]:
         """Rows that give forces from displacements and from velocities: along x y z on each bearing's node (3 b, n) and, about
         its point, on each seat that has a part in it (6 s, n)."""
-        if self._rows is None or self.has_tables:
+        if self._rows is None or self.system.has_varying_springs or self.system.layout.elastic_bodies:
             T = self.system.dofs.transform
             bearings = [(f"bearings.{name}",) for name in self.system.model.bearings]
             on_nodes = force_rows(self.system, speed, bearings, slice(-6, -3))
