@@ -29,6 +29,10 @@ def forces_on_gears(equilibrium: Equilibrated) -> np.ndarray:
     return np.array(rows).reshape(-1, 3)
 
 
+# Dofs of an element beyond those of shafts, springs and meshes.
+_MANY = 40
+
+
 def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
     """Force that an element's own strains put on its dofs, (e, d)."""
     B = group.matrices.strain
@@ -38,6 +42,9 @@ def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
     if B is None or not parts:
         return np.zeros(group.dofs.shape)
     total = sum(parts[1:], parts[0])
+    if B.shape[2] > _MANY:  # a product of four at once takes the fourth power of them
+        strains = np.einsum("etf,ef->et", B, q[group.dofs])
+        return np.asarray(np.einsum("esd,es->ed", B, np.einsum("est,et->es", total, strains)))
     return np.asarray(np.einsum("esd,est,etf,ef->ed", B, total, B, q[group.dofs]))
 
 
