@@ -27,7 +27,7 @@ DOCS = ROOT / "docs"
 NAVIGATION: dict[str, tuple[str, ...]] = {
     "Start": ("index", "first_gearbox", "gallery", "errors", "rotordynamicist", "gear_engineer"),
     "Analyses": ("static", "modal", "response", "transient", "sweep"),
-    "Parts": ("mesh", "bevel", "bearings", "casings", "model_file"),
+    "Parts": ("mesh", "bevel", "planetary", "bearings", "casings", "model_file"),
     "Design": ("report", "rig"),
     "Files and Python": ("commands", "python", "api", "rexs"),
     "Trust": ("accuracy", "validation"),

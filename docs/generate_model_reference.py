@@ -18,6 +18,7 @@ from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
+from rotorgear.model.parts.carrier import Carrier
 from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
 from rotorgear.model.parts.fields import Whole
 from rotorgear.model.parts.gear import Flank, Gear, GearBody
@@ -44,6 +45,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[materials.NAME]", Material),
     ("[shafts.NAME]", Shaft),
     ("sections = [{ ... }] of a shaft", Section),
+    ("[carriers.NAME]", Carrier),
     ("[gears.NAME]", Gear),
     ("body = { ... } of a gear", GearBody),
     ("flank = { ... } of a gear", Flank),

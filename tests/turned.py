@@ -26,6 +26,8 @@ def turned(model: rg.Model, R: np.ndarray = TURN, at: np.ndarray = PLACE, folder
     tables: dict[str, Any] = model.model_dump(mode="python", exclude_none=True)
     frames = display_frames(model)
     for name, shaft in tables["shafts"].items():
+        if "carrier" in shaft:
+            continue  # planets stand where their carrier does
         frame = frames[name]
         shaft["position"] = (R @ frame.origin + at).tolist()
         shaft["axis"] = (R @ frame.axes[:, 2]).tolist()

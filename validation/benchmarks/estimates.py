@@ -40,6 +40,7 @@ SHOWN = (
     "geared_pair",
     "jeffcott",
     "overhung_pinion",
+    "planetary",
     "split_torque",
     "split_torque_casing",
     "split_torque_journals",

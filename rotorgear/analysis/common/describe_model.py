@@ -123,7 +123,9 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         if gear.teeth and pinion.teeth
         else mesh.gear.base_radius / mesh.pinion.base_radius,
         centre_distance_m=line[0] if line else (pair.centre_distance if pair else None),
-        centre_line_deg=math.degrees(contact.psi),
+        centre_line_deg=math.degrees(
+            math.remainder(contact.psi, 2.0 * math.pi) if contact.psi > math.pi else contact.psi
+        ),
         pressure_angle_deg=math.degrees(contact.pressure_angle),
         base_helix_angle_deg=math.degrees(contact.base_helix_angle),
         transverse_contact_ratio=pair.transverse_contact_ratio if pair else None,

@@ -22,6 +22,8 @@ from rotorgear.system.planets import turning_carriers
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
+# Share of a motion beyond which a group takes part in it.
+_MOVES = 1e-9
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
 # Requests of a system that are kept, the latest ones: as many groups, mostly of one request.
 _MOST_KEPT = 16
@@ -150,7 +152,7 @@ class Problem:
             symmetric=self.symmetric or not (K - K_symmetric).nnz,
             damped=self.damped and bool((D + D.T).nnz),
             dofs=group.tobytes(),
-            rigid=None if self.rigid is None else self.rigid[group][:, np.any(self.rigid[group] != 0.0, axis=0)],
+            rigid=None if self.rigid is None else _of_group(self.rigid, group),
         )
 
     def undamped(self, count: int | None, below: float | None, *, counted: bool = True) -> UndampedModes:
@@ -178,3 +180,10 @@ class Problem:
             if len(known) > _MOST_KEPT:
                 known.pop(next(iter(known)))
         return known[request]
+
+
+def _of_group(motions: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Those of some motions (n, r) that move a group of dofs beyond rounding."""
+    mine = motions[group]
+    moves = np.abs(mine).max(axis=0, initial=0.0) > _MOVES * np.abs(motions).max(axis=0, initial=0.0)
+    return np.asarray(mine[:, moves])

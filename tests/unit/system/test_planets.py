@@ -12,6 +12,7 @@ import rotorgear as rg
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.system.system import System, flow_system
 from tests.planetary import GROUND, PIN, Springs, helical_stage, springs
+from tests.turned import turned
 
 # Lin and Parker's example as Cooley and Parker quote it is in the validation cases; here are stages of other numbers.
 RATIO = 27 / 126
@@ -297,3 +298,14 @@ def test_in_torsion_alone_planets_go_round_with_their_carrier() -> None:
         s = eigenvalues(system.mass.toarray(), np.zeros((system.n, system.n)), system.stiffness(speed).toarray())
         assert np.sort(s.imag[s.imag > 10.0])[0] == pytest.approx(wanted, rel=1e-6)
         assert np.abs(s).min() < 1.0
+
+
+def test_a_stage_turned_in_space_has_the_same_modes_and_forces() -> None:
+    text = helical_stage(loss=2e-6).replace("[operation]", '[operation]\ngravity = [1.0, -9.0, 3.0]\ntorque = 400')
+    model = rg.loads(text.replace("torque = 400", 'torque = 400\noutput_shaft = "carrier"'))
+    moved = turned(model)
+    here = rg.modal(model, speed="4000 rpm", modes=12)
+    there = rg.modal(moved, speed="4000 rpm", modes=12)
+    assert there.frequency_hz[1:] == pytest.approx(here.frequency_hz[1:], rel=1e-9)
+    assert there.damping_ratio[1:] == pytest.approx(here.damping_ratio[1:], rel=1e-6)
+    assert rg.static(moved).mesh_force == pytest.approx(rg.static(model).mesh_force, rel=1e-8)
