@@ -57,9 +57,15 @@ def require_constant(layout: Layout) -> None:
     """Refuse planets whose matrices change as they go round.
 
     Raises:
-        AnalysisError: two planets, unequal spacing, or one that differs from its sisters, on a carrier that turns.
+        AnalysisError: two planets, unequal spacing, or one that differs from its sisters, on a carrier that turns; Rayleigh damping.
     """
+    damping = layout.model.damping
     for planets in turning_carriers(layout):
+        if damping.rayleigh_alpha or damping.rayleigh_beta:
+            raise AnalysisError(
+                "damping.rayleigh_alpha and rayleigh_beta damp against axes that stand still, which planets on a carrier that turns "
+                "leave: give damping_ratio at the meshes, damping at the bearings or damping.modal_ratio"
+            )
         if not planets.part.is_regular:
             count = len(planets.planets)
             what = f"{count} planets" if count < 3 else "planets at unequal angles"

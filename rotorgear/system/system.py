@@ -38,6 +38,17 @@ class Matrices:
     symmetric: bool
 
 
+@dataclass(frozen=True)
+class InPowers:
+    """Sparse matrices (n, n) of the speed W in rad/s: K = stiffness + W^2 per_square, with the loads of pins beside them, and the
+    circulatory N = circulation + W per_speed."""
+
+    stiffness: sp.csc_array
+    per_square: sp.csc_array
+    circulation: sp.csc_array
+    per_speed: sp.csc_array
+
+
 Made = TypeVar("Made")
 
 
@@ -202,13 +213,17 @@ class System:
         return [load.group(self.train.ratio(load.planets.shaft), speed) for load in loads]
 
     @cached_property
-    def _in_powers(self) -> tuple[sp.csc_array, sp.csc_array, sp.csc_array, sp.csc_array] | None:
-        """K and N of unit powers of the speed where nothing but planets that go round depends on it; None elsewhere."""
+    def in_powers(self) -> InPowers | None:
+        """Its matrices by powers of the speed where nothing but planets that go round depends on it; None elsewhere."""
         if not turning_carriers(self.layout) or self.has_varying_springs or self.layout.elastic_bodies:
             return None
-        still = self._sum(self.groups, lambda g: g.matrices.stiffness)
-        plain = self._sum(self.groups, lambda g: g.circulatory_at(0.0))
-        return still, self.stiffness_per_square, plain, self._sum(self.groups, lambda g: g.circulatory_at(1.0)) - plain
+        still = self._sum(self.groups, lambda g: g.circulatory_at(0.0))
+        return InPowers(
+            stiffness=self._sum(self.groups, lambda g: g.matrices.stiffness),
+            per_square=self.stiffness_per_square,
+            circulation=still,
+            per_speed=sp.csc_array(self._sum(self.groups, lambda g: g.circulatory_at(1.0)) - still),
+        )
 
     @cached_property
     def mass(self) -> sp.csc_array:
@@ -246,25 +261,27 @@ class System:
     @_kept
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
         """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""
-        if self._in_powers is not None:
-            K, square = self._in_powers[:2]
-            return sp.csc_array(
-                K + speed**2 * square + self._sum(self.groups_of(speed), lambda g: g.matrices.stiffness)
-            )
+        if self.in_powers is not None:
+            powers = self.in_powers
+            return sp.csc_array(powers.stiffness + speed**2 * powers.per_square + self.stiffness_of(speed))
         return self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness)
+
+    def stiffness_of(self, speed: float) -> sp.csc_array:
+        """The symmetric stiffness of what is of one speed alone (`groups_of`), sparse (n, n)."""
+        return self._sum(self.groups_of(speed), lambda g: g.matrices.stiffness)
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
         if not (self.has_tables or self._circulates):
             return sp.csc_array((self.n, self.n))
-        if self._in_powers is not None:
-            return sp.csc_array(self._in_powers[2] + speed * self._in_powers[3])
+        if self.in_powers is not None:
+            return sp.csc_array(self.in_powers.circulation + speed * self.in_powers.per_speed)
         return self._sum(self.groups_at(speed), lambda g: g.circulatory_at(speed))
 
     @_kept
     def damping(self, speed: float = 0.0) -> sp.csc_array:
         """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
-        every = self.groups if self._in_powers is not None else self.groups_at(speed)
+        every = self.groups if self.in_powers is not None else self.groups_at(speed)
         C = self._sum(every, lambda g: g.matrices.damping)
         given = self.model.damping
         if given.rayleigh_alpha:

@@ -12,6 +12,7 @@ from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.solvers.frequency.frequency_range import largest_peaks
 from rotorgear.solvers.frequency.harmonic import Dynamics, orthonormal, projected, response_in_basis
 from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
+from rotorgear.system.system import InPowers
 
 # The basis grows until its error against direct solutions is below this, at the points where its residual is largest.
 TOLERANCE = 1e-6
@@ -95,12 +96,30 @@ class ModalSweep:
 
     def reduced(self, dynamics: Dynamics, speed: float) -> Pencil:
         """The projection at a speed: put together from two speeds where nothing but W G and W K changes."""
-        if self.plant.has_tables:
+        powers = self.plant.system.in_powers
+        if self.plant.has_tables and powers is None:
             return projected(dynamics, self.basis)
+        if powers is not None:
+            return self._in_powers(powers, speed)
         if self._projection is None:
             self._projection = [projected(self.plant.dynamics(x), self.basis) for x in (0.0, 1.0)]
         still, turning = self._projection
         return still.between(turning, speed)
+
+    def _in_powers(self, powers: InPowers, speed: float) -> Pencil:
+        """The projection where planets go round: by powers of the speed, and the loads of their pins on a few dofs."""
+        X = self.basis
+        if self._projection is None:
+            still = projected(self.plant.dynamics(0.0), X)
+            per_speed = X.T @ (self.plant.system.gyroscopic @ X)
+            turning = Pencil(still.M, per_speed, X.T @ (powers.per_speed @ X))
+            self._projection = [still, turning, Pencil(still.M, per_speed, X.T @ (powers.per_square @ X))]
+        still, turning, square = self._projection
+        pins = self.plant.system.stiffness_of(speed)
+        rows = np.unique(pins.indices)
+        own = X[rows]
+        K = still.K + speed * turning.K + speed**2 * square.K + own.T @ (pins[rows][:, rows] @ own)
+        return Pencil(still.M, still.D + speed * turning.D, K)
 
     def solve(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Frequencies (o,), displacements (n, o) and relative residuals (o,) at a speed."""

@@ -301,7 +301,7 @@ def test_in_torsion_alone_planets_go_round_with_their_carrier() -> None:
 
 
 def test_a_stage_turned_in_space_has_the_same_modes_and_forces() -> None:
-    text = helical_stage(loss=2e-6).replace("[operation]", '[operation]\ngravity = [1.0, -9.0, 3.0]\ntorque = 400')
+    text = helical_stage(loss=2e-6).replace("[operation]", "[operation]\ngravity = [1.0, -9.0, 3.0]\ntorque = 400")
     model = rg.loads(text.replace("torque = 400", 'torque = 400\noutput_shaft = "carrier"'))
     moved = turned(model)
     here = rg.modal(model, speed="4000 rpm", modes=12)
