@@ -138,3 +138,20 @@ def test_the_mode_that_is_taken_next_is_the_one_that_changes_receptances_most(se
     assert set(chosen.modes) - set(begin) == {max(left, key=change)}
     found = reduced_receptances(among, chosen.basis, probes)[0]
     assert chosen.closed == pytest.approx(difference(full_receptances(system, probes), found, scale), rel=1e-9)
+
+
+def test_modes_are_taken_until_the_receptances_agree_and_no_longer() -> None:
+    system = beside_two_contacts(1)
+    scale = scale_of(system)
+    probes = Probes(np.full(30, 2.0), 1j * np.linspace(50.0, 340.0, 30))
+    among = among_of(system)
+    full = full_receptances(system, probes)
+    counts = []
+    for tolerance in (1.2e-3, 8e-4, 5e-4):
+        heard: list[tuple[int, float]] = []
+        chosen = choose(among, full, probes, scale, tolerance, N, report=lambda n, e, told=heard: told.append((n, e)))
+        assert chosen.error <= tolerance < min(error for _, error in heard[:-1])
+        counts.append(len(chosen.modes))
+    assert 0 < counts[0] <= counts[1] <= counts[2] <= among.modes
+    # No more shapes than are allowed.
+    assert choose(among, full, probes, scale, 0.0, 7).basis.shape[1] == 7
