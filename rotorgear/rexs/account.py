@@ -93,9 +93,13 @@ class Account:
             self.warnings.append(note)
         return None
 
-    def truth(self, component: Component, name: str) -> bool | None:
-        """A truth value; None where the file has none."""
-        text = self.text(component, name).lower()
+    def truth(self, component: Component, name: str, entry: int = 0) -> bool | None:
+        """A truth value, or one of the entries of an array; None where the file has none."""
+        value = component.given(name)
+        if value is not None and isinstance(value.raw, list):
+            text = str(value.raw[entry]).strip().lower() if 0 <= entry < len(value.raw) else ""
+        else:
+            text = self.text(component, name).lower()
         return True if text in _TRUE else False if text in _FALSE else None
 
     def text(self, component: Component, *names: str) -> str:

@@ -36,7 +36,7 @@ from rotorgear.forces.designations import (
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.shafts import ShaftPart
-from rotorgear.rexs.structure import Structure
+from rotorgear.rexs.structure import GEARS, PLANETARY, Structure
 from rotorgear.rexs.toml_text import Names, Table, quantity, row, text
 
 _BALL = 13e6
@@ -199,7 +199,7 @@ def is_coupling(component: Component) -> bool:
 Seat: TypeAlias = tuple[ShaftPart, float] | None
 
 
-def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure) -> list[Seat]:
+def seats(part: Component, shafts: dict[str, ShaftPart], structure: Structure) -> list[Seat]:
     """Inner and outer side of a bearing or a coupling."""
     account = structure.account
     found: list[Seat] = []
@@ -214,7 +214,7 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure) 
             continue
         u = account.number(part, names, "length")
         frame = structure.frame(part)
-        by_vector = None if frame is None else float(structure.place(frame)[0])
+        by_vector = None if frame is None else float(shaft.axis.base.sees(frame.origin)[0])
         z = by_vector if u is None else shaft.axis.z(u)
         if z is None:
             account.missing(part, f"its place on {shaft.component} is needed: {names[0]} or support_vector")
@@ -228,10 +228,26 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure) 
     return found
 
 
-def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> Table | None:
-    """Table of a bearing to ground, or of a coupling where it sits between two shafts; None where it has no shaft."""
+def bearing_table(
+    part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure, pin: ShaftPart | None = None
+) -> Table | None:
+    """Table of a bearing to ground or on a planet's pin, or of a coupling where it sits between two other shafts.
+
+    Args:
+        part: the bearing. names: taken so far.
+        shafts: of the model by number. structure: of the file.
+        pin: shaft of the file inside of it that stands rigidly on a carrier.
+
+    Returns:
+        The table; None where the bearing has no shaft.
+    """
     account = structure.account
-    inner, outer = _sides(part, shafts, structure)
+    sides = seats(part, shafts, structure)
+    planet = next((seat for seat in sides if seat is not None and seat[0].pins is not None), None)
+    if planet is not None and None not in sides and not all(seat and seat[0].pins for seat in sides):
+        # A planet's bearing stands on its carrier, whichever part of it the file names.
+        sides = [planet, None]
+    inner, outer = sides
     name = names.of(part.name, "bearing", part.id)
     seat = inner or outer
     if seat is None:
@@ -240,9 +256,24 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
     designation = account.text(part, "catalogue_designation", "name", "designation", "bearing_designation")
     remark = f"{part}, {designation}" if designation and designation != part.name else str(part)
     if inner is not None and outer is not None:
-        table = _between(f"couplings.{name}", remark, inner, outer)
+        table = between(f"couplings.{name}", remark, inner, outer)
     else:
         table = seat[0].table(f"bearings.{name}", remark, seat[1])
+    u = account.number(part, ("u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_side_1"), "length")
+    d = seat[0].diameter(seat[1]) if pin is None else pin.diameter(pin.axis.z(u or 0.0))
+    stiffness, reasons = _stiffness(part, d, designation, table.header, structure)
+    if not stiffness:
+        account.left_out.append(f"{part}: it holds nothing, by radial_force_absorption and axial_force_absorption")
+        return None
+    table.add("stiffness", row(**stiffness), "\n".join(reasons))
+    return table
+
+
+def _stiffness(
+    part: Component, d: float, designation: str, header: str, structure: Structure
+) -> tuple[dict[str, str], list[str]]:
+    """Stiffness by direction of a bearing around d in m, and comments that say which of it the file did not give."""
+    account = structure.account
     radial = _given(part, ("radial_stiffness",), "stiffness", account)
     axial = _given(part, ("axial_stiffness",), "stiffness", account)
     tilt = _given(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
@@ -250,10 +281,9 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
     takes_axial = _takes_axial(part, designation, structure)
     guessed = (0.0, 0.0, "", "")
     if (takes_radial and radial is None) or (takes_axial and axial is None):
-        guessed = _guess(part, seat, designation, structure)
+        guessed = _guess(part, d, designation, structure)
     one_way = account.text(part, "axial_force_absorption") in ("positive", "negative")
     of_axial = guessed[3] + ("; held both ways, not one" if one_way else "")
-    # Stiffness by direction; the comment says which of it the file did not give.
     stiffness: dict[str, str] = {}
     reasons: list[str] = []
     for key, takes, value, guess, why in (
@@ -267,19 +297,15 @@ def bearing_table(part: Component, names: Names, shafts: dict[str, ShaftPart], s
             continue
         if value is None:
             value = float(f"{guess:.3g}")
-            address = f"{table.header}.stiffness.{key}"
+            address = f"{header}.stiffness.{key}"
             reasons.append(account.assume(address, f"{value:.3g} N/m", f"none in the file: {why}"))
         stiffness[key] = quantity(value, "stiffness")
     if tilt is not None:
         stiffness["tilt"] = quantity(tilt, "rotational_stiffness")
-    if not stiffness:
-        account.left_out.append(f"{part}: it holds nothing, by radial_force_absorption and axial_force_absorption")
-        return None
-    table.add("stiffness", row(**stiffness), "\n".join(reasons))
-    return table
+    return stiffness, reasons
 
 
-def _between(header: str, remark: str, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> Table:
+def between(header: str, remark: str, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> Table:
     """The table of what joins two shafts."""
     table = Table(header, remark)
     for side, (shaft, z) in (("from", first), ("to", second)):
@@ -336,10 +362,8 @@ def _kind(part: Component, designation: str, structure: Structure) -> tuple[str,
     return by_words or "unknown", _TYPE_ANGLES.get(by_words, 0.0), f"usual of a {by_words} bearing"
 
 
-def _guess(
-    part: Component, seat: tuple[ShaftPart, float], designation: str, structure: Structure
-) -> tuple[float, float, str, str]:
-    """Estimated radial and axial stiffness in N/m, and the words that say from what."""
+def _guess(part: Component, d: float, designation: str, structure: Structure) -> tuple[float, float, str, str]:
+    """Estimated radial and axial stiffness in N/m of a bearing around d in m, and the words that say from what."""
     account = structure.account
     kind, angle, reason = _kind(part, designation or part.name, structure)
     by_designation = size_of_designation(designation or part.name)
@@ -350,7 +374,6 @@ def _guess(
     outer = account.number(part, ("outer_diameter",), "length")
     width = account.number(part, ("width",), "length") or math.nan
     stated = (bore, outer, width, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None
-    d = seat[0].diameter(seat[1])
     by_table = outer_diameter(d, "2")
     outside = _OUTER_OVER_BORE * d if math.isnan(by_table) else by_table
     by_shaft = (d, outside, math.nan, "diameter of the shaft, series 2 of ISO 15")
@@ -376,18 +399,53 @@ def _guess(
 
 
 def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure) -> Table | None:
-    """Table of a coupling between two coaxial shafts; None where it joins no two shafts, or is open."""
+    """Table of a coupling between two coaxial shafts, or of the support of a shaft that one holds to the casing.
+
+    None where it does neither, or is open.
+    """
     account = structure.account
-    inner, outer = _sides(part, shafts, structure)
-    if inner is None or outer is None:
-        account.left_out.append(f"{part}: it does not join two shafts")
-        return None
-    if account.truth(part, "is_engaged") is False or account.truth(part, "is_closed") is False:
+    inner, outer = seats(part, shafts, structure)
+    if is_open(part, structure):
         account.left_out.append(f"{part}: it is open")
         return None
-    table = _between(f"couplings.{names.of(part.name, 'coupling', part.id)}", str(part), inner, outer)
-    # A stub of steel, as long as thick, in place of what is rigid or not said: K = G I_p / d, E I / d, E A / d, 12 E I / d^3.
-    d = min(inner[0].diameter(inner[1]), outer[0].diameter(outer[1]))
+    name = names.of(part.name, "coupling", part.id)
+    if inner is not None and outer is not None:
+        table = between(f"couplings.{name}", str(part), inner, outer)
+        d = min(inner[0].diameter(inner[1]), outer[0].diameter(outer[1]))
+    elif (seat := inner or outer) is not None and holds(part, structure):
+        table = seat[0].table(f"supports.{name}", f"{part}, which holds the shaft to the casing", seat[1])
+        d = seat[0].diameter(seat[1])
+    else:
+        account.left_out.append(f"{part}: it does not join two shafts")
+        return None
+    add_stub(table, d, account, part)
+    return table
+
+
+def is_open(part: Component, structure: Structure) -> bool:
+    """Whether a coupling or a brake is not engaged, in the gear of the file where it has several."""
+    gear = next((structure.account.number(unit, ("gear_shift_index",), "ratio") for unit in structure.units), None)
+    return any(
+        structure.account.truth(part, key, round(gear or 1.0) - 1) is False for key in ("is_engaged", "is_closed")
+    )
+
+
+def holds(part: Component, structure: Structure) -> bool:
+    """Whether a coupling joins a shaft to the casing of a gearbox with planetary stages, or a shaft without gears."""
+    sides = structure.beside(part)
+    shafts = [side.id for side in sides if side.type == "shaft"]
+    if len(shafts) != 1 or not any(side.type == "gear_casing" for side in sides) or is_open(part, structure):
+        return False
+    document = structure.document
+    toothed = any(structure.shaft_of(gear) == shafts[0] for gear in document.of_type(*GEARS))
+    return not toothed or bool(document.of_type(PLANETARY))
+
+
+def add_stub(table: Table, d: float, account: Account, part: Component | None = None) -> None:
+    """The stiffness of a coupling; what its component does not say is that of a steel stub of diameter d in m, as long as thick.
+
+    K = G I_p / d, E I / d, E A / d, 12 E I / d^3.
+    """
     inertia = math.pi * d**4 / 64.0
     reason = f"none in the file: a steel stub of {1e3 * d:.4g} mm, as long as thick"
     values = {}
@@ -398,10 +456,9 @@ def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], 
         ("tilt", "rotational_stiffness", ("bending_stiffness",), 206e9 * inertia / d),
         ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness"), 79e9 * 2.0 * inertia / d),
     ):
-        found = _given(part, attributes, kind, account)
+        found = None if part is None else _given(part, attributes, kind, account)
         if found is None:
             found = float(f"{stub:.4g}")
             notes.append(account.assume(f"{table.header}.stiffness.{key}", f"{found:.3g}", reason))
         values[key] = quantity(found, kind)
     table.add("stiffness", row(**values), notes[0] if notes else "")
-    return table

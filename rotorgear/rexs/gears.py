@@ -1,4 +1,8 @@
-"""Cylindrical gears and their meshes: teeth, profile shifts that fit the axes, tips and roots."""
+"""Cylindrical gears and their meshes, external and internal: teeth, profile shifts that fit the axes, tips and roots.
+
+Teeth and diameters of a ring are positive in a model file, and negative in some REXS files; its profile shift has the sign of
+ISO 21771 in both, where a positive one makes teeth thicker and moves their tips inwards.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +13,8 @@ from rotorgear.gears.geometry.geometry import involute
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.shafts import CENTRE_DISTANCE, ShaftPart
-from rotorgear.rexs.structure import Pair, Structure
-from rotorgear.rexs.toml_text import Table, number, quantity, text
+from rotorgear.rexs.structure import BEVEL_STAGE, Pair, Structure, is_internal
+from rotorgear.rexs.toml_text import Table, number, quantity, row, text
 
 # Attribute names over the versions.
 _SHIFT = ("profile_shift_coefficient", "addendum_modification_coefficient")
@@ -24,13 +28,18 @@ _DEDENDUM = (0.6, 2.5)
 _FIT = 0.045
 # The largest correction of a profile shift; a larger difference is no rounding, but belongs to another gear.
 _MENDED = 0.3
+# Thickness over the module of the rim of a ring of which the file says nothing.
+_RIM = 3.0
 # Below this an angle is zero.
 _SPUR = 1e-9
 
 
 @dataclass(frozen=True)
 class GearPart:
-    """A gear of the model. Lengths in m, angles in rad; helix_angle > 0 is a right hand. `shift` None: not given."""
+    """A gear of the model. Lengths in m, angles in rad; helix_angle > 0 is a right hand. `shift` None: not given.
+
+    `sign` is -1 of a ring, whose number of teeth is positive here.
+    """
 
     component: Component
     name: str
@@ -43,6 +52,7 @@ class GearPart:
     width: float
     shift: float | None
     comments: dict[str, str]
+    sign: int = 1
 
     @property
     def reference_diameter(self) -> float:
@@ -66,12 +76,15 @@ def read_gear(
     data = structure.data_of(gear)
     comments: dict[str, str] = {}
     teeth = account.number(gear, ("number_of_teeth",), "ratio")
-    module = _first(data, ("normal_module",), "length", account)
-    width = _first(data, ("face_width",), "length", account)
-    beta = _first(data, _HELIX, "angle", account)
-    alpha = _first(data, ("normal_pressure_angle",), "angle", account)
+    sign = -1 if is_internal(gear) else 1
+    if teeth is not None and sign < 0:
+        teeth = abs(teeth)
+    module = first_of(data, ("normal_module",), "length", account)
+    width = first_of(data, ("face_width",), "length", account)
+    beta = first_of(data, _HELIX, "angle", account)
+    alpha = first_of(data, ("normal_pressure_angle",), "angle", account)
     if module is None:
-        transverse = _first(data, ("transverse_module",), "length", account)
+        transverse = first_of(data, ("transverse_module",), "length", account)
         module = None if transverse is None else transverse * math.cos(beta or 0.0)
     if teeth is None or teeth < 1 or teeth != round(teeth):
         account.missing(gear, "number_of_teeth is needed, a whole number of at least 1")
@@ -88,9 +101,9 @@ def read_gear(
         alpha = math.radians(20.0)
         reason = "the file gives no normal pressure angle: that of ISO 53"
         comments["normal_pressure_angle"] = account.assume(f"gears.{name}.normal_pressure_angle", "20 deg", reason)
-    shift = _first(data, _SHIFT, "ratio", account)
+    shift = first_of(data, _SHIFT, "ratio", account)
     if shift is None:
-        length = _first(data, _SHIFT_LENGTH, "length", account)
+        length = first_of(data, _SHIFT_LENGTH, "length", account)
         shift = None if length is None else length / module
     # A gear has one pressure angle and one shift here; where its flanks differ, the first of them counts.
     flanks = [component for component in data if "flank" in component.type]
@@ -105,10 +118,11 @@ def read_gear(
     z = _middle(gear, shaft, width, structure, version, comments)
     if z is None:
         return None
-    return GearPart(gear, name, shaft, z, round(teeth), module, alpha, beta, width, shift, comments)
+    return GearPart(gear, name, shaft, z, round(teeth), module, alpha, beta, width, shift, comments, sign)
 
 
-def _first(data: list[Component], names: tuple[str, ...], kind: str, account: Account) -> float | None:
+def first_of(data: list[Component], names: tuple[str, ...], kind: str, account: Account) -> float | None:
+    """The first value in SI that one of some components has of some attributes."""
     found = (account.number(component, names, kind) for component in data)
     return next((value for value in found if value is not None), None)
 
@@ -133,7 +147,7 @@ def _middle(
     z = (by_u[0] if version <= (1, 0) else by_u[1]) if by_u else None
     frame = structure.frame(gear)
     if frame is not None:
-        along, x, y = structure.place(frame).tolist()
+        along, x, y = shaft.axis.base.sees(frame.origin).tolist()
         if math.hypot(x - shaft.axis.x, y - shaft.axis.y) < 1e-4 * max(1.0, width) + 1e-5:
             if z is not None and min(abs(along - one) for one in by_u) > 1e-5:
                 reason = f"u_coordinate_on_shaft would give {1e3 * z:.6g} mm: the support vector counts"
@@ -149,32 +163,46 @@ def shift_sum(first: GearPart, second: GearPart, distance: float) -> float | Non
     """x_1 + x_2 that brings two gears to a centre distance without backlash, ISO 21771; None where no such gears exist.
 
     cos(alpha_wt) = a cos(alpha_t) / a_w with a the reference centre distance, and
-    x_1 + x_2 = (z_1 + z_2) (inv(alpha_wt) - inv(alpha_t)) / (2 tan(alpha_n)).
+    x_1 + x_2 = (z_1 + z_2) (inv(alpha_wt) - inv(alpha_t)) / (2 tan(alpha_n)), with z_2, a and a_w < 0 where the second is a ring.
     """
     transverse = math.atan(math.tan(first.pressure_angle) / math.cos(first.helix_angle))
-    cosine = (first.reference_diameter + second.reference_diameter) / 2.0 * math.cos(transverse) / distance
+    reference = (first.reference_diameter + second.sign * second.reference_diameter) / 2.0
+    cosine = second.sign * reference * math.cos(transverse) / distance
     if not 0.0 < cosine < 1.0:
         return None
     working = math.acos(cosine)
-    teeth = first.teeth + second.teeth
+    teeth = first.teeth + second.sign * second.teeth
     return teeth * (involute(working) - involute(transverse)) / (2.0 * math.tan(first.pressure_angle))
 
 
 def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> tuple[GearPart, GearPart] | None:
-    """Two gears of a stage with opposite hands and shifts that fit their axes; None where they can't mesh."""
+    """Two gears of a stage with hands and shifts that fit, a ring as the second of them; None where they can't mesh."""
     stage = pair.stage
+    if first.sign < 0:
+        first, second = second, first
+    if first.sign < 0:
+        account.missing(stage, "its two gears are rings with teeth inside, and one of them must be an external gear")
+        return None
     if abs(first.module - second.module) > 1e-9 or abs(abs(first.helix_angle) - abs(second.helix_angle)) > 1e-6:
         account.missing(stage, "its two gears must have one normal module and one helix angle, and have not")
         return None
     if abs(first.pressure_angle - second.pressure_angle) > 1e-6:
         account.missing(stage, "its two gears must have one normal pressure angle, and have not")
         return None
-    if first.helix_angle * second.helix_angle > _SPUR:
-        reason = f"both helix angles of {stage} have one sign, and external gears have opposite hands"
-        note = account.assume(f"gears.{second.name}.hand", "left" if second.helix_angle > 0.0 else "right", reason)
+    if first.shaft.axis.base is not second.shaft.axis.base:
+        account.missing(stage, "the axes of its two cylindrical gears must be parallel, and are not")
+        return None
+    if first.helix_angle * second.helix_angle * second.sign > _SPUR:
+        signs = "both helix angles of {} have one sign, and external gears have opposite hands"
+        if second.sign < 0:
+            signs = "the helix angles of {} have opposite signs, and a ring has the hand of its pinion"
+        left = second.helix_angle > 0.0
+        note = account.assume(f"gears.{second.name}.hand", "left" if left else "right", signs.format(stage))
         second = replace(second, helix_angle=-second.helix_angle, comments={**second.comments, "hand": note})
-    distance = math.hypot(first.shaft.axis.x - second.shaft.axis.x, first.shaft.axis.y - second.shaft.axis.y)
+    distance = first.shaft.axis.distance(second.shaft.axis)
     stated = account.number(stage, CENTRE_DISTANCE, "length")
+    if stated is not None and second.sign < 0:
+        stated = abs(stated)
     if stated is not None and abs(stated - distance) > 1e-5:
         account.warnings.append(
             f"{stage} states a centre distance of {1e3 * stated:.6g} mm; its shafts are {1e3 * distance:.6g} mm apart, "
@@ -184,6 +212,13 @@ def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> 
     if needed is None or abs(needed) > 3.0:
         account.missing(stage, f"its shafts are {1e3 * distance:.6g} mm apart, where gears of this size can't mesh")
         return None
+    return _with_shifts(first, second, needed, stage, account)
+
+
+def _with_shifts(
+    first: GearPart, second: GearPart, needed: float, stage: Component, account: Account
+) -> tuple[GearPart, GearPart] | None:
+    """The gears with profile shifts that add up to what their axes need; None where the given ones are far from it."""
 
     # The profile shifts that are given, or what the centre distance leaves for those that are not.
     def given(part: GearPart, shift: float, reason: str) -> GearPart:
@@ -199,6 +234,11 @@ def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> 
     if second.shift is None:
         return first, given(second, needed - first.shift, rest)
     off = needed - first.shift - second.shift
+    if second.sign < 0 and abs(off) > _FIT >= abs(off + 2.0 * second.shift):
+        # Some programs count the shift of a ring outwards.
+        reason = f"the file says {second.shift:.6g}, which fits the axes of {stage} as {-second.shift:.6g} (ISO 21771)"
+        account.warnings.append(f"gears.{second.name}.profile_shift: {reason}")
+        return first, given(second, -second.shift, reason)
     # da_w is about m_n dx: near the reference distance a shift moves the axes by itself.
     if abs(off) <= _FIT:
         return first, second
@@ -224,6 +264,7 @@ def gear_table(part: GearPart, structure: Structure, material: tuple[str, str]) 
         "at": quantity(part.z, "length"),
         "kind": '"helical"' if helical else '"spur"',
         "teeth": str(part.teeth),
+        **({"internal": "true"} if part.sign < 0 else {}),
         "normal_module": quantity(part.module, "length"),
         "normal_pressure_angle": quantity(part.pressure_angle, "angle"),
     }
@@ -237,35 +278,63 @@ def gear_table(part: GearPart, structure: Structure, material: tuple[str, str]) 
     values["profile_shift"] = number(part.shift or 0.0)
     for key, value in values.items():
         table.add(key, value, comments.get(key, ""))
-    _add_heights(table, part, structure.data_of(part.component), account)
-    if part.shaft.diameter(part.z) >= part.reference_diameter:
+    root = _add_heights(table, part, structure.data_of(part.component), account)
+    if part.sign < 0:
+        _add_rim(table, part, root, account)
+    elif part.shaft.diameter(part.z) >= part.reference_diameter:
         # A pinion whose shaft is drawn with the diameter of its teeth: its mass is that of the section.
-        reason = "the section of the shaft there is as large as the reference circle and has the mass"
-        comment = account.assume(f"{table.header}.mass", "0 kg", reason)
-        for key, kind in (("mass", "mass"), ("polar_inertia", "inertia"), ("diametral_inertia", "inertia")):
-            table.add(key, quantity(0.0, kind), comment)
+        add_no_mass(
+            table, "the section of the shaft there is as large as the reference circle and has the mass", account
+        )
     if material[0]:
         table.add("material", text(material[0]), material[1])
     return table
 
 
-def _add_heights(table: Table, part: GearPart, data: list[Component], account: Account) -> None:
-    """Tip and root: diameters of the gear where they are plausible, else its tool's heights, else ISO 53 by default."""
-    tip = _first(data, ("tip_diameter",), "length", account)
+def add_no_mass(table: Table, reason: str, account: Account) -> None:
+    """A gear without a mass of its own."""
+    comment = account.assume(f"{table.header}.mass", "0 kg", reason)
+    for key, kind in (("mass", "mass"), ("polar_inertia", "inertia"), ("diametral_inertia", "inertia")):
+        table.add(key, quantity(0.0, kind), comment)
+
+
+def _add_rim(table: Table, part: GearPart, root: float, account: Account) -> None:
+    """What is around the roots (diameter in m) of a ring: up to its shaft's bore, or the section of the shaft itself."""
+    bore = part.shaft.bore(part.z)
+    outer = part.shaft.diameter(part.z)
+    if bore <= root < outer:
+        add_no_mass(table, "the section of the shaft there is around the teeth and has the mass", account)
+        return
+    rim, note = bore, "its rim reaches to the bore of its shaft"
+    if bore <= root:
+        rim = root + 2.0 * _RIM * part.module
+        reason = f"no section of {part.shaft.component} is around its teeth: a rim of {_RIM:g} modules"
+        note = account.assume(f"{table.header}.body.outer_diameter", f"{1e3 * rim:.6g} mm", reason)
+    table.add("body", row(outer_diameter=quantity(rim, "length")), note)
+
+
+def _add_heights(table: Table, part: GearPart, data: list[Component], account: Account) -> float:
+    """Tip and root: diameters of the gear where they are plausible, else its tool's heights, else ISO 53 by default.
+
+    Returns:
+        The root diameter in m.
+    """
+    tip = first_of(data, ("tip_diameter",), "length", account)
     d = part.reference_diameter
     shift = part.shift or 0.0
-    addendum = math.nan if tip is None else ((tip - d) / 2.0) / part.module - shift
+    # Diameters of rings are negative in some files.
+    addendum = math.nan if tip is None else part.sign * ((abs(tip) - d) / 2.0) / part.module - shift
     if tip is None:
         reason = "the file gives no tip diameter: addendum of one module, ISO 53"
         table.add("addendum_factor", "1", account.assume(f"{table.header}.addendum_factor", "1", reason))
     elif any(_ADDENDUM[0] <= height <= _ADDENDUM[1] for height in (addendum, addendum + shift)):
-        table.add("tip_diameter", quantity(tip, "length"))
+        table.add("tip_diameter", quantity(abs(tip), "length"))
     else:
         reason = f"the file says {1e3 * tip:.6g} mm, which no tooth of this gear has: by ISO 53"
-        value = f"{1e3 * (d + 2.0 * part.module * (1.0 + shift)):.6g} mm"
+        value = f"{1e3 * (d + part.sign * 2.0 * part.module * (1.0 + shift)):.6g} mm"
         table.add("addendum_factor", "1", account.assume(f"{table.header}.tip_diameter", value, reason))
-    root = _first(data, ("root_diameter", "root_circle_diameter"), "length", account)
-    dedendum = None if root is None else (d - root) / (2.0 * part.module) + shift
+    root = first_of(data, ("root_diameter", "root_circle_diameter"), "length", account)
+    dedendum = None if root is None else part.sign * (d - abs(root)) / (2.0 * part.module) + shift
     comment = "from the root diameter of the file"
     if dedendum is None or not _DEDENDUM[0] <= dedendum <= _DEDENDUM[1]:
         dedendum = None
@@ -281,14 +350,18 @@ def _add_heights(table: Table, part: GearPart, data: list[Component], account: A
         reason = "the file gives no root diameter and no tool: dedendum of 1.25 modules, ISO 53"
         comment = account.assume(f"{table.header}.dedendum_factor", "1.25", reason)
     table.add("dedendum_factor", number(dedendum), comment)
+    return d - part.sign * 2.0 * part.module * (dedendum - shift)
 
 
-def mesh_table(pair: Pair, name: str, first: GearPart, second: GearPart, account: Account) -> Table:
-    """The table of a mesh; the gear with fewer teeth is its pinion."""
-    pinion, wheel = (first, second) if first.teeth <= second.teeth else (second, first)
-    table = Table(f"meshes.{name}", str(pair.stage))
-    table.add("pinion", text(pinion.name))
-    table.add("gear", text(wheel.name))
-    reason = "REXS has no mesh stiffness: c_gamma_alpha of ISO 6336-1 by the geometry"
+def mesh_table(stage: Component, name: str, teeth: dict[str, int], account: Account) -> Table:
+    """The table of a mesh of two gears with their numbers of teeth; that with fewer is its pinion."""
+    table = Table(f"meshes.{name}", str(stage))
+    pinion, wheel = sorted(teeth, key=lambda gear: teeth[gear])
+    table.add("pinion", text(pinion))
+    table.add("gear", text(wheel))
+    formula = (
+        "the estimate of ISO 10300-1" if stage.type == BEVEL_STAGE else "c_gamma_alpha of ISO 6336-1 by the geometry"
+    )
+    reason = f"REXS has no mesh stiffness: {formula}"
     table.add("stiffness", '"iso"', account.assume(f"{table.header}.stiffness", "iso", reason))
     return table

@@ -12,14 +12,17 @@ from rotorgear.model.load import loads
 from rotorgear.model.model import model_hash
 from rotorgear.results.rexs_import import RexsImport
 from rotorgear.rexs.account import Account
-from rotorgear.rexs.bearings import bearing_table, coupling_table, is_bearing, is_coupling
+from rotorgear.rexs.bearings import bearing_table, coupling_table, holds, is_bearing, is_coupling
+from rotorgear.rexs.bevels import BevelPart, bevel_table, matched_bevels, read_bevel_gear
+from rotorgear.rexs.carriers import Carriers
 from rotorgear.rexs.document import Document
 from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read_gear
-from rotorgear.rexs.loads import MASS, load_tables, mass_tables
+from rotorgear.rexs.loads import MASS, given_speeds, load_tables, mass_tables
+from rotorgear.rexs.planets import Planets, on_shafts, placed_planets, read_stages
 from rotorgear.rexs.read import read_document
 from rotorgear.rexs.shafts import Materials, ShaftPart, read_sections, shaft_axes, shaft_table
-from rotorgear.rexs.structure import GEAR, Structure, refuse_other_kinds
-from rotorgear.rexs.toml_text import Names, Table, comment_line, text
+from rotorgear.rexs.structure import BEVEL, GEARS, Axis, Pair, Structure, refuse_other_kinds
+from rotorgear.rexs.toml_text import Names, Table, comment_line, quantity, text
 
 _NEWEST = (1, 6)
 
@@ -27,8 +30,9 @@ _NEWEST = (1, 6)
 def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> RexsImport:
     """Read a gearbox from a REXS file, versions 1.0 to 1.6, in XML, JSON, or a zip archive of one.
 
-    External cylindrical gears on parallel shafts with their sections, materials, bearings, couplings, speeds, torques and forces.
-    What the file leaves open is assumed and said; what can't be assumed is reported, all of it at once.
+    Cylindrical gears, external and internal, bevel gears and planetary stages, on shafts with their sections, materials,
+    bearings, couplings, speeds, torques and forces. What the file leaves open is assumed and said; what can't be assumed is
+    reported, all of it at once.
 
     Args:
         path: REXS file, versions 1.0 to 1.6: XML, JSON or zip.
@@ -38,7 +42,7 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
         The text of the model file with its comments, and the assumptions by address.
 
     Raises:
-        AnalysisError: no REXS file, a planetary, worm or bevel stage, or no such load case.
+        AnalysisError: no REXS file, a worm or hypoid stage, or no such load case.
         ModelError: values are missing that nothing can replace, or the model would not be sound; all of them.
     """
     clock = Clock()
@@ -125,69 +129,154 @@ def _with_load_case(
 
 def _tables(document: Document, version: tuple[int, int], account: Account) -> tuple[list[Table], dict[str, int]]:
     """All tables of the model file in its order, and how many parts of each kind there are."""
-    structure = Structure(document, account)
+    whole = Structure(document, account)
+    pairs = whole.pairs()
+    on = on_shafts(whole)
+    stages = read_stages(whole, on)
+    axes = shaft_axes(whole, pairs, {number for stage in stages for number in stage.pins})
+    planets = placed_planets(stages, on, axes, pairs, whole, version)
+    structure = whole.without(planets.dropped)
+    shafts = _shafts(structure, axes, planets)
+    carriers = Carriers(planets, shafts, whole)
     materials = Materials(structure)
-    pairs = structure.pairs()
-    axes = shaft_axes(structure, pairs)
-    shafts: dict[str, ShaftPart] = {}
+    given = _given_speeds(shafts, structure, bool(stages))
+    shaft_tables = [
+        shaft_table(
+            part,
+            *materials.of(part.component, f"shafts.{part.name}"),
+            structure.model,
+            given.get(part.component.id, ()),
+        )
+        for part in shafts.values()
+    ]
+    gear_tables, mesh_tables = _gears(
+        structure, shafts, [p for p in pairs if p.stage.id not in planets.dropped], version, materials
+    )
+    masses = document.of_type(MASS)
     names = Names()
-    for component in document.of_type("shaft"):
+    bodies = [
+        table
+        for part in masses
+        if part.id not in planets.dropped
+        for table in mass_tables(part, names, shafts, structure)
+    ]
+    bodies = [*bodies, *carriers.bodies(materials, names)]
+    bearings, couplings = _joints(structure, shafts, planets, carriers)
+    parts = [*shaft_tables, *carriers.tables(), *gear_tables]
+    operation, loads = load_tables(shafts, [*parts, *mesh_tables, *couplings], structure)
+    taken = [part.id for part in document.components.values() if is_bearing(part) or is_coupling(part)]
+    whole.note_left_out({*taken, *planets.dropped, *(part.id for part in masses)})
+    counts = {"shafts": len(shafts), "gears": len(gear_tables), "meshes": len(mesh_tables), "bearings": len(bearings)}
+    head = [*filter(None, [operation]), *materials.tables]
+    return [*head, *parts, *bodies, *mesh_tables, *bearings, *couplings, *loads], counts
+
+
+def _shafts(structure: Structure, axes: dict[str, Axis], planets: Planets) -> dict[str, ShaftPart]:
+    """The shafts that have a place and sections, by number."""
+    found = {}
+    names = Names()
+    for component in structure.document.of_type("shaft"):
         sections = read_sections(component, structure)
         if component.id in axes and sections:
             name = names.of(component.name, "shaft", component.id)
-            shafts[component.id] = ShaftPart(component, name, axes[component.id], sections)
-    if not document.of_type("shaft"):
-        account.missing("the file", "a gearbox needs at least one component of the type shaft")
-    shaft_tables = [shaft_table(part, *materials.of(part.component, f"shafts.{part.name}")) for part in shafts.values()]
-    # Gears with shifts that fit their axes, and those that mesh.
+            place = planets.places.get(component.id)
+            found[component.id] = ShaftPart(component, name, axes[component.id], sections, place)
+    if not structure.document.of_type("shaft"):
+        structure.account.missing("the file", "a gearbox needs at least one component of the type shaft")
+    return found
+
+
+def _given_speeds(
+    shafts: dict[str, ShaftPart], structure: Structure, planetary: bool
+) -> dict[str, tuple[str, str, str]]:
+    """Number of a shaft -> key, value and comment of its speed, where it is held, or the second one of a train with carriers."""
+    found: dict[str, tuple[str, str, str]] = {}
+    first = True
+    for speed, shaft, defines in given_speeds(shafts, structure.account):
+        if not speed:
+            found[shaft.component.id] = ("speed_ratio", "0", "held: its speed is 0")
+        elif defines and planetary and not first:
+            found[shaft.component.id] = ("speed", quantity(speed, "speed"), "")
+        first = first and not speed
+    for part in structure.document.components.values():
+        if is_coupling(part) and holds(part, structure):
+            found |= {
+                side.id: ("speed_ratio", "0", f"held by {part}") for side in structure.beside(part) if side.id in shafts
+            }
+    return found
+
+
+def _gears(
+    structure: Structure,
+    shafts: dict[str, ShaftPart],
+    pairs: list[Pair],
+    version: tuple[int, int],
+    materials: Materials,
+) -> tuple[list[Table], list[Table]]:
+    """Gears with hands and shifts that fit their axes, and their meshes."""
+    account = structure.account
     gears: dict[str, GearPart] = {}
+    bevels: dict[str, BevelPart] = {}
     names = Names()
-    for component in document.of_type(GEAR):
-        part = read_gear(component, names.of(component.name, "gear", component.id), shafts, structure, version)
-        if part is not None:
-            gears[component.id] = part
-    meshing: list[tuple[GearPart, GearPart]] = []
-    mesh_tables = []
+    for component in structure.document.of_type(*GEARS):
+        name = names.of(component.name, "gear", component.id)
+        if component.type == BEVEL:
+            bevel = read_bevel_gear(component, name, shafts, structure)
+            bevels |= {component.id: bevel} if bevel is not None else {}
+        else:
+            gear = read_gear(component, name, shafts, structure, version)
+            gears |= {component.id: gear} if gear is not None else {}
+    meshes = []
     names = Names()
     for pair in pairs:
-        first, second = (gears.get(gear.id) for gear in pair.members)
-        fitted = matched(first, second, pair, account) if first is not None and second is not None else None
+        first, second = (member.id for member in pair.members)
+        fitted: tuple[GearPart, GearPart] | tuple[BevelPart, BevelPart] | None = None
+        if first in gears and second in gears:
+            if (cylindrical := matched(gears[first], gears[second], pair, account)) is not None:
+                gears |= {part.component.id: part for part in cylindrical}
+                fitted = cylindrical
+        elif (
+            first in bevels
+            and second in bevels
+            and (conical := matched_bevels(bevels[first], bevels[second], pair, account))
+        ):
+            bevels |= {part.component.id: part for part in conical}
+            fitted = conical
         if fitted is not None:
-            gears |= {part.component.id: part for part in fitted}
-            meshing.append(fitted)
             name = names.of(pair.stage.name, "stage", pair.stage.id)
-            mesh_tables.append(mesh_table(pair, name, *fitted, account))
-    gear_tables = []
-    for part in gears.values():
+            meshes.append(mesh_table(pair.stage, name, {part.name: part.teeth for part in fitted}, account))
+    tables = []
+    parts: list[GearPart | BevelPart] = [*gears.values(), *bevels.values()]
+    for part in parts:
         # A gear has a material of its own, or that of its shaft.
         own = structure.referenced(part.component, "material") is not None
         material = materials.of(part.component, f"gears.{part.name}") if own else ("", "")
-        gear_tables.append(gear_table(part, structure, material))
+        if isinstance(part, BevelPart):
+            tables.append(bevel_table(part, structure, material))
+        else:
+            tables.append(gear_table(part, structure, material))
+    return tables, meshes
+
+
+def _joints(
+    structure: Structure, shafts: dict[str, ShaftPart], planets: Planets, carriers: Carriers
+) -> tuple[list[Table], list[Table]]:
+    """Bearings (also those between two shafts), and couplings with the supports of shafts that some hold to the casing."""
+    bearings: list[Table] = []
+    couplings: list[Table] = []
     names = Names()
-    masses = document.of_type(MASS)
-    mass_list = [table for part in masses for table in mass_tables(part, names, shafts, structure)]
-    # Bearings (also those between two shafts) and couplings, by number.
-    bearings: dict[str, Table] = {}
-    couplings: dict[str, Table] = {}
-    names = Names()
-    for component in document.components.values():
-        for found, is_one, table_of in (
-            (bearings, is_bearing, bearing_table),
-            (couplings, is_coupling, coupling_table),
-        ):
-            table = table_of(component, names, shafts, structure) if is_one(component) else None
-            if table is not None:
-                found[component.id] = table
+    pins = {part.id: pin for number, pin in planets.pins.items() for part in planets.on.get(number, ())}
+    for component in structure.document.components.values():
+        if is_bearing(component):
+            table = bearing_table(component, names, shafts, structure, pins.get(component.id))
+            bearings += [table] if table is not None else []
+        elif is_coupling(component):
+            table = coupling_table(component, names, shafts, structure)
+            couplings += [table] if table is not None else []
     by_name = {part.name: number for number, part in shafts.items()}
-    stiff = [(by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")]) for table in couplings.values()]
-    operation, load_list = load_tables(shafts, meshing, stiff, structure)
-    taken = [part for part in document.components.values() if is_bearing(part) or is_coupling(part)]
-    structure.note_left_out({part.id for part in [*taken, *masses]})
-    counts = {"shafts": len(shafts), "gears": len(gears), "meshes": len(mesh_tables), "bearings": len(bearings)}
-    head = [*filter(None, [operation]), *materials.tables]
-    bodies = [*shaft_tables, *gear_tables, *mass_list]
-    joints = [*mesh_tables, *bearings.values(), *couplings.values()]
-    return [*head, *bodies, *joints, *load_list], counts
+    joined = [table for table in couplings if table.header.startswith("couplings.")]
+    pairs = [(by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")]) for table in joined]
+    return bearings, [*couplings, *carriers.joins(pairs, names)]
 
 
 def _value(table: Table, key: str) -> str:

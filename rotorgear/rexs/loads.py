@@ -12,10 +12,10 @@ import numpy as np
 
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
-from rotorgear.rexs.gears import GearPart
 from rotorgear.rexs.shafts import ShaftPart
 from rotorgear.rexs.structure import Structure
 from rotorgear.rexs.toml_text import Names, Table, quantity, text
+from rotorgear.rexs.train import speed_ratios
 
 MASS = "additional_mass"
 # Moments about v and w that differ by less are those of a body of revolution, written with few digits.
@@ -42,7 +42,7 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
     if u is not None:
         along = shaft.axis.z(u)
     elif frame is not None:
-        along = float(structure.place(frame)[0])
+        along = float(shaft.axis.base.sees(frame.origin)[0])
     else:
         account.missing(part, "its place is needed: u_coordinate_on_shaft or support_vector")
         return []
@@ -65,10 +65,11 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
     eccentricity = account.numbers(part, "eccentricity_vector", "length", 3)
     if eccentricity is not None and math.hypot(*eccentricity[1:]) > 0.0:
         axes = frame.axes if frame is not None else structure.model.axes
-        _, x, y = structure.model.axes @ (np.array(eccentricity) @ axes)
+        _, x, y = shaft.axis.base.axes @ (np.array(eccentricity) @ axes)
         table = shaft.table(f"unbalances.{name}", f"eccentricity of {part}", z)
         table.add("magnitude", quantity(mass * math.hypot(x, y), "unbalance"))
-        table.add("phase", quantity(math.atan2(y, x), "angle"))
+        # A planet's own x points outwards.
+        table.add("phase", quantity(math.atan2(y, x) - (shaft.pins.offset if shaft.pins else 0.0), "angle"))
         tables.append(table)
     return tables
 
@@ -83,25 +84,29 @@ class Torque:
     torque: float | None
 
 
-def ratios(start: str, meshes: list[tuple[GearPart, GearPart]], joined: list[tuple[str, str]]) -> dict[str, float]:
-    """Speed of each shaft over that of one, by number: -z_1/z_2 over a mesh, 1 over a coupling; only what the train reaches."""
-    found = {start: 1.0}
-    steps = [(a.shaft.component.id, b.shaft.component.id, -a.teeth / b.teeth) for a, b in meshes]
-    steps += [(a, b, 1.0) for a, b in joined]
-    steps += [(b, a, 1.0 / ratio) for a, b, ratio in steps]
-    while step := next(((a, b, ratio) for a, b, ratio in steps if a in found and b not in found), None):
-        a, b, ratio = step
-        found[b] = found[a] * ratio
-    return found
+def given_speeds(shafts: dict[str, ShaftPart], account: Account) -> list[tuple[float, ShaftPart, bool]]:
+    """Speeds about +z in rad/s that the file states, and whether it says that they define others; these first.
+
+    A speed of 0 counts only where it defines others: then the shaft is held.
+    """
+    known = []
+    for shaft in shafts.values():
+        own = account.number(shaft.component, ("rotational_speed", "speed"), "speed")
+        defines = account.truth(shaft.component, "defines_speed")
+        if own or (own == 0.0 and defines):
+            known.append((0 if defines else 1 if defines is None else 2, own * shaft.axis.sense, shaft))
+    known.sort(key=lambda item: item[0])
+    return [(speed, shaft, rank == 0) for rank, speed, shaft in known]
 
 
 def load_tables(
-    shafts: dict[str, ShaftPart],
-    meshes: list[tuple[GearPart, GearPart]],
-    joined: list[tuple[str, str]],
-    structure: Structure,
+    shafts: dict[str, ShaftPart], tables: list[Table], structure: Structure
 ) -> tuple[Table | None, list[Table]]:
-    """The operation (None without speed and torque) and the loads."""
+    """The operation (None without speed and torque) and the loads.
+
+    Args:
+        shafts: of the model by number. tables: of the train. structure: of the file.
+    """
     account = structure.account
     names = Names()
     loads = []
@@ -114,27 +119,23 @@ def load_tables(
         u = account.number(load, ("u_coordinate_on_shaft",), "length")
         z = shaft.place(load, shaft.start if u is None else shaft.axis.z(u), account)
         torque = account.number(load, ("torque_around_u_axis", "torque_acting_on_shaft_u", "torque"), "torque")
-        if torque is not None and torque != 0.0:
+        if shaft.pins is not None and torque:
+            account.left_out.append(f"{load}: a torque on a planet")
+        elif torque is not None and torque != 0.0:
             torques.append(Torque(load, shaft, z, shaft.axis.sense * torque))
         elif account.truth(load, "transmits_torque"):
             torques.append(Torque(load, shaft, z, None))
         force = _force_table(load, shaft, z, names, structure.account)
         if force is not None:
             loads.append(force)
-    # Speed about +z in rad/s of the shaft that defines it.
-    known = []
-    for shaft in shafts.values():
-        own = account.number(shaft.component, ("rotational_speed", "speed"), "speed")
-        if own:
-            defines = account.truth(shaft.component, "defines_speed")
-            known.append((0 if defines else 1 if defines is None else 2, own * shaft.axis.sense, shaft))
-    _, speed, reference = min(known, key=lambda item: item[0], default=(0, 0.0, None))
+    turning = ((speed, shaft) for speed, shaft, _ in given_speeds(shafts, account) if speed)
+    speed, reference = next(turning, (0.0, None))
     torques.sort(key=lambda item: item.torque is None)
     if reference is None and not torques:
         account.assume("operation", "none", "the file gives neither speed nor torque: analyses are at standstill")
         return None, loads
     start = reference or torques[0].shaft
-    ratio = ratios(start.component.id, meshes, joined)
+    ratio = speed_ratios(tables, start.name, speed)
     operation, of_torques = _operation(speed, start, torques, ratio, names, account)
     return operation, [*loads, *of_torques]
 
@@ -144,10 +145,10 @@ def _operation(
 ) -> tuple[Table, list[Table]]:
     """Which torque drives follows from its power: torque times the speed of its shaft."""
     sense = speed or (torques[0].torque or 1.0)
-    power = [(item.torque or 0.0) * ratio.get(item.shaft.component.id, 0.0) * sense for item in torques]
+    power = [(item.torque or 0.0) * ratio.get(item.shaft.name, 0.0) * sense for item in torques]
     drives = [item for item, own in zip(torques, power, strict=True) if own > 0.0]
     takes = [item for item, own in zip(torques, power, strict=True) if own < 0.0]
-    open_ends = [item for item in torques if item.torque is None and item.shaft.component.id in ratio]
+    open_ends = [item for item in torques if item.torque is None and item.shaft.name in ratio]
     table = Table("operation")
     if not drives and takes and open_ends:
         # Only what is taken is known: the other end drives.
@@ -155,7 +156,7 @@ def _operation(
         open_ends = open_ends[1:]
     driver = drives[0].shaft if drives else start
     table.add("input_shaft", text(driver.name))
-    own = speed * ratio.get(driver.component.id, 1.0)
+    own = speed * ratio.get(driver.name, 1.0)
     if speed:
         note = "" if driver is start else f"{start.component} defines {speed * 30.0 / math.pi:.6g} rpm"
         table.add("speed", quantity(own, "speed"), note)
@@ -192,7 +193,7 @@ def _operation(
 
 def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, account: Account) -> Table | None:
     """A force, and a moment across the shaft, which the file gives along u, v, w of the shaft."""
-    rotation = np.array(shaft.axis.rotation)
+    rotation = shaft.axis.rotation
     force = rotation @ [account.number(load, (f"force_{axis}_direction",), "force") or 0.0 for axis in "uvw"]
     across = [account.number(load, (f"torque_around_{axis}_axis",), "torque") or 0.0 for axis in "vw"]
     moment = rotation @ [0.0, *across]

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
-from rotorgear.rexs.structure import Axis, Frame, Pair, Structure, axis_in
+from rotorgear.rexs.structure import BEVEL_STAGE, SPACE, Axis, Frame, Pair, Structure, axis_in, is_internal
 from rotorgear.rexs.toml_text import Names, Table, number, quantity, row, text
 
 # Ends of neighbouring sections closer than this are one place: files write differences of rounded coordinates.
@@ -47,13 +50,24 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Pins:
+    """Where planets stand: name of their carrier, radius of the circle in m, angle ahead of its +x in rad, and how many."""
+
+    carrier: str
+    radius: float
+    offset: float
+    count: int
+
+
+@dataclass(frozen=True)
 class ShaftPart:
-    """A shaft of the model: its component, name, axis and sections by rising u."""
+    """A shaft of the model: its component, name, axis and sections by rising u; of a planet where its pins stand."""
 
     component: Component
     name: str
     axis: Axis
     sections: tuple[Section, ...]
+    pins: Pins | None = None
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -68,9 +82,15 @@ class ShaftPart:
 
     def diameter(self, z: float) -> float:
         """The largest outer diameter of the sections at a place."""
+        return max((max(p.outer) for p in self._at(z)), default=max(self.sections[-1].outer))
+
+    def bore(self, z: float) -> float:
+        """The smallest bore of the sections at a place."""
+        return min((min(p.inner) for p in self._at(z)), default=min(self.sections[-1].inner))
+
+    def _at(self, z: float) -> list[Section]:
         u = (z - self.axis.origin) * self.axis.sense
-        there = [max(p.outer) for p in self.sections if p.u - _SAME_PLACE <= u <= p.end + _SAME_PLACE]
-        return max(there, default=max(self.sections[-1].outer))
+        return [p for p in self.sections if p.u - _SAME_PLACE <= u <= p.end + _SAME_PLACE]
 
     def table(self, header: str, remark: str, z: float) -> Table:
         """The table of a part that is on the shaft at z."""
@@ -141,33 +161,39 @@ def read_sections(shaft: Component, structure: Structure) -> tuple[Section, ...]
     return tuple(sections)
 
 
-def shaft_axes(structure: Structure, pairs: list[Pair]) -> dict[str, Axis]:
-    """Axes of all shafts by number, in the frame of the model; the frame takes the direction of the shafts where theirs differs.
+def shaft_axes(structure: Structure, pairs: list[Pair], unplaced: Collection[str] = ()) -> dict[str, Axis]:
+    """Axes of all shafts by number.
 
-    Shafts that the file does not place follow from the centre distance and the angle of the stages: the second gear is
-    at v = a sin(phi), w = a cos(phi) from the first, phi = rotating_angle_around_neg_u_axis counted from w.
+    The frame of the model takes the directions of the first shaft where none is parallel to it. Shafts that the file does not
+    place follow from the centre distance and the angle of cylindrical stages: the second gear is at v = a sin(phi),
+    w = a cos(phi) from the first, phi = rotating_angle_around_neg_u_axis counted from w.
+
+    Args:
+        structure: of the file. pairs: its stages.
+        unplaced: numbers of shafts that need no place.
     """
     account = structure.account
     shafts = structure.document.of_type("shaft")
     placed = {shaft.id: frame for shaft in shafts if (frame := structure.frame(shaft)) is not None}
-    first = next(iter(placed.values()), None)
-    if first is not None and axis_in(first, structure.model) is None:
-        structure.model = Frame(structure.model.origin, first.axes)
+    frames = list(placed.values())
+    if frames and not any(axis_in(frame, structure.model, SPACE) for frame in frames):
+        structure.model = Frame(structure.model.origin, frames[0].axes)
+    model = structure.model
+    bases = [model]
     axes: dict[str, Axis] = {}
-    for shaft in shafts:
-        if shaft.id in placed:
-            axis = axis_in(placed[shaft.id], structure.model)
-            if axis is None:
-                account.missing(shaft, "its axis must be parallel to that of the first shaft, and is not")
-            axes[shaft.id] = axis or Axis(0.0, 0.0, 0.0, 1)
+    for shaft_id, frame in placed.items():
+        if all(axis_in(frame, base, model) is None for base in bases):
+            bases.append(Frame(model.origin, frame.axes))
+        axes[shaft_id] = next(filter(None, (axis_in(frame, base, model) for base in bases)))
     if shafts and not axes:
-        axes[shafts[0].id] = Axis(0.0, 0.0, 0.0, 1)
+        axes[shafts[0].id] = Axis(0.0, 0.0, 0.0, 1, np.eye(3), model)
         reason = f"{shafts[0]} has no support_vector: the origin of the model"
         account.assume(f"shafts.{shafts[0].name or shafts[0].id}.position", "x = y = z = 0", reason)
-    _by_stages(axes, structure, pairs)
+    _by_stages(axes, structure, [pair for pair in pairs if pair.stage.type != BEVEL_STAGE])
     for shaft in shafts:
-        if shaft.id not in axes:
-            account.missing(shaft, "support_vector is needed, or a stage with a placed shaft and a centre_distance")
+        if shaft.id not in axes and shaft.id not in unplaced:
+            wanted = "support_vector is needed, or a cylindrical stage with a placed shaft and a centre_distance"
+            account.missing(shaft, wanted)
     return axes
 
 
@@ -188,33 +214,48 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair]) -
             k = known.index(True)
             new = structure.document.components[owners[1 - k]]
             a = account.number(pair.stage, CENTRE_DISTANCE, "length")
+            # That of an internal pair is negative where its ring is.
+            if a and any(map(is_internal, pair.members)):
+                a = abs(a)
             if not a or a < 0.0:
                 continue
-            phi = account.number(pair.stage, ("rotating_angle_around_neg_u_axis",), "angle")
-            where = f"{new} has no support_vector: by centre distance and angle of {pair.stage}"
-            if phi is None:
-                phi = math.pi / 2.0
-                where = f"{new} has no support_vector, {pair.stage} no angle: beside the other shaft, faces aligned"
-            turn = 1.0 if k == 0 else -1.0
-            base = axes[owners[k]]
-            places = [account.number(gear, ("u_coordinate_on_shaft",), "length") or 0.0 for gear in pair.members]
-            shift = places[k] - places[1 - k]
-            x = round(base.x + turn * a * math.sin(phi), _PICOMETRE)
-            y = round(base.y + turn * a * math.cos(phi), _PICOMETRE)
-            axes[new.id] = Axis(x, y, base.origin + base.sense * shift, base.sense, base.rotation)
-            shown = f"x = {1e3 * x:.6g} mm, y = {1e3 * y:.6g} mm"
-            account.assume(f"shafts.{new.name or new.id}.position", shown, where)
+            axes[new.id] = _beside(axes[owners[k]], a, pair, k, new, account)
         if len(rest) == len(waiting):
             return
         waiting = rest
 
 
-def shaft_table(part: ShaftPart, material: str, comment: str) -> Table:
-    """The table of a shaft."""
-    table = Table(f"shafts.{part.name}", str(part.component))
+def _beside(base: Axis, a: float, pair: Pair, k: int, new: Component, account: Account) -> Axis:
+    """The axis of a shaft at a distance a in m from that of gear number k of a stage."""
+    phi = account.number(pair.stage, ("rotating_angle_around_neg_u_axis",), "angle")
+    where = f"{new} has no support_vector: by centre distance and angle of {pair.stage}"
+    if phi is None:
+        phi = math.pi / 2.0
+        where = f"{new} has no support_vector, {pair.stage} no angle: beside the other shaft, faces aligned"
+    turn = 1.0 if k == 0 else -1.0
+    places = [account.number(gear, ("u_coordinate_on_shaft",), "length") or 0.0 for gear in pair.members]
+    shift = places[k] - places[1 - k]
+    x = round(base.x + turn * a * math.sin(phi), _PICOMETRE)
+    y = round(base.y + turn * a * math.cos(phi), _PICOMETRE)
+    account.assume(f"shafts.{new.name or new.id}.position", f"x = {1e3 * x:.6g} mm, y = {1e3 * y:.6g} mm", where)
+    return replace(base, x=x, y=y, origin=base.origin + base.sense * shift)
+
+
+def shaft_table(part: ShaftPart, material: str, comment: str, model: Frame, given: tuple[str, ...] = ()) -> Table:
+    """The table of a shaft.
+
+    Args:
+        part: the shaft. material: its name, and the comment beside it.
+        model: frame of the model.
+        given: key, value and comment of its speed, where the train needs one.
+    """
+    several = f"; {part.pins.count} of them, written once" if part.pins else ""
+    table = Table(f"shafts.{part.name}", f"{part.component}{several}")
     forward = part.axis.sense > 0
-    table.add("position", f"[{quantity(part.axis.x, 'length')}, {quantity(part.axis.y, 'length')}]")
+    _add_place(table, part, model)
     table.add("start", quantity(part.start, "length"), "" if forward else "u of the file runs against z here")
+    if given:
+        table.add(*given)
     if material:
         table.add("material", text(material), comment)
     lines = ["["]
@@ -231,6 +272,28 @@ def shaft_table(part: ShaftPart, material: str, comment: str) -> Table:
         lines.append(f"    {row(**values)}," + (f"  # {section.remark}" if section.remark else ""))
     table.add("sections", "\n".join([*lines, "]"]))
     return table
+
+
+def _add_place(table: Table, part: ShaftPart, model: Frame) -> None:
+    """Where the shaft stands: on a carrier's pins, along z of the model, or along an axis of its own."""
+    axis = part.axis
+    if part.pins is not None:
+        table.add("carrier", text(part.pins.carrier))
+        table.add("radius", quantity(part.pins.radius, "length"))
+        if part.pins.offset:
+            table.add("offset", quantity(part.pins.offset, "angle"), "from +x of the carrier's shaft")
+        return
+    if axis.base is model:
+        table.add("position", f"[{quantity(axis.x, 'length')}, {quantity(axis.y, 'length')}]")
+        return
+    # Components along z, x and y of the model.
+    across = np.array([0.0, axis.x, axis.y]) @ axis.base.axes @ model.axes.T
+    turned = axis.base.axes @ model.axes.T
+    z, x, y = (round(value, _PICOMETRE) for value in across.tolist())
+    table.add("position", "[" + ", ".join(quantity(value, "length") for value in (x, y, z)) + "]", "of its z = 0")
+    for key, direction in (("axis", turned[0]), ("x_axis", turned[1])):
+        z, x, y = (round(value, _PICOMETRE) for value in direction.tolist())
+        table.add(key, "[" + ", ".join(number(value) for value in (x, y, z)) + "]")
 
 
 class Materials:

@@ -1,14 +1,15 @@
 """Where the components of a REXS file are, and which belong to which; and what this import refuses by its name.
 
 Support vectors and axes are given in the frame of the component that they refer to. u runs along a shaft, w is a second axis,
-v = w x u. Model files have z along u, x along v and y along w of the gear unit.
+v = w x u. Model files have z along u, x along v and y along w of the gear unit; shafts that are not parallel to it have axes of
+their own, z along u, x along v and y along w of the first of each direction.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,59 +21,74 @@ from rotorgear.rexs.document import Component, Document, Relation
 _PARALLEL = 1e-4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frame:
     """Origin (3,) in m and axes u, v, w as rows (3, 3) of a component, in the space of the file."""
 
     origin: np.ndarray
     axes: np.ndarray
 
+    def sees(self, place: np.ndarray) -> np.ndarray:
+        """Coordinates (3,) along its u, v and w, in m, of a place (3,) in the space of the file."""
+        return np.asarray(self.axes @ (place - self.origin))
+
 
 SPACE = Frame(np.zeros(3), np.eye(3))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Axis:
-    """The axis of a shaft in the frame of the model: x and y in m, z of its origin, and -1 where u runs against z.
+    """The axis of a shaft.
 
-    `rotation` (3, 3) takes components along u, v, w of the shaft to those along z, x, y of the model.
+    Its z, x and y are those along u, v and w of `base`, which all parallel shafts share: the model's frame, or one of the same
+    origin and another direction.
+
+    Attributes:
+        x, y: in m.
+        origin: z of its u = 0 in m. sense: -1 where u runs against z.
+        rotation: (3, 3), takes components along u, v, w of the shaft to those along z, x, y of the model.
+        base: of its direction.
     """
 
     x: float
     y: float
     origin: float
     sense: int
-    rotation: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    rotation: np.ndarray
+    base: Frame
 
     def z(self, u: float) -> float:
         """z of a coordinate u on the shaft, both in m."""
         return self.origin + self.sense * u
 
+    def distance(self, other: Axis) -> float:
+        """Distance in m of a parallel axis."""
+        return float(np.hypot(self.x - other.x, self.y - other.y))
 
-def axis_in(frame: Frame, model: Frame) -> Axis | None:
-    """The axis of a shaft in the model's frame; None where it is not parallel to the model's u."""
-    u = model.axes @ frame.axes[0]
+
+def axis_in(frame: Frame, base: Frame, model: Frame) -> Axis | None:
+    """The axis of a shaft with its frame; None where it is not parallel to u of a base."""
+    u = base.axes @ frame.axes[0]
     if abs(abs(u[0]) - 1.0) > _PARALLEL**2 or np.hypot(u[1], u[2]) > _PARALLEL:
         return None
-    along, x, y = model.axes @ (frame.origin - model.origin)
-    rotation = tuple(tuple(float(entry) for entry in row) for row in model.axes @ frame.axes.T)
-    return Axis(float(x), float(y), float(along), 1 if u[0] > 0.0 else -1, rotation)
+    along, x, y = base.sees(frame.origin)
+    return Axis(float(x), float(y), float(along), 1 if u[0] > 0.0 else -1, model.axes @ frame.axes.T, base)
 
 
 # Frames that stand in one another.
 _DEEPEST = 100
 GEAR = "cylindrical_gear"
+RING = "ring_gear"
+BEVEL = "bevel_gear"
+GEARS = (GEAR, RING, BEVEL)
 STAGE = "cylindrical_stage"
-# What a gearbox of external cylindrical gears on parallel shafts can't have.
+BEVEL_STAGE = "bevel_stage"
+PLANETARY = "planetary_stage"
+# What has no counterpart in a model file.
 _REFUSED = {
-    "planetary_stage": "a planetary stage",
-    "planet_carrier": "a planet carrier",
-    "ring_gear": "an internal (ring) gear",
     "worm_stage": "a worm stage",
     "worm_gear": "a worm",
     "worm_wheel": "a worm wheel",
-    "bevel_stage": "a bevel stage",
-    "bevel_gear": "a bevel gear",
     "hypoid_stage": "a hypoid stage",
     "general_stage": "a stage of no stated kind",
     "general_gear": "a gear of no stated kind",
@@ -90,8 +106,11 @@ _SILENT = {
     "rolling_element_contact",
     "external_load",
     "shaft",
-    GEAR,
+    *GEARS,
     STAGE,
+    BEVEL_STAGE,
+    PLANETARY,
+    "planet_carrier",
     "root",
     "load_spectrum",
     "general_stage_data",
@@ -129,8 +148,14 @@ class Pair:
     members: tuple[Component, Component]
 
 
+def is_internal(gear: Component) -> bool:
+    """Whether a gear is a toothed ring: by its type, or by a negative number of teeth."""
+    teeth = gear.attributes.get("number_of_teeth")
+    return gear.type == RING or (gear.type == GEAR and teeth is not None and str(teeth.raw).strip().startswith("-"))
+
+
 def refuse_other_kinds(document: Document, source: str) -> None:
-    """Refuse planetary, worm and bevel gearing, by its stage where the file has one, else by a gear of it.
+    """Refuse worms, hypoid stages, racks and the like, by their stage where the file has one, else by a gear of it.
 
     Raises:
         AnalysisError: the file has some; it is named.
@@ -138,15 +163,13 @@ def refuse_other_kinds(document: Document, source: str) -> None:
     for component in sorted(document.components.values(), key=lambda part: not part.type.endswith("_stage")):
         word = _REFUSED.get(component.type)
         spline = component.type.startswith("involute_spline")
+        known = (*GEARS, STAGE, BEVEL_STAGE, PLANETARY)
         if word is None and not spline and component.type.endswith(("_stage", "_gear", "_wheel", "_rack")):
-            word = None if component.type in (GEAR, STAGE) else f"a {component.type.replace('_', ' ')}"
-        teeth = component.attributes.get("number_of_teeth")
-        if word is None and component.type == GEAR and teeth is not None and str(teeth.raw).startswith("-"):
-            word = "an internal gear (negative number of teeth)"
+            word = None if component.type in known else f"a {component.type.replace('_', ' ')}"
         if word:
             raise AnalysisError(
-                f"{source}: the file has {word}, {component}; external cylindrical gears on parallel shafts can be "
-                "imported, no others"
+                f"{source}: the file has {word}, {component}; cylindrical gears, external and internal, bevel gears and "
+                "planetary stages can be imported, no others"
             )
 
 
@@ -168,8 +191,13 @@ class Structure:
         for relation in document.relations:
             for number in dict.fromkeys(number for _, number in relation.refs):
                 self._of.setdefault(number, []).append(relation)
-        frames = map(self.frame, document.of_type("gear_unit"))
+        frames = map(self.frame, self.units)
         self.model = next(filter(None, frames), SPACE)
+
+    @property
+    def units(self) -> list[Component]:
+        """The gear units of the file; a sound one has one."""
+        return self.document.of_type("gear_unit")
 
     def frame(self, component: Component, below: tuple[str, ...] = ()) -> Frame | None:
         """Frame of a component; None where the file gives it no support vector."""
@@ -201,9 +229,15 @@ class Structure:
         self._frames[component.id] = found
         return found
 
-    def place(self, frame: Frame) -> np.ndarray:
-        """z, x and y (3,) of the origin of a frame in the model, in m."""
-        return np.asarray(self.model.axes @ (frame.origin - self.model.origin))
+    def without(self, dropped: set[str]) -> Structure:
+        """This structure without some components, whose frames still hold what refers to them."""
+        if not dropped:
+            return self
+        kept = {number: part for number, part in self.document.components.items() if number not in dropped}
+        rest = Structure(replace(self.document, components=kept), self.account)
+        rest._frames = {number: self.frame(part) for number, part in kept.items()}
+        rest.model = self.model
+        return rest
 
     def shaft_of(self, component: Component, *roles: str) -> str:
         """Number of the shaft that a component is on (in some of the roles of that shaft, where they are given), or ""."""
@@ -224,6 +258,19 @@ class Structure:
         relations = [one for one in self._of.get(owner.id, ()) if one.type in types and owner.id in one.at(role)]
         return self._known(dict.fromkeys(number for relation in relations for number in relation.at(*others)))
 
+    def beside(self, part: Component) -> list[Component]:
+        """The components that a bearing or a coupling sits between."""
+        numbers: list[str] = []
+        for relation in self._of.get(part.id, ()):
+            if relation.type in _ON_SHAFT:
+                numbers += relation.at("inner_part", "outer_part", "side_1", "side_2")
+        return self._known(number for number in dict.fromkeys(numbers) if number != part.id)
+
+    def shafts_of(self, stage: Component, relation: str) -> list[str]:
+        """Numbers of the shafts that a planetary stage names by a relation, such as planet_shaft."""
+        found = self._linked(stage, (relation,), PLANETARY, "shaft")
+        return [part.id for part in found if part.type == "shaft"]
+
     def parts_of(self, owner: Component, *types: str) -> list[Component]:
         """The components of some types that a component is put together from, in the order of the file."""
         return [part for part in self._linked(owner, _ASSEMBLIES, "assembly", "part") if part.type in types]
@@ -240,7 +287,7 @@ class Structure:
             if relation.type in _DATA:
                 others = [number for role, number in relation.refs if role not in ("stage", "assembly", "origin")]
                 known = self._known(others)
-                near |= {part.id: part for part in known if part.type not in ("material", "shaft", STAGE)}
+                near |= {part.id: part for part in known if part.type not in ("material", "shaft", STAGE, BEVEL_STAGE)}
         for component in list(near.values())[1:]:
             for kind in _TOOLS:
                 tool = self.referenced(component, kind)
@@ -249,15 +296,16 @@ class Structure:
         return list(near.values())
 
     def pairs(self) -> list[Pair]:
-        """The stages with their two gears; a stage with fewer or more is a problem."""
+        """The stages with their two gears, those with a ring last; a stage with fewer or more is a problem."""
         found = []
-        for stage in self.document.of_type(STAGE):
+        for stage in self.document.of_type(STAGE, BEVEL_STAGE):
+            kind, kinds = ("bevel", (BEVEL,)) if stage.type == BEVEL_STAGE else ("cylindrical", (GEAR, RING))
             known = self._linked(stage, ("stage", "stage_gear_data"), "stage", "gear_1", "gear_2", "gear")
-            if len(known) == 2 and all(gear.type == GEAR for gear in known):
+            if len(known) == 2 and all(gear.type in kinds for gear in known):
                 found.append(Pair(stage, (known[0], known[1])))
             else:
-                self.account.missing(stage, f"a relation with two cylindrical gears is needed; it has {len(known)}")
-        return found
+                self.account.missing(stage, f"a relation with two {kind} gears is needed; it has {len(known)}")
+        return sorted(found, key=lambda pair: any(map(is_internal, pair.members)))
 
     def note_left_out(self, taken: set[str]) -> None:
         """Note the parts of the file that are not in the model."""
