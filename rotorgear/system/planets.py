@@ -42,6 +42,8 @@ from rotorgear.system.nodes import Nodes
 _TURN = np.zeros((6, 6))
 _TURN[[1, 4], [0, 3]] = 1.0
 _TURN[[0, 3], [1, 4]] = -1.0
+# Strains of K_g: the rotation of the carrier's node.
+_ROTATION = np.eye(6)[None, 3:]
 # Sisters whose matrices differ by more than this are not equal: rounding of their directions leaves less.
 _ALIKE = 1e-9
 # Share of the stiffest below which a planet is not held at all.
@@ -57,14 +59,15 @@ def require_constant(layout: Layout) -> None:
     """Refuse planets whose matrices change as they go round.
 
     Raises:
-        AnalysisError: two planets, unequal spacing, or one that differs from its sisters, on a carrier that turns; Rayleigh damping.
+        AnalysisError: two planets, unequal spacing, or one that differs from its sisters, on a carrier that turns; or damping
+            of the model against axes that stand still.
     """
     damping = layout.model.damping
     for planets in turning_carriers(layout):
         if damping.rayleigh_alpha or damping.rayleigh_beta:
             raise AnalysisError(
-                "damping.rayleigh_alpha and rayleigh_beta damp against axes that stand still, which planets on a carrier that turns "
-                "leave: give damping_ratio at the meshes, damping at the bearings or damping.modal_ratio"
+                "damping.rayleigh_alpha and rayleigh_beta damp against axes that stand still, which planets on a carrier that "
+                "turns leave: give damping_ratio at the meshes, damping at the bearings or damping.modal_ratio"
             )
         if not planets.part.is_regular:
             count = len(planets.planets)
@@ -258,13 +261,25 @@ class PinLoad:
         return W**2 * (r * self.mass + float(self.pull @ give))
 
     def group(self, ratio: float, speed: float) -> ElementGroup:
-        """K_g on the carrier, the sum over all sisters, at a speed of the reference shaft; `ratio` is that of the carrier."""
-        count = len(self.planets.planets)
-        rotation = np.zeros((1, 3, 6))
-        rotation[0, :, 3:] = np.eye(3)
-        K = self.force(ratio * speed) * self.planets.radius * count * np.diag([0.5, 0.5, 1.0])
-        matrices = ElementMatrices(strain=rotation, modulus=K[None])
-        return ElementGroup(f"carriers.{self.planets.carrier}", self.planets.shaft, matrices, node_dofs(self.node))
+        """What K_g on the carrier has beyond `group_per_square` at a speed of the reference shaft; `ratio` is the carrier's."""
+        W = ratio * speed
+        beyond = self.force(W) - W**2 * self.planets.radius * self.mass
+        return self._on_carrier(ElementMatrices(strain=_ROTATION, modulus=beyond * self._lever), 0.0)
+
+    def group_per_square(self, ratio: float) -> ElementGroup:
+        """K_g of the load W^2 m r on the carrier, the sum over all sisters."""
+        square = self.mass * self.planets.radius * self._lever
+        still = np.zeros_like(square)
+        return self._on_carrier(ElementMatrices(strain=_ROTATION, modulus=still, modulus_per_square=square), ratio)
+
+    @property
+    def _lever(self) -> np.ndarray:
+        """Sum of r (1 - e e') over the sisters, (1, 3, 3)."""
+        return len(self.planets.planets) * self.planets.radius * np.diag([0.5, 0.5, 1.0])[None]
+
+    def _on_carrier(self, matrices: ElementMatrices, spin: float) -> ElementGroup:
+        part = f"carriers.{self.planets.carrier}"
+        return ElementGroup(part, self.planets.shaft, matrices, node_dofs(self.node), spin)
 
 
 def pin_loads(layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[ElementGroup]) -> list[PinLoad]:

@@ -168,7 +168,10 @@ class System:
     @cached_property
     def groups(self) -> list[ElementGroup]:
         """Element groups without the bearings that have tables."""
-        return [*self._constant, *self._going_round[0]]
+        going_round = self._going_round[0]
+        pins = self._pins if going_round else ()
+        loads = [load.group_per_square(self.train.ratio(load.planets.shaft)) for load in pins]
+        return [*self._constant, *going_round, *loads]
 
     @cached_property
     def _constant(self) -> list[ElementGroup]:
@@ -203,7 +206,7 @@ class System:
 
     @cached_property
     def _pins(self) -> list[PinLoad]:
-        return pin_loads(self.layout, self.nodes, self.dofs, self.groups)
+        return pin_loads(self.layout, self.nodes, self.dofs, self._constant)
 
     def _pin_groups(self, speed: float, tables: list[ElementGroup]) -> list[ElementGroup]:
         """The loads of planets' pins at a reference speed in rad/s."""
