@@ -57,7 +57,7 @@ class Numbers:
         """SI unit of each coordinate; "" of a factor or ratio."""
         found = []
         for place, factor in zip(self._places, self.factor, strict=True):
-            owner: Any = self.model
+            owner: Any = self.model.written
             for key in place[:-1]:
                 owner = getattr(owner, str(key)) if isinstance(owner, Part) else owner[key]
             is_field = isinstance(owner, Part) and not factor
@@ -240,9 +240,10 @@ def _station(model: Model, tables: Mapping[str, Any], place: Place) -> Any:
     value = value_at(tables, place)
     owner = value_at(tables, place[:-1])
     shaft = owner.get("shaft") if isinstance(owner, dict) else None
-    if not isinstance(value, str) or value not in ("start", "end") or shaft not in model.shafts:
+    shafts = model.written.shafts
+    if not isinstance(value, str) or value not in ("start", "end") or shaft not in shafts:
         return value
-    return model.shafts[shaft].station(value)
+    return shafts[shaft].station(value)
 
 
 def _parsed(given: float | str, dimension: str) -> float | None:

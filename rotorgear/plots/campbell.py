@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.model.parts.carrier import written_name
 from rotorgear.plots.figure import axes_for, beside, label, legend_below, name_axes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult, ExcitationOrder
@@ -185,9 +186,10 @@ def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float]) -> None
 
 def _short(line: ExcitationOrder) -> str:
     """A line's name for the edge of the picture: up to two parts by name, of more the first and how many others."""
-    parts = ", ".join(line.parts) if len(line.parts) <= 2 else f"{line.parts[0]} and {len(line.parts) - 1} others"
+    names = list(dict.fromkeys(map(written_name, line.parts)))
+    parts = ", ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} others"
     last = line.name.rpartition(", ")[2]
-    return f"{parts} {last.partition(' ')[2] if len(line.parts) > 1 else line.name.split(' ', 2)[2]}"
+    return f"{parts} {last.partition(' ')[2] if len(names) > 1 else line.name.split(' ', 2)[2]}"
 
 
 def _crossings(axis: Any, result: CampbellResult) -> None:

@@ -9,6 +9,9 @@ import numpy as np
 from rotorgear.plots.figure import COLOURS, figure_for, label, name_axes, plain_axis, values
 from rotorgear.results.static import MeshFace, StaticResult
 
+# Meshes beyond which their names stand upright.
+_UPRIGHT = 5
+
 
 def static(result: StaticResult, fig: Any = None) -> np.ndarray:
     """Draw how branches and helices share the load, the forces of bearings, loads along faces, and the deflection of every shaft.
@@ -42,7 +45,8 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
             forces.bar_label(bars, fmt="%.1f", fontsize=8, padding=1)
         shares = {row.mesh: row.share for row in result.shares}
         names = [f"{mesh}\n{100.0 * shares[mesh]:.1f} %" if mesh in shares else mesh for mesh in meshes]
-        forces.set_xticks(range(len(meshes)), names, fontsize=9)
+        many = len(meshes) > _UPRIGHT
+        forces.set_xticks(range(len(meshes)), names, fontsize=9, rotation=90 if many else 0)
         title = "Meshes, with the share of each branch" if shares else "Meshes"
         name_axes(forces, "", label(result, "mesh_force", "kN"), title=title, legend=int(helices == 2))
         forces.margins(y=0.15)

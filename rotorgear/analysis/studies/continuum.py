@@ -231,7 +231,7 @@ def _two_ends(data: ShaftElements, square: complex, tilting: complex, loss: comp
             return A
         kappa = data.kappa(ratio[:, None])[:, 0]
         A[:, 0, 1] = 1.0
-        A[:, 0, 2] = 1.0 / (loss * kappa * G * area)
+        A[:, 0, 2] = 1.0 / kappa / (loss * G * area)  # 0 without shear deformation, whose kappa is infinite
         A[:, 1, 3] = 1.0 / (loss * E * inertia)
         A[:, 2, 0] = rho * mass * square
         A[:, 3, 1] = rho * rotary * tilting
