@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import multiprocessing as mp
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -172,6 +173,40 @@ def test_several_processes_share_the_store(tmp_path: Path) -> None:
         assert worker.exitcode == 0
     assert found == {float(small().flexibility.sum())}
     assert not [path for path in tmp_path.iterdir() if path.suffix != ".npz"]
+
+
+def _computed_at_once(folder: str, barrier: Any, answers: Any) -> None:
+    """Compute the teeth of a gear as soon as another process, too, has found nothing in the folder."""
+    os.environ["ROTORGEAR_CACHE"] = folder
+    forget()
+    key = key_of(gear=1)
+
+    def compute() -> GearCompliance:
+        barrier.wait(30)
+        return gear_compliance(key, fresh=True)
+
+    answers.put(cached(key, compute).flexibility.tobytes())
+
+
+def test_two_processes_on_a_cold_cache_end_with_one_entry_and_the_same_teeth(folder: Path) -> None:
+    context = mp.get_context("spawn")
+    barrier = context.Barrier(2)
+    answers = context.Queue()
+    workers = [context.Process(target=_computed_at_once, args=(str(folder), barrier, answers)) for _ in range(2)]
+    for worker in workers:
+        worker.start()
+    first, second = (answers.get(timeout=60) for _ in workers)
+    for worker in workers:
+        worker.join(30)
+        assert worker.exitcode == 0
+    assert first == second
+    (entry,) = folder.iterdir()
+    assert re.fullmatch(r"gear_[0-9a-f]{32}\.npz", entry.name)
+    forget()
+    calls: list[int] = []
+    kept = cached(key_of(gear=1), lambda: calls.append(1) or small())
+    assert calls == []
+    assert kept.flexibility.tobytes() == first
 
 
 def test_a_gear_is_kept_under_the_name_of_all_that_it_depends_on() -> None:
