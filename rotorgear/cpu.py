@@ -88,5 +88,10 @@ class Clock:
         """Seconds by step, and their sum as "total"."""
         return {**self.laps, "total": sum(self.laps.values())}
 
+    @property
+    def worked(self) -> float:
+        """Seconds of all steps so far, without compilation."""
+        return sum(self.laps.values()) - self.laps.get("compilation", 0.0)
+
     def _add(self, name: str, seconds: float) -> None:
         self.laps[name] = self.laps.get(name, 0.0) + max(seconds, 0.0)

@@ -34,3 +34,24 @@ def listening(progress: Progress) -> Iterator[None]:
 def listener() -> Progress:
     """Whoever listens now, or nobody."""
     return _LISTENER.get() or silent
+
+
+# Told of what, how many CPU seconds it will take, and for what of it.
+Foretold = Callable[[str, float, str], None]
+_FORETOLD: ContextVar[Foretold | None] = ContextVar("foretold", default=None)
+
+
+@contextmanager
+def hearing_forecasts(heard: Foretold) -> Iterator[None]:
+    """Let analyses tell what they will take while this lasts, once they have measured a first small part of their work."""
+    token = _FORETOLD.set(heard)
+    try:
+        yield
+    finally:
+        _FORETOLD.reset(token)
+
+
+def foretell(what: str, seconds: float, more: str = "in all") -> None:
+    """Tell whoever hears forecasts how many CPU seconds an analysis will take, without compilation; `more`: for what of it."""
+    if heard := _FORETOLD.get():
+        heard(what, seconds, more)

@@ -238,6 +238,11 @@ def in_words(value: float, dimension: str) -> str:
     return f"{value:.4g} {DIMENSIONS[dimension].unit.replace('*', ' ')}".rstrip()
 
 
+def in_two_digits(value: float) -> str:
+    """A number from 10 on in two digits, without a power of ten: 1234 is 1200."""
+    return f"{float(f'{value:.2g}'):.0f}"
+
+
 def counted(number: int, what: str) -> str:
     """So many of what is named in the plural, or by its table: "1 mesh", "4 point masses", "1 frequency"."""
     words = what.replace("_", " ")

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING
 
 import typer
 
 from rotorgear.files.shown import shown
-from rotorgear.progress import Progress, listening, silent
+from rotorgear.progress import Foretold, Progress, hearing_forecasts, listening, silent
+from rotorgear.quantity import in_two_digits
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+
+# CPU seconds from which on a forecast is worth a line.
+_LONG = 10.0
 
 
 def say(text: str, *, err: bool = False) -> None:
@@ -33,7 +39,8 @@ def console() -> Console:
 def progress_bar(text: str, *, lines: bool = False) -> Iterator[Progress]:
     """Show a bar on stderr while work goes on; where stderr is no terminal, a line for each new step if `lines`, or nothing."""
     if not sys.stderr.isatty():
-        yield _in_lines(text) if lines else silent
+        with hearing_forecasts(_of(text, partial(say, err=True))):
+            yield _in_lines(text) if lines else silent
         return
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
@@ -46,8 +53,20 @@ def progress_bar(text: str, *, lines: bool = False) -> Iterator[Progress]:
         def report(fraction: float, step: str) -> None:
             bar.update(task, completed=fraction, description=f"{text}: {step}")
 
-        with listening(report):
+        with listening(report), hearing_forecasts(_of(text, partial(bar.console.print, markup=False))):
             yield report
+
+
+def _of(text: str, write: Callable[[str], None]) -> Foretold:
+    """Writes the first forecast of each analysis as a line, where it is long."""
+    told: set[str] = set()
+
+    def heard(what: str, seconds: float, more: str) -> None:
+        if what not in told and seconds >= _LONG:
+            told.add(what)
+            write(f"{text}: {'' if what == text else f'{what}, '}about {in_two_digits(seconds)} CPU s {more}")
+
+    return heard
 
 
 def _in_lines(text: str) -> Progress:

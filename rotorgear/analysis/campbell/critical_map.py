@@ -15,11 +15,12 @@ from rotorgear.analysis.campbell.crossings import whirl_for
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
 from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import whirl_numbers
 from rotorgear.analysis.modal.modal import ModalRequest
 from rotorgear.analysis.static.state_at import state_at
-from rotorgear.cpu import Clock
+from rotorgear.cpu import Clock, cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.spring import constant_spring
 from rotorgear.model.layout.state import State
@@ -91,9 +92,11 @@ def critical_map(
     stiffest = with_radial_stiffness(model, about, float(values[-1]), top)
     mesh = system_for_speeds(model, [top], asked, stiffest, progress)
     clock.lap("mesh")
+    forecast = Forecast("critical map", clock.worked, len(values))
     rows: list[tuple[np.ndarray, np.ndarray]] = []
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
+        begun = cpu_seconds()
         system = mesh.with_state(with_radial_stiffness(model, about, float(value), top))
         found, _ = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
         found.sort(key=lambda root: root.speed)
@@ -101,6 +104,7 @@ def critical_map(
         bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
         words = [whirl_for(line, seen, n) if bending[n] >= _BENDS else "" for n in range(len(found))]
         rows.append((speeds, whirl_numbers(tuple(words))))
+        forecast.add(cpu_seconds() - begun)
     clock.lap("critical speeds")
     # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
     width = max(len(speeds) for speeds, _ in rows)

@@ -33,12 +33,14 @@ def in_order(
     *,
     watch: Callable[[], None] | None = None,
     stop: Callable[[], None] = lambda: None,
+    spent: Callable[[float], None] = lambda seconds: None,
 ) -> Iterator[Any]:
     """Yield function(*task) of every task, in order; what waits is given up where nobody asks on.
 
     Args:
         function: what is called. tasks: its arguments. workers: threads here. executor: in place of them.
         watch: called every second while threads here are at work. stop: tells them at the end that nobody asks on.
+        spent: told the CPU seconds of each task.
     """
     own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
     pool: Any = executor or own
@@ -53,7 +55,9 @@ def in_order(
                 return
             while own and watch and wait([waiting[0]], timeout=_EVERY).not_done:
                 watch()
-            yield taken(waiting[0].result())
+            answer = waiting[0].result()
+            spent(answer[-1])
+            yield taken(answer)
             waiting.popleft()
     finally:
         stop()

@@ -17,6 +17,7 @@ import numpy as np
 from rotorgear.analysis.common.stream import Piece, unkept
 from rotorgear.analysis.orbits.family import Outputs, SystemFamily
 from rotorgear.analysis.orbits.kept import AnyOrbits, packed, remembering, unpacked
+from rotorgear.cpu import compiling_seconds, cpu_seconds
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.results.orbits import SpecialCurve
@@ -48,6 +49,13 @@ class Branch:
     ended: str
 
 
+Measured = Callable[[list[Certified], float], None]
+
+
+def _nobody(nodes: list[Certified], seconds: float) -> None:
+    """Measure nothing."""
+
+
 def certified(orbits: AnyOrbits, node: Node) -> Certified:
     """A solution with its multipliers."""
     return Certified(node, orbits.multipliers(node.y, node.p))
@@ -65,20 +73,28 @@ def followed(
     piece: Piece,
     *,
     both: bool = False,
+    measured: Measured = _nobody,
 ) -> Branch:
     """Follow a branch from a solution, its tangent the way to go; `piece` does the work of a stretch, or takes it over."""
     nodes = [start]
+    worked = 0
 
     def heard(p: float, new: int) -> None:
+        nonlocal worked
+        worked += 1
         progress(min(begin + 0.8 * abs(p), 0.95), f"{name}: {len(nodes) + new} points")
 
     def walked(start: Node) -> str:
         """Add the nodes behind a start; returns why there are no more."""
         at = Position(start, min(step, plan.longest))
         while not at.ended:
+            before = worked
+            used = cpu_seconds() - compiling_seconds()
             done = piece(partial(_stretch, orbits, start, at, plan, heard))
             new = unpacked(done)
             nodes.extend(new)
+            if worked > before:
+                measured(nodes, (cpu_seconds() - compiling_seconds() - used) / (worked - before))
             at = Position(new[-1].node if new else at.here, done["length"], at.count + len(new), done["ended"])
         return at.ended
 
@@ -131,6 +147,7 @@ def main_branches(
     progress: Progress,
     settled: Callable[[float], np.ndarray] | None = None,
     piece: Piece = unkept,
+    measured: Measured = _nobody,
 ) -> list[Branch]:
     """The branch through a first solution; and those through other solutions at the ends of the range that it does not come to.
 
@@ -138,8 +155,9 @@ def main_branches(
         orbits: the equations. first: a solution. plan: how far to go. progress: is told where it is.
         settled: gives the unknowns of what a transient settles on at a value, for ends where Newton's method fails from rest.
         piece: does the work of a piece, or takes it over.
+        measured: is told the solutions of the first branch so far, after each stretch, and the CPU seconds of one of its points.
     """
-    found = [followed(orbits, first, _FIRST_STEP, plan, "1T", 1, progress, 0.05, piece, both=True)]
+    found = [followed(orbits, first, _FIRST_STEP, plan, "1T", 1, progress, 0.05, piece, both=True, measured=measured)]
 
     def solution_at(end: float) -> dict[str, Any]:
         for begin in filter(None, (orbits.start, settled)):

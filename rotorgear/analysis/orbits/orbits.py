@@ -33,7 +33,8 @@ from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model, model_hash
 from rotorgear.note import Note
-from rotorgear.progress import Progress, silent
+from rotorgear.progress import Progress, foretell, silent
+from rotorgear.quantity import in_two_digits
 from rotorgear.results.orbits import OrbitBranch, OrbitsResult, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.arclength import Node, Walk
 from rotorgear.solvers.periodic.balance import HarmonicGrid
@@ -107,6 +108,10 @@ INSTANTS = 16
 METHODS = ("auto", "harmonic balance", "shooting")
 # How often harmonics and instants are doubled to reach an accuracy.
 _DOUBLINGS = 2
+# Share of the range behind the first solution where it is told what the branch will take.
+_SEEN = 0.1
+# What special points, both ends and error estimates take beside the points.
+_BESIDE = 1.25
 _UNLOADED = 1e-6
 # Where branches and curves end that have reached what was asked for.
 _PLANNED = (
@@ -186,8 +191,9 @@ def orbits(
             from_rest = partial(settled, problem, family, progress=progress) if small else None
             used = cpu_seconds() - compiling_seconds()
             own = remembering(piece, problem)
+            measured = partial(_forecast, problem, family, outputs, H, points, clock.worked, [])
             begin = partial(_first_motion, problem, family, from_transient=from_transient, progress=progress)
-            branches = main_branches(problem, unpacked(own(begin))[0], plan, progress, from_rest, own)
+            branches = main_branches(problem, unpacked(own(begin))[0], plan, progress, from_rest, own, measured)
             if switch:
                 branches += [twice for branch in branches for twice in doubled_branches(branch, plan, progress, piece)]
             used = cpu_seconds() - compiling_seconds() - used
@@ -233,6 +239,40 @@ def orbits(
             *_modes_left_out(problem),
         ),
         warnings=(*_warnings(family, branches, curves), *((short,) if short else ())),
+    )
+
+
+def _forecast(
+    problem: AnyOrbits,
+    family: SystemFamily,
+    outputs: Outputs,
+    harmonics: int,
+    most: int,
+    before: float,
+    told: list[float],
+    nodes: list[Certified],
+    seconds: float,
+) -> None:
+    """Tell once, a part of the range behind the first solution, what the first branch and its statistics will take.
+
+    Args:
+        problem, family, outputs, harmonics: of the branch, which has at most so many points. before: CPU seconds until now.
+        told: what has been told. nodes: solutions so far. seconds: CPU seconds of one of the last of them.
+    """
+    p = [one.node.p for one in nodes]
+    share = abs(p[-1] - p[0])
+    if told or share < _SEEN or p[-1] == p[-2]:
+        return
+    count = len(p) + (1.0 - share) / abs(p[-1] - p[-2])
+    apart = problem.apart()
+    branch = Branch(apart, "", 1, [], [], "")
+    start = cpu_seconds() - compiling_seconds()
+    _columns_of(branch, nodes[-1:], apart.finer(), outputs, family, harmonics)
+    of_statistics = cpu_seconds() - compiling_seconds() - start
+    each = _BESIDE * (seconds + of_statistics)
+    told.append(before + min(count, most) * each)
+    foretell(
+        "orbits", told[0], f"for the first branch, up to {in_two_digits(before + most * each)} where it turns back"
     )
 
 

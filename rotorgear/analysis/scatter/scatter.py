@@ -14,6 +14,7 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.pool import Pool, in_order
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import (
@@ -159,7 +160,8 @@ def scatter(
         starts = range(0, len(Z), _BLOCK)
         tasks = ((study, Z[k : k + _BLOCK]) for k in starts[len(blocks) :])
         running = part_of(progress, 0.3, 1.0)
-        for block in in_order(run_samples, tasks, workers, executor):
+        forecast = Forecast("scatter", clock.worked, len(starts) - len(blocks))
+        for block in in_order(run_samples, tasks, workers, executor, spent=forecast.add):
             if stream:
                 stream.write(block)
             blocks.append(block)

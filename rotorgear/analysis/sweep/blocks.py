@@ -47,6 +47,9 @@ _OF_ORBIT = (
     "before",
     "error",
 )
+# Digits by which blocks are put in their order.
+_DIGITS = 20
+_FRACTION = 2**_DIGITS
 # Rounds of settling that a run gets at most.
 _ROUNDS = 4
 # Least steps of the run that tells the error of exponents by half as many.
@@ -93,8 +96,18 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
     return jobs
 
 
-def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
-    """Yield jobs that can run in one block."""
+def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> list[list[Job]]:
+    """Jobs that can run in one block each; the first blocks are from all over the sweep: their times tell those of all."""
+    found = list(_contiguous(jobs, points, steps))
+    # Van der Corput's sequence: the digits of the number, in base two, behind the point.
+    return [block for _, block in sorted(enumerate(found), key=lambda one: _reversed(one[0] * _FRACTION // len(found)))]
+
+
+def _reversed(number: int) -> int:
+    return int(f"{number:0{_DIGITS}b}"[::-1], 2)
+
+
+def _contiguous(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
     kinds: dict[Any, list[Job]] = {}
     for job in jobs:
         point = points[job.point]
@@ -331,10 +344,11 @@ def run_blocks(
     workers: int | None,
     executor: Pool | None,
     heard: Callable[[float], None] = lambda share: None,
+    spent: Callable[[float], None] = lambda seconds: None,
 ) -> Generator[list[Orbit]]:
     """Yield the orbits of the blocks of a wave, in their order, from all cores or from an executor of the caller's.
 
-    `heard` is told about which share of all is done, every second of work on cores here.
+    `heard` is told about which share of all is done, every second of work on cores here, and `spent` what each block took.
     """
     stop = Event()
     asked = 0
@@ -349,7 +363,7 @@ def run_blocks(
         heard(min(1.0, asked / total))
 
     work = run_jobs if executor else partial(run_jobs, go_on=go_on)
-    yield from in_order(work, tasks, workers, executor, watch=watch, stop=stop.set)
+    yield from in_order(work, tasks, workers, executor, watch=watch, stop=stop.set, spent=spent)
 
 
 def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:

@@ -13,17 +13,18 @@ from math import lcm
 
 import numpy as np
 
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.sweep.axes import Axis, along, axis_of, number_in, points_of
-from rotorgear.analysis.sweep.blocks import blocks, packed, run_blocks, unpacked, waves
+from rotorgear.analysis.sweep.blocks import Job, blocks, packed, run_blocks, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
 from rotorgear.analysis.sweep.gather import gathered
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
 from rotorgear.analysis.sweep.reduce import Large, Reducer
 from rotorgear.analysis.sweep.request import Request, start_of, steps_of
-from rotorgear.cpu import Clock
+from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.model.model import Model, model_hash
 from rotorgear.old_names import renamed_arguments
@@ -37,6 +38,11 @@ from rotorgear.solvers.sparse.factor import single_thread
 WantedPortraits = int | Sequence[float | str | Sequence[float]]
 # Share of the progress that making the points ready gets.
 _READY = 0.1
+# Where blocks are few: the share of the first pass from which on it is measured, and what all takes over that: certificates,
+# errors, and as much again to settle; motions that do not settle run on.
+_SEEN = 0.1
+_WHOLE = 3.0
+_LONGER = "in all, up to 8 times as long where motions do not settle"
 
 
 @renamed_arguments(starts="initial_conditions", settle="discard", count="sample")
@@ -135,7 +141,10 @@ def sweep(
         kept = stream.begin(settings) if stream else []
         shape = [len(axis.values) for axis in axes]
         run = partial(run_blocks, workers=workers, executor=executor)
-        orbits = _run(points, chosen, shape, request, run, stream, kept, progress)
+        plans = waves(shape, request.directions, request.initial_conditions)
+        grouped = [blocks(jobs, points, chosen) for jobs in plans]
+        forecast = Forecast("sweep", clock.worked, sum(map(len, grouped)) - len(kept))
+        orbits = _run(points, chosen, grouped, request, run, stream, kept, forecast, progress)
     clock.lap("integration")
     result = gathered(model, axes, points, failure, chosen, request, orbits, reduction, left_out)
     if wanted:
@@ -195,20 +204,20 @@ def ready_points(
 def _run(
     points: Sequence[Point | None],
     steps: np.ndarray,
-    shape: Sequence[int],
+    waves_of: Sequence[list[list[Job]]],
     request: Request,
     run: Callable[..., Generator[list[Orbit]]],
     stream: Stream | None,
     kept: list[dict[str, np.ndarray]],
+    forecast: Forecast,
     progress: Progress,
 ) -> dict[tuple[int, int], Orbit]:
-    """Run all jobs; blocks that were kept by an interrupted sweep are taken over."""
+    """Run all waves of blocks; blocks that were kept by an interrupted sweep are taken over."""
     orbit_of: dict[tuple[int, int], Orbit] = {}
-    plans = waves(shape, request.directions, request.initial_conditions)
-    total = sum(len(jobs) for jobs in plans)
+    total = sum(len(block) for grouped in waves_of for block in grouped)
     done = 0
-    for jobs in plans:
-        grouped = list(blocks(jobs, points, steps))
+    start = cpu_seconds() - compiling_seconds()
+    for grouped in waves_of:
         old = kept[: len(grouped)]
         kept = kept[len(grouped) :]
         for block, chunk in zip(grouped, old, strict=False):
@@ -238,8 +247,11 @@ def _run(
         def heard(share: float, begun: int = begun, runs: int = runs) -> None:
             part = (begun + share * runs) / total
             progress(_READY + (1.0 - _READY) * part, f"about {100.0 * part:.0f} %")
+            if forecast.few and part >= _SEEN:
+                used = cpu_seconds() - compiling_seconds() - start
+                forecast.tell(_WHOLE * used / part, _LONGER)
 
-        with closing(run(tasks, heard=heard)) as found:
+        with closing(run(tasks, heard=heard, spent=forecast.add)) as found:
             for block, orbits in zip(rest, found, strict=True):
                 orbit_of.update(zip([job.key for job in block], orbits, strict=True))
                 if stream:
