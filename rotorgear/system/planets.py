@@ -71,10 +71,10 @@ def require_constant(layout: Layout) -> None:
             )
         if not planets.part.is_regular:
             count = len(planets.planets)
-            what = f"{count} planets" if count < 3 else "planets at unequal angles"
+            what = {1: "one planet", 2: "two planets"}.get(count, "planets at unequal angles")
             raise AnalysisError(
-                f"carriers.{planets.carrier}: {what} on a carrier that turns have coefficients that change with its angle, which "
-                "is not built. Take three or more planets, equally spaced, or hold the carrier: speed_ratio = 0 of "
+                f"carriers.{planets.carrier}: coefficients of {what} on a carrier that turns change with its angle, which is not "
+                "built. Take three or more planets, equally spaced, or hold the carrier: speed_ratio = 0 of "
                 f"shafts.{planets.shaft}."
             )
 

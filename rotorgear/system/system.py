@@ -177,6 +177,11 @@ class System:
     def _constant(self) -> list[ElementGroup]:
         return constant_groups(self.state, self.nodes)
 
+    @property
+    def uneven_planets(self) -> bool:
+        """Whether planets go round whose matrices change as they do."""
+        return self._going_round[1] is not None
+
     @cached_property
     def _going_round(self) -> tuple[list[ElementGroup], AnalysisError | None]:
         """What planets bring where their carriers turn, or why that is not built."""
@@ -192,10 +197,11 @@ class System:
     def groups_of(self, speed: float) -> list[ElementGroup]:
         """Those of them that are of one speed alone: bearings with tables, and loads of planets' pins."""
         error = self._going_round[1]
-        if speed and error is not None:
+        # Statics takes planets as they stand at the moment, of which it says what it leaves out.
+        if speed and error is not None and self.state.kind != "static":
             raise error
         tables = table_groups(self.state, self.nodes, speed)
-        if not speed or not turning_carriers(self.layout):
+        if not speed or error is not None or not turning_carriers(self.layout):
             return tables
         return tables + planet_groups(self.layout, tables) + self._pin_groups(speed, tables)
 

@@ -51,10 +51,10 @@ _ZERO = 1e-9
 def damped_group(problem: Problem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
     if problem.rigid is not None and problem.rigid.shape[1]:
-        more = None if count is None else count + problem.rigid.shape[1]
-        undamped = _undamped(problem, count, below)
-        found = by_strains(problem, _by_matrices(problem, more, below, undamped))
-        return _without_drift(found, float(undamped.frequencies[0]), count), ""
+        R = problem.rigid
+        more = None if count is None else count + R.shape[1]
+        found = damped_modes(problem.M, problem.D, problem.K, count=more, below=below, rigid_vectors=R)
+        return _without_drift(by_strains(problem, found), count), ""
     near = _near_undamped(problem, count, below)
     if near is not None:
         return near, ""
@@ -78,17 +78,19 @@ def damped_group(problem: Problem, count: int | None, below: float | None) -> tu
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
 
 
-# Share of the softest elastic frequency below which a motion is the drift of a train with planets.
+# Share of the frequencies below which a motion is the drift of a train with planets.
 _DRIFT = 1e-5
 
 
-def _without_drift(modes: DampedModes, softest: float, count: int | None) -> DampedModes:
+def _without_drift(modes: DampedModes, count: int | None) -> DampedModes:
     """The modes without the second zero of each free rotation of a train with planets.
 
     Pins give d under the centrifugal load, and dampers beside them see d where the rotation drifts, by (d/r)^2 of their work:
     what is exactly zero becomes a number far below all frequencies.
     """
-    kept = modes.rigid | (np.abs(modes.eigenvalues) > _DRIFT * softest)
+    size = np.abs(modes.eigenvalues)
+    oscillating = size[modes.eigenvalues.imag > 0.0]
+    kept = modes.rigid | (size > _DRIFT * np.median(oscillating if oscillating.size else size))
     kept &= np.cumsum(kept) <= (len(kept) if count is None else count)
     return replace(
         modes,

@@ -12,16 +12,21 @@ from functools import cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
+from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.system.assembly import StrainForms
 from rotorgear.system.plan import Plan
 from rotorgear.system.planets import turning_carriers
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
+# Shares of the usual k_ii / m_ii: how far beside zero free motions are looked for, and below what one is free.
+_BESIDE = 1e-14
+_AT_ZERO = 1e-11
 # Share of a motion beyond which a group takes part in it.
 _MOVES = 1e-9
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
@@ -87,7 +92,7 @@ class Problem:
                 whole = replace(whole, viscosity=0.0 * whole.viscosity)
             return whole if damped else replace(whole, circulation=0.0 * whole.circulation)
 
-        rigid = rigid_motions(system, system.groups_at(at)) if turning else None
+        rigid = _free_motions(system, at, K) if turning else None
         guess = None
         if damped and system.n >= _LARGE:
             # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
@@ -180,6 +185,26 @@ class Problem:
             if len(known) > _MOST_KEPT:
                 known.pop(next(iter(known)))
         return known[request]
+
+
+def _free_motions(system: System, speed: float, K: sp.csc_array) -> np.ndarray:
+    """Those of the motions that no spring resists which nothing that planets bring resists either, (n, r).
+
+    In the rotation of a train its terms cancel, with planets where their pins give to; planets that nothing keeps upright tilt
+    freely at rest, and not on a carrier that turns. Inverse iteration beside zero tells them apart.
+    """
+    motions = rigid_motions(system, system.groups_at(speed))
+    if not motions.shape[1]:
+        return motions
+    M = system.mass
+    m = M.diagonal()
+    usual = float(np.median(np.abs(K.diagonal()[m > 0.0]) / m[m > 0.0]))
+    factor = factor_general(sp.csc_array(K + _BESIDE * usual * M))
+    for _ in range(4):
+        motions = np.linalg.qr(factor.solve(M @ motions))[0]
+    values, turned = la.eig(motions.T @ (K @ motions), motions.T @ (M @ motions))
+    free = np.abs(values) < _AT_ZERO * usual
+    return np.asarray(motions @ np.linalg.qr(turned[:, free].real)[0])
 
 
 def _of_group(motions: np.ndarray, group: np.ndarray) -> np.ndarray:

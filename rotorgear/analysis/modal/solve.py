@@ -17,6 +17,8 @@ from rotorgear.system.components import dof_motions, groups_with_inertia, indepe
 from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.system import System
 
+# Real part over the size of an eigenvalue below which it is rounding.
+_STILL = 1e-7
 # Backward error above which a damped mode is refused.
 _LARGEST_RESIDUAL = 1e-8
 # How far beyond the last mode that is asked for another group is searched, and the share of the largest k_ii / m_ii that the
@@ -170,7 +172,10 @@ def _solve_group(problem: Problem, wanted: Wanted) -> Modes:
             )
         s = np.where(damped.rigid, 0.0, damped.eigenvalues)
         if problem.symmetric and not problem.damped:
-            s = 1j * np.abs(s)  # gyroscopic terms do no work: without damping every s is imaginary, but for rounding
+            # Gyroscopic terms do no work: without damping every s is imaginary, but for rounding. A carrier that turns faster
+            # than its planets vibrate can bring work into them.
+            still = problem.rigid is None or np.abs(s.real) < _STILL * np.abs(s)
+            s = np.where(still, 1j * np.abs(s), s)
         vectors = _of_modal_mass_1(problem.M, damped.vectors)
         words = {"damped": problem.damped, "gyroscopic": bool(wanted.speed)}
         kind = " ".join(word for word, there in words.items() if there) or "non-symmetric"

@@ -209,6 +209,9 @@ def _solve_under(
         and (not group.part.startswith("meshes.") or next(meshes))
     ]
     groups, notes = without_torsion_to_ground(system, groups)
+    if speed and system.uneven_planets:
+        why = "planets that differ, or stand at unequal angles, are taken as they stand"
+        notes = (*notes, Note("carriers", "what their displacements change of the centrifugal load", why))
     at_rest = np.zeros(system.n)
     loads = outer_loads(system) + centrifugal_loads(system, speed)
     f = (

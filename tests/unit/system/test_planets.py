@@ -264,7 +264,7 @@ def test_bearings_to_the_ground_carry_the_weight_of_planets_that_go_round() -> N
 def test_two_planets_and_unequal_ones_are_refused_where_their_carrier_turns() -> None:
     two = rg.loads(helical_stage(2))
     assert rg.modal(two, modes=4).natural_frequency_hz[1] > 0.0
-    with pytest.raises(rg.AnalysisError, match=r"carriers\.stage: 2 planets on a carrier that turns"):
+    with pytest.raises(rg.AnalysisError, match=r"carriers\.stage: coefficients of two planets on a carrier that turns"):
         rg.modal(two, speed="1000 rpm")
     unequal = rg.loads(helical_stage(more='[bearings."pin#2"]\nstiffness = {radial = 3e8, axial = 1e8, tilt = 2e5}'))
     with pytest.raises(rg.AnalysisError, match=r"bearings\.pin#2: its stiffness differs from that of bearings\.pin#1"):
@@ -309,3 +309,45 @@ def test_a_stage_turned_in_space_has_the_same_modes_and_forces() -> None:
     assert there.frequency_hz[1:] == pytest.approx(here.frequency_hz[1:], rel=1e-9)
     assert there.damping_ratio[1:] == pytest.approx(here.damping_ratio[1:], rel=1e-6)
     assert rg.static(moved).mesh_force == pytest.approx(rg.static(model).mesh_force, rel=1e-8)
+
+
+def test_a_carrier_that_turns_faster_than_its_planets_vibrate_makes_a_mode_grow_and_it_is_said() -> None:
+    model = rg.loads(helical_stage())
+    W = 2.0 * np.pi * 1e5 / 60.0
+    s = of_system(flow_system(model), W)
+    growing = s[(s.real > 1.0) & (s.imag > 0.0)]
+    slowest = growing[np.argmin(growing.imag)]
+    found = rg.modal(model, speed=W / RATIO, modes=8)
+    worst = int(np.argmin(found.damping_ratio))
+    assert found.damping_ratio[worst] == pytest.approx(-slowest.real / abs(slowest), rel=1e-6)
+    assert any("unstable" in str(text) for text in found.warnings)
+
+
+def test_many_planets_on_stiff_pins_turn_freely() -> None:
+    stiff = {name: 1e6 * value for name, value in PIN.items()}
+    model = rg.loads(helical_stage(12, teeth=(90, 18, 126), pin=stiff))
+    found = rg.modal(model, speed="3000 rpm", modes=6)
+    assert found.rigid.tolist() == [True] + [False] * 5
+    exact = frequencies(of_system(flow_system(model), 3000.0 * 2.0 * np.pi / 60.0 * 90 / 216))
+    assert 2.0 * np.pi * found.frequency_hz[1:] == pytest.approx(exact[:5], rel=1e-6)
+
+
+def test_planets_that_nothing_keeps_upright_tilt_freely_at_rest_and_not_where_they_go_round() -> None:
+    model = rg.loads(helical_stage(pin={"radial": 4e8}))
+    system = flow_system(model)
+    speed = 4000.0 * 2.0 * np.pi / 60.0
+    found = rg.modal(model, speed=speed, modes=9)
+    s = of_system(system, speed * RATIO)
+    exact = np.sort(s.imag[(s.imag > 1.0) & (np.abs(s) < 1500.0)])
+    told = 2.0 * np.pi * np.sort(found.frequency_hz[found.frequency_hz > 0.1])[: len(exact)]
+    assert len(exact) >= 5
+    assert told == pytest.approx(exact, rel=1e-5)
+    # Unheld tilts are a motion that grows: it is said, and not taken for a free one.
+    assert any("unstable" in str(text) for text in found.warnings)
+
+
+def test_statics_of_two_planets_at_a_speed_says_what_it_leaves_out() -> None:
+    text = helical_stage(2, teeth=(28, 36, 100))
+    found = rg.static(rg.loads(text.replace("[operation]", '[operation]\ntorque = 100\noutput_shaft = "carrier"')))
+    assert found.mesh_force == pytest.approx(np.full(4, found.mesh_force[0]), rel=1e-6)
+    assert any("carriers" in str(note) for note in found.left_out)
