@@ -205,3 +205,10 @@ def test_numbers_of_positions_are_those_they_were_solved_at_but_for_rounding() -
     cycles.cycles.append(SimpleNamespace(position=u))  # type: ignore[arg-type]
     for rounding in (-1e-15, 0.0, 1e-15):
         assert list(cycles.numbers(u + rounding)) == [0, 1, 2, 3, 4]
+
+
+def test_the_mean_of_steps_of_a_smooth_curve_is_that_of_its_cubics() -> None:
+    """Slopes that never exceed three chords are not bounded: extremes stand at positions, others are uneven."""
+    u = np.array([0.0, 0.08, 0.13, 0.3, 0.34, 0.5, 0.61, 0.65, 0.8, 0.95])
+    curve = CycleCurve(u, np.cos(2.0 * np.pi * u)[:, None], 1.0, np.isin(u, [0.0, 0.5]))
+    assert curve.mean_of_steps()[0] == pytest.approx(curve.mean()[0], abs=1e-12)

@@ -107,6 +107,17 @@ def test_whatever_modes_are_kept_contacts_and_loads_move_the_structure_staticall
     np.testing.assert_allclose(again, exact, atol=1e-9 * np.abs(exact).max())
 
 
+def test_a_reduced_system_has_the_matrices_of_the_whole_one_in_its_shapes() -> None:
+    system = turning_chain(4)
+    among = among_of(system)
+    own, V = reduced(system, among, basis_of(among, np.array([0, 1, 3])))
+    np.testing.assert_allclose(V.T @ (system.M @ V), np.eye(own.n), atol=1e-10)
+    for name in ("stiffness_about", "damping_about", "D", "K", "G"):
+        whole = V.T @ (getattr(system, name) @ V)
+        np.testing.assert_allclose(getattr(own, name).toarray(), whole, atol=1e-9 * np.abs(whole).max())
+    np.testing.assert_allclose(own.B.toarray(), V.T @ system.B.toarray(), atol=1e-12)
+
+
 def beside_two_contacts(seed: int) -> LocalSystem:
     """Oscillators to ground, two of them with contacts; the others hear of these by weak dampers and gyroscopic terms alone."""
     draw = np.random.default_rng(seed)
