@@ -129,8 +129,7 @@ class Carriers:
         stage = self.planets.stages[name]
         radius = next(pins.radius for pins in self.planets.places.values() if pins.carrier == name)
         mass = diametral = 0.0
-        for number in stage.pins:
-            sections = self.planets.pins[number].sections
+        for sections in (self.planets.pins[number].sections for number in stage.pins if number in self.planets.pins):
             one = _STEEL * sum(map(_volume, sections))
             mass += one
             diametral += one * (0.5 * radius**2 + sum(section.length for section in sections) ** 2 / 12.0)

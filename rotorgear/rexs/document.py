@@ -82,6 +82,7 @@ FACTORS: dict[str, dict[str, float]] = {
     # Load ratings of bearings are in kN, forces of loads in N.
     "rating": {"kN": 1e3, "N": 1.0, "MN": 1e6},
     "torque": {"Nm": 1.0, "Nmm": 1e-3, "kNm": 1e3},
+    "power": {"kW": 1e3, "W": 1.0, "MW": 1e6},
     "stiffness": {"N/m": 1.0, "N/mm": 1e3, "N/mum": 1e6, "N/um": 1e6, "kN/mm": 1e6},
     "rotational_stiffness": {
         "Nmm/rad": 1e-3,
@@ -107,6 +108,7 @@ LARGEST = {
     "force": 1e10,
     "rating": 1e10,
     "torque": 1e10,
+    "power": 1e12,
     "mass": 1e7,
     "inertia": 1e9,
     "ratio": 1e5,

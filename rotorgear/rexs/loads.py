@@ -6,7 +6,7 @@ Additional masses (from 1.3 on) are disks or point masses of a shaft, with the u
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -76,12 +76,13 @@ def mass_tables(part: Component, names: Names, shafts: dict[str, ShaftPart], str
 
 @dataclass(frozen=True)
 class Torque:
-    """A place where torque enters or leaves: z in m, torque about +z in N m or None where the train gives it."""
+    """A place where torque enters or leaves: z in m, torque about +z in N m or None where power (W) or the train gives it."""
 
     component: Component
     shaft: ShaftPart
     z: float
     torque: float | None
+    power: float | None = None
 
 
 def given_speeds(shafts: dict[str, ShaftPart], account: Account) -> list[tuple[float, ShaftPart, bool]]:
@@ -124,7 +125,7 @@ def load_tables(
         elif torque is not None and torque != 0.0:
             torques.append(Torque(load, shaft, z, shaft.axis.sense * torque))
         elif account.truth(load, "transmits_torque"):
-            torques.append(Torque(load, shaft, z, None))
+            torques.append(Torque(load, shaft, z, None, account.number(load, ("power",), "power")))
         force = _force_table(load, shaft, z, names, structure.account)
         if force is not None:
             loads.append(force)
@@ -136,8 +137,20 @@ def load_tables(
         return None, loads
     start = reference or torques[0].shaft
     ratio = speed_ratios(tables, start.name, speed)
+    torques = [_of_power(item, speed * ratio.get(item.shaft.name, 0.0), account) for item in torques]
     operation, of_torques = _operation(speed, start, torques, ratio, names, account)
     return operation, [*loads, *of_torques]
+
+
+def _of_power(item: Torque, speed: float, account: Account) -> Torque:
+    """The torque that the power of a load means at the speed of its shaft in rad/s."""
+    if item.torque is not None or not item.power or not speed:
+        return item
+    word = "drives" if item.power > 0.0 else "is taken"
+    account.assume(
+        f"loads.{item.component.name}", word, f"power of {item.power:.6g} W of {item.component}, by its sign"
+    )
+    return replace(item, torque=item.power / speed)
 
 
 def _operation(

@@ -88,8 +88,19 @@ def read_stages(structure: Structure, on: dict[str, list[Component]]) -> list[St
         # The shaft of the carrier that most parts are on holds the pins.
         shafts.sort(key=lambda number: -sum(map(_stands_on, on.get(number, ()))))
         plates = [plate for carrier in carriers for plate in structure.parts_of(carrier, "side_plate")]
-        pins = structure.shafts_of(component, "planet_pin")
+        # Some files name pins by their carrier alone.
+        parts = [part.id for carrier in carriers for part in structure.parts_of(carrier, "shaft")]
+        held = dict.fromkeys([*structure.shafts_of(component, "planet_pin"), *parts])
+        pins = [number for number in held if number not in shafts and number not in planets]
         found.append(Stage(component, tuple(shafts), tuple(planets), tuple(pins), tuple(plates)))
+    staged = {
+        part.id
+        for stage in structure.document.of_type(PLANETARY)
+        for part in structure.parts_of(stage, "planet_carrier")
+    }
+    for carrier in structure.document.of_type("planet_carrier"):
+        if carrier.id not in staged:
+            account.missing(carrier, "it must be part of a planetary stage, by an assembly relation")
     return found
 
 
@@ -109,12 +120,14 @@ def placed_planets(
     found = Planets(on)
     names = Names()
     for stage in stages:
+        _note_forgotten(stage, on, structure)
         name = names.of(stage.component.name, "carrier", stage.component.id)
         found.stages[name] = stage
         for number in stage.pins:
             pin = structure.document.components[number]
             axis = Axis(0.0, 0.0, 0.0, 1, np.eye(3), structure.model)
-            found.pins[number] = ShaftPart(pin, "", axis, read_sections(pin, structure))
+            if sections := read_sections(pin, structure):
+                found.pins[number] = ShaftPart(pin, "", axis, sections)
         found.dropped |= _of_carrier(stage, on, structure)
         kinds = _kinds(stage, pairs, structure)
         if kinds is None or any(number not in axes for number in (*stage.planets, stage.carriers[0])):
@@ -127,6 +140,17 @@ def placed_planets(
     return found
 
 
+def _note_forgotten(stage: Stage, on: dict[str, list[Component]], structure: Structure) -> None:
+    """Shafts that run on pins and are no planets of the stage are problems."""
+    known = {*stage.planets, *stage.pins, *stage.carriers}
+    bearings = [part for number in stage.pins for part in on.get(number, ()) if is_bearing(part)]
+    for shaft in (side for part in bearings for side in structure.beside(part)):
+        if shaft.type == "shaft" and shaft.id not in known:
+            structure.account.missing(
+                shaft, f"it runs on a pin of {stage.component}: a relation planet_shaft is needed"
+            )
+
+
 def _of_carrier(stage: Stage, on: dict[str, list[Component]], structure: Structure) -> set[str]:
     """Pins, plates, and what joins them to each other and to shafts of the carrier."""
     own = {*stage.pins, *(plate.id for plate in stage.plates)}
@@ -135,7 +159,7 @@ def _of_carrier(stage: Stage, on: dict[str, list[Component]], structure: Structu
     inside = [part for part in joints.values() if {side.id for side in structure.beside(part)} <= whole]
     shaft = structure.document.components[stage.carriers[0]]
     structure.account.left_out.append(
-        f"{stage.component}: struts, and what pins, side plates and their {len(inside)} joints yield: they are rigid on {shaft}"
+        f"{stage.component}: struts, and what pins, side plates and their joints ({len(inside)}) yield: they are rigid on {shaft}"
     )
     return own | {part.id for part in inside}
 
@@ -178,7 +202,8 @@ def _alike(
         shaft = document.components[number]
         part = ShaftPart(shaft, "", axes[number], read_sections(shaft, trial))
         there = on.get(number, [])
-        gears = [read_gear(gear, "", {number: part}, trial, version) for gear in there if gear.type == GEAR]
+        toothed = [gear for gear in there if gear.type == GEAR] if part.sections else []
+        gears = [read_gear(gear, "", {number: part}, trial, version) for gear in toothed]
         about = _about(part, [gear for gear in gears if gear is not None])
         about["number of bearings"] = sum(map(is_bearing, there))
         if first is None:

@@ -78,6 +78,8 @@ def _entries(attributes: Mapping[str, Value]) -> list[dict[str, Any]]:
 
 
 def _typed(name: str, raw: object) -> dict[str, object]:
+    if isinstance(raw, list) and raw and raw[0] in ("true", "false"):
+        return {"boolean_array": [entry == "true" for entry in raw]}
     if isinstance(raw, list):
         return {"floating_point_array": [float(entry) for entry in raw]}
     if name == "name":

@@ -15,7 +15,7 @@ from rotorgear.rexs.document import FACTORS, Value, factor_of
 from tests.unit.rexs.documents import changed, sample, write_json
 
 _PREFIX = {"": 1.0, "M": 1e6, "k": 1e3, "d": 1e-1, "c": 1e-2, "m": 1e-3, "mu": 1e-6, "u": 1e-6, "G": 1e9}
-_SYMBOL = {"m": 1.0, "N": 1.0, "Pa": 1.0, "g": 1e-3, "s": 1.0, "rad": 1.0}
+_SYMBOL = {"m": 1.0, "N": 1.0, "Pa": 1.0, "W": 1.0, "g": 1e-3, "s": 1.0, "rad": 1.0}
 _WORD = {
     "": 1.0,
     "1": 1.0,
@@ -84,6 +84,7 @@ def test_every_unit_of_the_table_is_the_product_of_its_symbols(kind: str) -> Non
         ("force", "", 1.0),
         ("rating", "", 1e3),
         ("torque", "", 1.0),
+        ("power", "", 1e3),
         ("stiffness", "", 1.0),
         ("rotational_stiffness", "", 1e-3),
         ("modulus", "", 1e6),

@@ -182,6 +182,14 @@ def test_a_planet_bearing_without_a_stiffness_is_estimated_around_its_pin(tmp_pa
             lambda d: without_relation(d, "planet_carrier_shaft"),
             "planetary_stage 'Stage' (id 4): a planet carrier is needed",
         ),
+        (
+            lambda d: replace(d, relations=tuple(one for one in d.relations if one.refs[-1:] != (("shaft", "50"),))),
+            "shaft 'Planet shaft 3' (id 50): it runs on a pin of planetary_stage 'Stage' (id 4): a relation planet_shaft is",
+        ),
+        (
+            lambda d: replace(d, components={n: c for n, c in d.components.items() if c.type != "planetary_stage"}),
+            "planet_carrier 'Carrier' (id 5): it must be part of a planetary stage",
+        ),
         (lambda d: without_relation(d, "planet_shaft"), "planetary_stage 'Stage' (id 4): planets are needed"),
         (
             lambda d: changed(d, named(d, "Planet 3").id, number_of_teeth=Value(27)),
@@ -196,6 +204,8 @@ def test_a_planet_bearing_without_a_stiffness_is_estimated_around_its_pin(tmp_pa
             lambda d: replace(d, components={n: c for n, c in d.components.items() if c.name != "Planet-ring 4"}),
             "its planets must mesh alike, or be of several kinds with as many of each; they mesh 3 with Ring and Sun, 1 with Sun",
         ),
+        (lambda d: changed(d, "25", length=None), "shaft_section (id 25): length and outer_diameter_begin are needed"),
+        (lambda d: changed(d, "27", length=None), "shaft_section (id 27): length and outer_diameter_begin are needed"),
         (
             lambda d: changed(d, named(d, "Ring held").id, is_engaged=Value("false")),
             "shafts.ring_shaft",
@@ -210,6 +220,43 @@ def test_what_can_not_be_a_planetary_stage_is_told_with_its_address(change, word
     with pytest.raises(rg.ModelError) as caught:
         imported(change(document()), tmp_path)
     assert words in str(caught.value)
+
+
+def test_other_ways_to_write_the_same_stage_give_the_same_model(tmp_path: Path) -> None:
+    """Pins that only their carrier names, a brake with a truth value for each gear, and power in place of torque."""
+    whole = document()
+    given = model_of(whole, tmp_path)
+    assert model_of(without_relation(whole, "planet_pin"), tmp_path) == given
+    brake = changed(whole, named(whole, "Ring held").id, is_engaged=Value(["true", "false"]))
+    assert model_of(changed(brake, "1", gear_shift_index=Value(1)), tmp_path) == given
+    with pytest.raises(rg.ModelError, match=r"shafts\."):
+        model_of(changed(brake, "1", gear_shift_index=Value(2)), tmp_path)
+    power = 210.0 * 1800.0 * math.pi / 30.0
+    load = changed(whole, named(whole, "Input").id, torque_around_u_axis=None, power=Value(1e-3 * power, "kW"))
+    result = imported(load, tmp_path)
+    assert rg.loads(result.toml).loads["input"].torque == pytest.approx(210.0, rel=1e-9)
+    assert any("power of" in item.reason for item in result.assumptions)
+
+
+def test_a_strut_between_the_shafts_of_a_carrier_joins_them(tmp_path: Path) -> None:
+    g = Written()
+    whole = document()
+    g.components, g.relations = dict(whole.components), list(whole.relations)
+    strut = g.add("shaft", "Strut", support_vector=Value([84.0, 0.0, 0.0], MM))
+    section = g.add(
+        "shaft_section",
+        "",
+        length=Value(83.0, MM),
+        outer_diameter_begin=Value(150.0, MM),
+        inner_diameter_begin=Value(120.0, MM),
+    )
+    g.join("assembly", assembly=strut, part=section)
+    for name, end, z in (("Carrier shaft", "front", 167.0), ("Back plate ring", "back", 84.0)):
+        joint = g.add("coupling", f"Strut {end}", support_vector=Value([z, 0.0, 0.0], MM))
+        g.join("side", assembly=joint, inner_part=named(whole, name).id, outer_part=strut)
+    model = model_of(replace(whole, components=g.components, relations=tuple(g.relations)), tmp_path)
+    assert sorted(model.couplings) == ["strut_back", "strut_front"]
+    assert model.layout.train.ratios["strut"] == Fraction(SUN, SUN + RING)
 
 
 def test_pins_at_unequal_angles_are_written_as_angles(tmp_path: Path) -> None:
