@@ -45,17 +45,17 @@ def show(
     """
     out = console()
     out.print(result.table(**{name: call[name] for name in call.command.table}))
-    data = result.to_dict(max(call["harmonics"], 8)) if result.kind == "mesh" else result.to_dict()
-    for key, more in (beside or {}).items():
+    for more in (beside or {}).values():
         out.print(more.table())
-        data[key] = more.to_dict()
     early = call.command.name == "transient" and result.ended_early
     # First the file that holds everything.
     if call["save"] and not early:
         say(f"saved {rg.save(result, call['save'])}")
         if whole and "stream" in call.command.arguments:
             rg.stream(call["save"]).close()
-    write_json(call, data)
+    if call["json"]:
+        data = result.to_dict(max(call["harmonics"], 8)) if result.kind == "mesh" else result.to_dict()
+        write_json(call, data | {key: more.to_dict() for key, more in (beside or {}).items()})
     if call["plot"]:
         _draw(call, result if drawn is None else drawn, call["plot"])
     if call["waterfall"]:

@@ -515,9 +515,15 @@ def plain(value: Any) -> Any:
 def _plain_array(values: np.ndarray) -> Any:
     import numpy as np
 
-    if values.dtype.kind not in "fc" or (values.dtype.kind == "f" and np.isfinite(values).all()):
+    if values.dtype.kind not in "fc":
         return values.tolist()
-    return [plain(one) for one in np.atleast_1d(values)]
+    real = np.abs(values) if values.dtype.kind == "c" else values
+    finite = np.isfinite(real)
+    if finite.all():
+        return real.tolist()
+    written = real.astype(object)
+    written[~finite] = None
+    return written.tolist()
 
 
 def _agree(one: Any, other: Any) -> bool:

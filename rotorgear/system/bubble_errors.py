@@ -37,6 +37,7 @@ from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
 from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import symmetric_pair
+from rotorgear.solvers.sparse.entries import times
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.system.groups import alike, element_data
 from rotorgear.system.nodes import Element
@@ -272,8 +273,8 @@ class ForcedChanges:
         joined = {name: np.concatenate(parts) for name, parts in each.items()}
         return cls(**stacked, **joined, partner=np.concatenate(partner), alpha=alpha, lumping=lumping)
 
-    def change(self, speed: float, w: np.ndarray, q: np.ndarray, *, turning: bool) -> np.ndarray:
-        """Size of d for responses q (n, m) at w (m,) in rad/s, at a reference speed in rad/s: (m,).
+    def change(self, speed: float | np.ndarray, w: np.ndarray, q: np.ndarray, *, turning: bool) -> np.ndarray:
+        """Size of d for responses q (n, m) at w (m,) in rad/s, at one reference speed in rad/s or at one for each: (m,).
 
         It is exact to first order where loads don't turn and the system is symmetric, and where loads turn with a rotor that is
         alike in all directions; else it says where to look.
@@ -281,8 +282,8 @@ class ForcedChanges:
         s = 1j * np.asarray(w)
         squared = s**2 + self.alpha * s
         elastic = 1.0 + s * self.beta[:, None]
-        held = squared * (self.mass @ q) + elastic * (self.stiffness @ q)
-        turned = speed * (s * (self.gyroscopic @ q) + self.circulatory @ q) if speed else 0.0
+        held = squared * times(self.mass, q) + elastic * times(self.stiffness, q)
+        turned = speed * (s * times(self.gyroscopic, q) + times(self.circulatory, q)) if np.any(speed) else 0.0
         gap = squared + elastic * self.squared[:, None]
         rest = held + turned
         other = rest.conj() if turning else held - turned
@@ -292,7 +293,7 @@ class ForcedChanges:
         answer = (gap * rest - coupled * rest[self.partner]) / np.where(both != 0.0, both, np.inf)
         change = np.sum(other * answer, axis=0)
         if self.lumping is not None:
-            change = change - squared * np.sum((q.conj() if turning else q) * (self.lumping @ q), axis=0)
+            change = change - squared * np.sum((q.conj() if turning else q) * times(self.lumping, q), axis=0)
         return np.abs(change)
 
 

@@ -49,8 +49,8 @@ class ContactLines:
     couple: np.ndarray
     turning: np.ndarray | None = None
 
-    def forces(self, s: np.ndarray, w: np.ndarray, speed: float) -> np.ndarray:
-        """Forces (o, c) of amplitudes s (o, c) of the approach at frequencies w (o,) and a reference speed, both in rad/s."""
+    def forces(self, s: np.ndarray, w: np.ndarray, speed: float | np.ndarray) -> np.ndarray:
+        """Forces (o, c) of amplitudes s (o, c) of the approach at frequencies w (o,) and reference speeds (o, 1), in rad/s."""
         found = (self.stiffness + 1j * w[:, None] * self.damping) * s
         return found if self.turning is None else found - speed * self.damping * (s @ self.turning.T)
 

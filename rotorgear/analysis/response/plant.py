@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,7 +20,10 @@ import scipy.sparse as sp
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.common.stations import part_nodes
 from rotorgear.analysis.response.order import Order
-from rotorgear.solvers.frequency.harmonic import Dynamics, LowRank
+from rotorgear.solvers.frequency.harmonic import Dynamics, DynamicsOverSpeed, LowRank
+from rotorgear.solvers.sparse.entries import on_one_pattern
+from rotorgear.solvers.sparse.factor import Factor
+from rotorgear.solvers.sparse.sums import SparseSums
 from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
@@ -137,7 +141,7 @@ class GroundLoads:
         found = [np.zeros((len(w), 0))]
         brake = None
         if self._parts and self._damped is not None:
-            modes, (P, d) = self._damped
+            modes, (P, d, _) = self._damped
             brake = modes @ (d[:, None] * (P.T @ q)) * (1j * w)
         for own, K, C, M in self._parts:
             u = own @ q
@@ -167,7 +171,7 @@ class Plant:
         damped = None
         if damping is not None and damping[2] > 0.0 and damping[1].size:
             modes, w, zeta = damping
-            self.low_rank = np.asarray(system.mass @ modes), 2.0 * zeta * w
+            self.low_rank = LowRank(np.asarray(system.mass @ modes), 2.0 * zeta * w, w)
             damped = modes, self.low_rank
         self.has_tables = system.has_tables
         self.places = part_nodes(system)
@@ -189,6 +193,7 @@ class Plant:
             self.seats.setdefault(name, []).append(part)
         self.ground = GroundLoads(system, damped)
         self._parts: tuple[sp.csc_array, ...] | None = None
+        self._sums: SparseSums | None = None
         self._rows: tuple[tuple[np.ndarray, ...], tuple[sp.csr_array, ...]] | None = None
         self._bubbles = ForcedChanges.of(system)
 
@@ -199,30 +204,54 @@ class Plant:
             K = sp.csc_array(system.stiffness(speed) + system.circulatory(speed))
             D = sp.csc_array(system.damping(speed) + speed * system.gyroscopic)
             return Dynamics(system.mass, D, K, self.low_rank)
-        if self._parts is None:
-            still = system.circulatory(0.0)
-            turning = sp.csc_array(system.circulatory(1.0) - still)
-            damping = _on_one_pattern(system.damping(0.0), system.gyroscopic)
-            self._parts = sp.csc_array(system.stiffness(0.0) + still), turning, *damping
-        K0, turning, C, G = self._parts
+        K0, turning, C, G = self._linear_parts()
         K = sp.csc_array(K0 + speed * turning) if turning.nnz else K0
         # A sum of sparse matrices of unlike patterns costs more than all else at a speed.
         D = sp.csc_array((C.data + speed * G.data, C.indices, C.indptr), shape=C.shape)
-        return Dynamics(system.mass, D, K, self.low_rank)
+        return Dynamics(system.mass, D, K, self.low_rank, partial(self._factored, speed))
+
+    def over_speed(self, speed: float) -> DynamicsOverSpeed:
+        """Dynamics over the reference speed in rad/s; of a model with tables those of this speed at any."""
+        if self.has_tables:
+            nothing = sp.csc_array(self.system.mass.shape)
+            return DynamicsOverSpeed(self.dynamics(speed), nothing, nothing)
+        _, turning, _, G = self._linear_parts()
+        return DynamicsOverSpeed(self.dynamics(0.0), G, turning)
+
+    def _linear_parts(self) -> tuple[sp.csc_array, ...]:
+        """Of a model without tables: K at standstill, what it grows by with the reference speed, and C and G on one pattern."""
+        if self._parts is None:
+            system = self.system
+            still = system.circulatory(0.0)
+            turning = sp.csc_array(system.circulatory(1.0) - still)
+            # Rows of the transposed matrices are columns.
+            ends, rows, values = on_one_pattern(system.damping(0.0).T, system.gyroscopic.T)
+            damping = [sp.csc_array((data, rows, ends), shape=turning.shape) for data in values]
+            self._parts = sp.csc_array(system.stiffness(0.0) + still), turning, *damping
+        return self._parts
+
+    def _factored(self, speed: float, w: float) -> Factor:
+        """Factors of K + i w D - w^2 M of a model without tables at a reference speed and a frequency in rad/s."""
+        if self._sums is None:
+            self._sums = SparseSums(self.system.mass, *self._linear_parts())
+        return self._sums.factor((-(w**2), 1.0, speed, 1j * w, 1j * w * speed))
 
     def loads(self, orders: list[Order], speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies (o,) in rad/s and loads (n, o) of all orders at a reference speed."""
         w = np.array([order.frequency_at(speed) for order in orders])
         return w, np.array([order.load(self.lines, speed) for order in orders]).T
 
-    def read(self, orders: list[Order], speed: float, w: np.ndarray, q: np.ndarray) -> Readings:
-        """What the displacements q (n, o) of the orders mean."""
+    def read(self, orders: list[Order], speed: float | np.ndarray, w: np.ndarray, q: np.ndarray) -> Readings:
+        """What the displacements q (n, o) of the orders mean, at one reference speed in rad/s or at one for each.
+
+        Of a model with tables it is one.
+        """
         lines = self.lines
         error = np.array([order.error for order in orders])
         varied = np.array([order.force for order in orders])
         approach = (lines.vectors.T @ q).T
-        force = lines.forces(approach - error, w, speed) + varied
-        held, seated = (-(K @ q + (C @ q) * (1j * w)).T for K, C in self._force_rows(speed))
+        force = lines.forces(approach - error, w, np.reshape(speed, (-1, 1))) + varied
+        held, seated = (-(K @ q + (C @ q) * (1j * w)).T for K, C in self._force_rows(np.ravel(speed)[0]))
         moved = (self._points @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
         place = np.array([state.face.place if state.face else 0.0 for state in lines.states])
@@ -267,18 +296,3 @@ class Plant:
                 tuple(sp.csr_array(sp.csr_array(rows) @ sp.csr_array(T)) for rows in in_seats),
             )
         return self._rows
-
-
-def _on_one_pattern(first: sp.csc_array, second: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:
-    """Both matrices with the places of each other's entries, so that a sum of them is one of their data."""
-    places = sp.coo_array(abs(first) + abs(second))
-    n = first.shape[0]
-    order = np.lexsort((places.row, places.col))
-    rows = places.row[order]
-    columns = places.col[order]
-    ends = np.searchsorted(columns, np.arange(n + 1))
-    whole = []
-    for part in (first, second):
-        data = np.asarray(sp.csr_array(part)[rows, columns]).ravel() if rows.size else np.zeros(0)
-        whole.append(sp.csc_array((data, rows, ends), shape=first.shape))
-    return whole[0], whole[1]

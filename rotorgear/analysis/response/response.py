@@ -107,7 +107,7 @@ def response(
         sweep = (
             direct_sweep(plant, orders, chosen, progress)
             if how == "direct"
-            else modal_sweep(plant, orders, chosen, modes, progress)
+            else modal_sweep(plant, orders, chosen, modes, progress, throughout=method == "modal")
         )
         readings, solver_error, checked, words = sweep
         progress(0.96, "error estimate")

@@ -239,7 +239,7 @@ class _Matrices:
         parts = (dynamics.M, dynamics.D, dynamics.K)
         M, D, K = (A.toarray() if V is None else V.T @ (A @ V) for A in parts)
         if dynamics.low_rank is not None:
-            P, d = dynamics.low_rank
+            P, d, _ = dynamics.low_rank
             P = P if V is None else V.T @ P
             D = D + (P * d) @ P.T
         return cls(M, D, K, B, C) if V is None else cls(0.5 * (M + M.T), D, K, V.T @ B, C @ V)

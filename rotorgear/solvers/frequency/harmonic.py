@@ -7,7 +7,10 @@ below the tolerance. Greedy reduced basis: Hesthaven, Rozza and Stamm, Certified
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
@@ -15,35 +18,50 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.sparse.entries import magnitudes, times
+from rotorgear.solvers.sparse.factor import Factor, factor_general
 
 # Residuals relative to the forces inside: refined until below the first, refused above the second.
 _RESIDUAL = 1e-14
 _LARGEST_RESIDUAL = 1e-11
-_REFINEMENTS = 6
+_REFINEMENTS = 24
 # Relative distances of the frequency whose factors are used: farther only where nearer ones fail, since refinement gets slower.
 _ASIDE = (0.0, 1e-8, 1e-6, 1e-4)
 # What a new vector adds to a basis counts from this share of its length on.
 _NEW = 1e-8
 
 
-# P (n, m) and d (m,) of the damping P diag(d) P^T of single modes, which is never assembled.
-LowRank = tuple[np.ndarray, np.ndarray]
+# Modes whose damping moves the response by less than this share near a frequency are left to the refinement, which converges
+# about so fast then; it ends where a step gains less than the second.
+_STRONG = 0.1
+_GAINS = 0.7
+
+
+class LowRank(NamedTuple):
+    """Damping P diag(d) P^T of single modes, which is never assembled: P (n, m), d (m,), and their frequencies (m,) in rad/s."""
+
+    P: np.ndarray
+    d: np.ndarray
+    w: np.ndarray
 
 
 @dataclass(frozen=True)
 class Dynamics:
-    """M, D, K at one parameter, sparse (n, n); D and K may be non-symmetric."""
+    """M, D, K at one parameter, sparse (n, n); D and K may be non-symmetric.
+
+    `factored` gives factors of K + i w D - w^2 M at a frequency in rad/s where somebody has them cheaper than from the matrices.
+    """
 
     M: sp.csc_array
     D: sp.csc_array
     K: sp.csc_array
     low_rank: LowRank | None = None
+    factored: Callable[[float], Factor] | None = None
 
     def cut(self, dofs: np.ndarray) -> Dynamics:
         """Those of some dofs (k,) on which no others act."""
         M, D, K = (sp.csc_array(A[dofs][:, dofs]) for A in (self.M, self.D, self.K))
-        low_rank = None if self.low_rank is None else (self.low_rank[0][dofs], self.low_rank[1])
+        low_rank = None if self.low_rank is None else self.low_rank._replace(P=self.low_rank.P[dofs])
         return Dynamics(M, D, K, low_rank)
 
     def solve(self, w: float, f: np.ndarray) -> np.ndarray:
@@ -54,7 +72,7 @@ class Dynamics:
         """
         f = np.asarray(f, complex)
         if self.low_rank is None:
-            return factor_general(self._stiffness(w)).solve(f)
+            return self._factor(w).solve(f)
         for aside in _ASIDE:
             q = self._refined(w, w * (1.0 + aside), f)
             if q is not None:
@@ -71,60 +89,107 @@ class Dynamics:
         """
         assert self.low_rank is not None
         try:
-            factor = factor_general(self._stiffness(near))
+            factor = self._factor(near)
         except ConvergenceError:
             return None
-        P, d = self.low_rank
-        d = 1j * near * d
+        _, d, own = self.low_rank
+        strong = np.abs(near * d) >= _STRONG * np.abs(own**2 - near**2)
+        if not strong.all():
+            q = self._iterated(factor, w, near, f, strong)
+            if q is not None:
+                return q
+        return self._iterated(factor, w, near, f, np.ones(len(d), bool))
+
+    def _iterated(self, factor: Factor, w: float, near: float, f: np.ndarray, chosen: np.ndarray) -> np.ndarray | None:
+        """Solution by Woodbury's formula for the damping of chosen modes (m,), refined for all; None where that fails."""
+        assert self.low_rank is not None
+        P = self.low_rank.P[:, chosen]
+        d = (1j * near * self.low_rank.d[chosen])[:, None]
         spread = factor.solve(P.astype(complex))
-        inner = la.lu_factor(np.eye(len(d)) + d[:, None] * (P.T @ spread))
+        inner = np.eye(len(d)) + d * times(P.T, spread)
         q = np.zeros_like(f)
+        rest = f
+        residual = np.inf
         for _ in range(_REFINEMENTS):
-            step = factor.solve(f - self.apply(w, q))
-            q = q + step - spread @ la.lu_solve(inner, d[:, None] * (P.T @ step))
-            residual = self.relative_residual(w, f, q)
+            step = factor.solve(rest)
+            q = q + step - spread @ np.linalg.solve(inner, d * times(P.T, step))
+            rest = f - self.apply(w, q)
+            before = residual
+            residual = self._share(rest, w, f, q)
             if residual <= _RESIDUAL:
                 return np.asarray(q)
+            if residual > _GAINS * before:
+                break
         return np.asarray(q) if residual <= _LARGEST_RESIDUAL else None
 
-    def _stiffness(self, w: float) -> sp.csc_array:
-        """K + i w D - w^2 M, without the damping of low rank."""
-        return sp.csc_array(self.K + (1j * w) * self.D - w**2 * self.M, dtype=complex)
+    def _factor(self, w: float) -> Factor:
+        """Of K + i w D - w^2 M, without the damping of low rank."""
+        if self.factored is not None:
+            return self.factored(w)
+        return factor_general(sp.csc_array(self.K + (1j * w) * self.D - w**2 * self.M, dtype=complex))
 
     def relative_residual(self, w: float | np.ndarray, f: np.ndarray, q: np.ndarray) -> float:
         """Largest residual of Z q = f over the columns, relative to the sizes of the forces inside."""
-        rest = f - self.apply(w, q)
-        inside = abs(self.K) @ np.abs(q) + (abs(self.M) @ np.abs(q)) * np.asarray(w) ** 2
+        return self._share(f - self.apply(w, q), w, f, q)
+
+    def _share(self, rest: np.ndarray, w: float | np.ndarray, f: np.ndarray, q: np.ndarray) -> float:
+        """Of a residual f - Z q, (n, p), as `relative_residual` has it."""
+        K, M = self._magnitudes
+        inside = K @ np.abs(q) + (M @ np.abs(q)) * np.asarray(w) ** 2
         scale = np.linalg.norm(inside, axis=0) + np.linalg.norm(f, axis=0)
         return float(np.max(np.linalg.norm(rest, axis=0) / np.where(scale > 0.0, scale, 1.0)))
 
+    @cached_property
+    def _magnitudes(self) -> tuple[sp.csc_array, sp.csc_array]:
+        """|K| and |M|."""
+        return magnitudes(self.K), magnitudes(self.M)
+
     def apply(self, w: float | np.ndarray, q: np.ndarray) -> np.ndarray:
         """Z q, (n, p), at one frequency or at one for each column."""
-        out = self.K @ q + (self.D @ q) * (1j * w) - (self.M @ q) * (w**2)
+        out = times(self.K, q) + times(self.D, q) * (1j * w) - times(self.M, q) * (w**2)
         if self.low_rank is not None:
-            P, d = self.low_rank
-            out = out + (P @ (d[:, None] * (P.T @ q))) * (1j * w)
+            P, d, _ = self.low_rank
+            out = out + times(P, d[:, None] * times(P.T, q)) * (1j * w)
         return np.asarray(out)
+
+
+@dataclass(frozen=True)
+class DynamicsOverSpeed:
+    """Dynamics that are linear in a parameter x: those at x = 0, and what D and K grow by with x, sparse (n, n)."""
+
+    still: Dynamics
+    D: sp.csc_array
+    K: sp.csc_array
+
+    def apply(self, x: np.ndarray, w: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Z q, (n, p), at a parameter and a frequency in rad/s for each column, (p,) each."""
+        out = self.still.apply(w, q) + times(self.D, q) * (1j * w * x)
+        return out + times(self.K, q) * x if self.K.nnz else out
+
+    def projected(self, X: np.ndarray) -> tuple[Pencil, Pencil]:
+        """The projection at x = 0 in a real basis X (n, r), and what it grows by with x."""
+        still = projected(self.still, X)
+        return still, Pencil(np.zeros_like(still.M), X.T @ (self.D @ X), X.T @ (self.K @ X))
 
 
 def projected(dynamics: Dynamics, X: np.ndarray) -> Pencil:
     """X^T M X, X^T D X and X^T K X in a real basis X (n, r)."""
     M, D, K = (X.T @ (part @ X) for part in (dynamics.M, dynamics.D, dynamics.K))
     if dynamics.low_rank is not None:
-        P, d = dynamics.low_rank
+        P, d, _ = dynamics.low_rank
         seen = P.T @ X
         D = D + seen.T @ (d[:, None] * seen)
     return Pencil(M, D, K)
 
 
 def stiffness_in_basis(pencil: Pencil, w: np.ndarray) -> np.ndarray:
-    """Z (p, r, r) in a basis at p frequencies w (p,) in rad/s."""
-    return np.asarray(pencil.K[None] + 1j * w[:, None, None] * pencil.D[None] - (w**2)[:, None, None] * pencil.M[None])
-
-
-def response_in_basis(pencil: Pencil, w: np.ndarray, f: np.ndarray) -> np.ndarray:
-    """Coordinates y (r, p) at p frequencies w (p,) in rad/s, each with its own projected right side f (r, p)."""
-    return np.asarray(np.linalg.solve(stiffness_in_basis(pencil, w), f.T[:, :, None])[:, :, 0].T)
+    """Z (p, r, r) in a basis at p frequencies w (p,) in rad/s; of a pencil of stacks (p, r, r), each at its own."""
+    at = w[:, None, None]
+    Z = np.empty((len(w), *pencil.K.shape[-2:]), complex)
+    # Part by part: a complex product of the whole stack costs as much as its solution.
+    Z.real = pencil.K - at**2 * pencil.M
+    Z.imag = at * pencil.D
+    return Z
 
 
 def orthonormal(X: np.ndarray, new: np.ndarray, scale: np.ndarray) -> np.ndarray:

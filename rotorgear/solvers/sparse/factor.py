@@ -38,19 +38,36 @@ def single_thread(n: int) -> AbstractContextManager[object]:
 
 
 class Factor:
-    """Sparse LU of a square matrix; `solve(b)` for b (n,) or (n, p), real or complex like the matrix."""
+    """Sparse LU of a square matrix; `solve(b)` for b (n,) or (n, p), real or complex like the matrix.
 
-    def __init__(self, lu: SuperLU, *, is_complex: bool) -> None:
+    With `order` (n,) the factors are those of A[order][:, order], and `solve` is still that of A.
+    """
+
+    def __init__(self, lu: SuperLU, *, is_complex: bool, order: np.ndarray | None = None) -> None:
         self._lu: Any = lu  # the stubs of scipy know fewer types of right-hand sides than SuperLU takes
         self._is_complex = is_complex  # SuperLU itself tells by a copy of all its entries only
+        self._order = order
 
     @property
     def n(self) -> int:
         """Number of unknowns."""
         return int(self._lu.shape[0])
 
+    @property
+    def columns(self) -> np.ndarray:
+        """Columns (n,) in the order in which they were eliminated."""
+        return np.argsort(self._lu.perm_c)
+
     def solve(self, b: np.ndarray, *, transposed: bool = False) -> np.ndarray:
         """Solve A x = b, or A^T x = b when `transposed`. A real factor accepts a complex b."""
+        if self._order is None:
+            return self._solved(b, transposed)
+        x = self._solved(b[self._order], transposed)
+        back = np.empty_like(x)
+        back[self._order] = x
+        return back
+
+    def _solved(self, b: np.ndarray, transposed: bool) -> np.ndarray:
         trans: Literal["T", "N"] = "T" if transposed else "N"
         if not np.iscomplexobj(b) or self._is_complex:
             return self._solve(b, trans)
@@ -124,8 +141,22 @@ def factor_general(A: sp.csc_array) -> Factor:
         ConvergenceError: the matrix is singular or holds NaN.
     """
     # Rows are exchanged only where the diagonal is less than a tenth of its column: the symmetric order keeps its low fill.
-    lu = _superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True})
-    return Factor(lu, is_complex=np.iscomplexobj(A.data))
+    return Factor(_general_superlu(A, "MMD_AT_PLUS_A"), is_complex=np.iscomplexobj(A.data))
+
+
+def factor_in_order(A: sp.csc_array, order: np.ndarray) -> Factor:
+    """Factor a general sparse matrix whose rows and columns already stand in a fill-reducing order (n,) of another's.
+
+    `solve` is that of the other matrix: to look for the order is half of the work where many matrices share a pattern.
+
+    Raises:
+        ConvergenceError: the matrix is singular or holds NaN.
+    """
+    return Factor(_general_superlu(A, "NATURAL"), is_complex=np.iscomplexobj(A.data), order=order)
+
+
+def _general_superlu(A: sp.csc_array, order: Literal["MMD_AT_PLUS_A", "NATURAL"]) -> SuperLU:
+    return _superlu(A, permc_spec=order, diag_pivot_thresh=0.1, options={"SymmetricMode": True})
 
 
 def solve_error(A: sp.csc_array, factor: Factor) -> float:

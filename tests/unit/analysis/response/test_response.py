@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rotorgear as rg
+from rotorgear.analysis.response import run_up
 from rotorgear.cli.main import app
 from rotorgear.results.response import ResponseResult
 from tests.overhung import overhung_disk
@@ -239,6 +240,24 @@ def test_the_modal_solution_is_the_direct_one_within_its_own_error_statement() -
         apart = np.abs(getattr(modal, name) - exact).max(axis=(1, 2) if name == "mesh_force" else (1, 2, 3))
         assert np.all(apart <= 1e-4 * np.abs(exact).reshape(len(exact), -1).max(axis=1))
     assert 0.0 < modal.error_estimate < 0.02  # frequencies within 1e-3, half-power widths of 4e-2
+
+
+def test_orders_in_a_basis_and_direct_ones_stand_in_their_places(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Every second order is solved directly.
+    unbalances = {
+        name: {"shaft": name, "at": at, "magnitude": 1e-4}
+        for name, at in {"input": "0.05 m", "output": "0.2 m"}.items()
+    }
+    model = split_torque(unbalances=unbalances)
+    wish: Data = {"speeds": list(1712.0 * np.linspace(0.2, 1.2, 24)), "fmax": 5000.0, "elements": 1}
+    plain = rg.response(model, **wish, method="direct")
+    turns = iter([True, False] * len(plain.orders))
+    monkeypatch.setattr(run_up, "_DIRECT_UP_TO", 0)
+    monkeypatch.setattr(run_up, "basis_pays", lambda *_: next(turns))
+    mixed = rg.response(model, **wish)
+    assert f"; {len(plain.orders) // 2} orders by direct" in mixed.method
+    for one, other in zip(plain.mesh_force, mixed.mesh_force, strict=True):
+        assert np.abs(one - other).max() <= 1e-5 * np.abs(one).max()
 
 
 def test_the_error_estimate_is_of_the_size_of_the_error() -> None:
