@@ -120,14 +120,14 @@ class Painter:
         casing = "casing" in solids.kind_names and solids.kind == solids.kind_names.index("casing")
         alpha = np.where(casing, _THROUGH, 1.0)
         order = np.argsort(depth)
-        polygons = [*corners[0], *corners[1]]
+        # One array, triangles with their last corner twice: matplotlib makes a path of each of a list with many checks.
+        polygons = np.concatenate([corners[0], corners[1][:, [0, 1, 2, 2]]])
         figure = new_figure(self.size)
         figure.set_layout_engine("none")
         axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         colours = np.column_stack([colour, np.broadcast_to(alpha, len(colour))])[order]
-        axis.add_collection(
-            PolyCollection([polygons[k] for k in order], facecolors=colours, edgecolors=colours, linewidths=0.25)
-        )
+        faces_seen = PolyCollection(polygons[order], facecolors=colours, edgecolors=colours, linewidths=0.25)
+        axis.add_collection(faces_seen, autolim=False)
         reach = 0.56 * max(self.span[0], self.span[1] * self.size[0] / self.size[1])
         axis.set_xlim(-reach, reach)
         axis.set_ylim(-reach * self.size[1] / self.size[0], reach * self.size[1] / self.size[0])
