@@ -2,12 +2,14 @@
 
 Between its nodes a shaft is free of strain in its six rigid-body motions only. So the null space of the stiffness lies in the
 span of these motions of every shaft (and of single pedestals), where it is small, and it does not depend on how many
-decades the stiffnesses span. Parts that nothing joins are solved apart: a thousand loose shafts cost a thousand small problems.
+decades the stiffnesses span. Bodies are solved by themselves, then parts that something joins: a train of two hundred shafts in
+their bearings is one problem of as many torsions, and a thousand loose shafts are a thousand small problems.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
@@ -29,8 +31,9 @@ Strained = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     """Return R (n, r), a basis of the motions of the free dofs that strain none of the element groups."""
-    P = _candidates(system)
+    bodies, P = _candidates(system)
     T = sp.csc_array(system.dofs.transform)
+    selects = system.dofs.selects
     # The elements of which some strain meets a stiffness.
     strained: list[Strained] = []
     for group in groups:
@@ -46,11 +49,37 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         if some.any():
             strained.append((np.broadcast_to(B, (e, *B.shape[1:]))[some], used[some], group.dofs[some]))
 
-    # A number for each of all dofs (a,), the same for those that a candidate, a free dof or an element joins.
+    # Bodies by themselves first: most are held by what is theirs alone, and a long train has few motions left to be solved for.
+    body = _labels(P, T, [dofs[None] for dofs in bodies])
+    inside = [np.all(body[own] == body[own[:, :1]], axis=1) for _, _, own in strained]
+    alone = [(B[at], used[at], own[at]) for (B, used, own), at in zip(strained, inside, strict=True) if at.any()]
+    between = [
+        (B[~at], used[~at], own[~at]) for (B, used, own), at in zip(strained, inside, strict=True) if not at.all()
+    ]
+    left = sp.lil_array((P.shape[1], P.shape[1]))
+    count = 0
+    for part in _parts(P, T, alone, body):
+        kept = _unstrained(part.P, part.T, selects, part.strained)
+        left[np.ix_(part.moving, count + np.arange(kept.shape[1]))] = kept
+        count += kept.shape[1]
+    P = sp.csc_array(P @ sp.csc_array(left)[:, :count])
+    P.eliminate_zeros()
+
+    found = [np.zeros((system.n, 0))]
+    for part in _parts(P, T, between, _labels(P, T, [own for _, _, own in between])):
+        R = _free_of_strain(part.P, part.T, selects, part.strained)
+        whole = np.zeros((system.n, R.shape[1]))
+        whole[part.free] = R
+        found.append(whole)
+    return np.hstack(found)
+
+
+def _labels(P: sp.csc_array, T: sp.csc_array, joined: list[np.ndarray]) -> np.ndarray:
+    """A number for each of all dofs (a,), the same for those of one candidate, of one free dof or of a row (e, d) of `joined`."""
     dofs = [P.indices, T.indices]
     count = P.shape[1] + T.shape[1]
     joint = [np.repeat(np.arange(count), np.concatenate([np.diff(P.indptr), np.diff(T.indptr)]))]
-    for _, _, own in strained:
+    for own in joined:
         e, d = own.shape
         dofs.append(own.ravel())
         joint.append(count + np.repeat(np.arange(e), d))
@@ -58,8 +87,28 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     ends = (np.concatenate(dofs), P.shape[0] + np.concatenate(joint))
     size = P.shape[0] + count
     graph = sp.coo_array((np.ones(len(ends[0]), dtype=np.int8), ends), shape=(size, size))
-    label = connected_components(graph, directed=False)[1][: P.shape[0]]
+    return np.asarray(connected_components(graph, directed=False)[1][: P.shape[0]])
 
+
+@dataclass(frozen=True)
+class _Part:
+    """Dofs that are joined.
+
+    Attributes:
+        moving, free: (p,) and (f,) its candidates and free dofs among all.
+        P: (a, p) its candidates. T: (a, f) its dofs by its free ones.
+        strained: its elements, with its own numbers of dofs.
+    """
+
+    moving: np.ndarray
+    free: np.ndarray
+    P: np.ndarray
+    T: sp.csc_array
+    strained: list[Strained]
+
+
+def _parts(P: sp.csc_array, T: sp.csc_array, strained: list[Strained], label: np.ndarray) -> Iterator[_Part]:
+    """What dofs of one label (a,) have of candidates P, of T and of the elements, where a candidate moves them."""
     rows = by_label(label)
     columns = by_label(label[P.indices[P.indptr[:-1]]])
     unknowns = by_label(label[T.indices[T.indptr[:-1]]])
@@ -70,31 +119,24 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     for B, used, own in strained:
         for k, chosen in by_label(label[own[:, 0]]).items():
             elements.setdefault(k, []).append((B[chosen], used[chosen], place[own[chosen]]))
-
-    found = [np.zeros((system.n, 0))]
     for k, moving in columns.items():
         here = rows[k]
         free = unknowns.get(k, np.zeros(0, dtype=int))
-        here_only = sp.csc_array(T[here][:, free])
-        R = _free_of_strain(P[here][:, moving].toarray(), here_only, system.dofs.selects, elements.get(k, []))
-        whole = np.zeros((system.n, R.shape[1]))
-        whole[free] = R
-        found.append(whole)
-    return np.hstack(found)
+        yield _Part(moving, free, P[here][:, moving].toarray(), sp.csc_array(T[here][:, free]), elements.get(k, []))
 
 
-def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[Strained]) -> np.ndarray:
-    """A basis (f, r) of the motions of free dofs in the span of candidates P (a, p) that strain nothing; T is (a, f)."""
+def _followed(T: sp.csc_array, selects: bool, motions: np.ndarray) -> np.ndarray:
+    """T+ motions (f, k): the motions of the free dofs that come nearest to those (a, k) of all."""
+    # LAPACK refuses a problem without unknowns or right-hand side.
+    if selects or not motions.shape[1] or not T.shape[1]:
+        return np.asarray(T.T @ motions)
+    return np.asarray(la.lstsq(T.toarray(), motions)[0])
 
-    def followed(motions: np.ndarray) -> np.ndarray:
-        """T+ motions (f, k): the motions of the free dofs that come nearest to those (a, k) of all."""
-        # LAPACK refuses a problem without unknowns or right-hand side.
-        if selects or not motions.shape[1] or not T.shape[1]:
-            return np.asarray(T.T @ motions)
-        return np.asarray(la.lstsq(T.toarray(), motions)[0])
 
+def _unstrained(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[Strained]) -> np.ndarray:
+    """Combinations (p, r) of candidates P (a, p) that the free dofs can follow, T (a, f), and that strain nothing."""
     # What of the candidates the free dofs can't follow must vanish: (I - T T+) P, each row scaled to its largest entry.
-    off_range = P - T @ followed(P)
+    off_range = P - T @ _followed(T, selects, P)
     largest = np.abs(off_range).max(axis=1)
     held = largest > 1e-12
     rows = [off_range[held] / largest[held, None]]
@@ -108,7 +150,12 @@ def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: lis
     _, size, right = la.svd(A) if A.shape[0] else (None, np.zeros(0), np.eye(P.shape[1]))
     # Rows are scaled to 1: where the largest singular value is far below, nothing holds at all.
     strains_some = int(np.count_nonzero(size > _ZERO * max(float(size.max(initial=0.0)), 1.0)))
-    free = followed(P @ right[strains_some:].T)
+    return np.asarray(right[strains_some:].T)
+
+
+def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[Strained]) -> np.ndarray:
+    """A basis (f, r) of the motions of free dofs in the span of candidates P (a, p) that strain nothing; T is (a, f)."""
+    free = _followed(T, selects, P @ _unstrained(P, T, selects, strained))
     if not free.size:
         return np.zeros((T.shape[1], 0))
     # Candidates may move held dofs only; what is left of the basis is orthonormal again.
@@ -116,8 +163,11 @@ def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: lis
     return np.asarray(u[:, s > _ZERO])
 
 
-def _candidates(system: System) -> sp.csc_array:
-    """Six motions of each shaft about its middle, rotations scaled to its length, three of each pedestal, six of each casing."""
+def _candidates(system: System) -> tuple[list[np.ndarray], sp.csc_array]:
+    """The dofs (k,) of each body, and all motions (a, p).
+
+    They are six of each shaft about its middle, rotations scaled to its length, three of each pedestal and six of each casing.
+    """
     nodes = system.nodes
     # Dofs (k,) that move together, and their motions (k, 6) or (k, 3).
     moving: list[tuple[np.ndarray, np.ndarray]] = []
@@ -146,4 +196,4 @@ def _candidates(system: System) -> sp.csc_array:
     )
     P = sp.csc_array(sp.coo_array((values, (rows, columns)), shape=(system.dofs.transform.shape[0], first[-1])))
     P.eliminate_zeros()
-    return P
+    return [dofs for dofs, _ in moving], P

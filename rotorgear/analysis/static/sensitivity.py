@@ -15,6 +15,8 @@ from rotorgear.analysis.static.solve import Equilibrated
 from rotorgear.errors import AnalysisError
 from rotorgear.note import Note
 
+_TOGETHER = 32  # loads that are solved for at once
+
 
 def sensitivities(
     equilibrium: Equilibrated,
@@ -30,44 +32,63 @@ def sensitivities(
     masks = {mesh: np.array([name == mesh for name in lines.names], float) for mesh in lines.names}
     for mesh, own in masks.items():
         mine = own * active * opens
-        terms.append((f"meshes.{mesh}.index_error", "N/m", lines.vectors @ mine, -mine))
+        terms.append((f"meshes.{mesh}.index_error", "N/m", _sum(lines.vectors, mine), -mine))
     for mesh in masks:
         second = [s.contact.mesh == mesh and s.contact.helix == 1 for s in lines.states]
         if any(second):
             mine = np.array(second) * active * opens
-            terms.append((f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine))
+            terms.append((f"meshes.{mesh}.helix_index_error", "N/m", _sum(lines.vectors, mine), -mine))
     for mesh, own in masks.items():
         mine = own * equilibrium.force
-        right = -(lines.vectors @ mine + lines.tilt @ (own * equilibrium.moment))
+        right = -(_sum(lines.vectors, mine) + _sum(lines.tilt, own * equilibrium.moment))
         terms.append((f"meshes.{mesh}.stiffness", "N", right, mine))
     terms += [(part, "N", right, np.zeros(len(active))) for part, right in _stiffness_terms(equilibrium).items()]
     turning = lines.turned.T @ equilibrium.q
     layout = equilibrium.system.layout
+    tilting = lines.tilted.T @ equilibrium.q
     cylindrical = {state.contact.mesh for state in lines.states if state.contact.cone is None}
     for mesh, own in masks.items():
         # What turns about an axis leaves the other axis of a bevel pair, and a planet has its place from its carrier.
         if mesh not in cylindrical or layout.mesh(mesh).carrier is not None:
             continue
-        right = -(lines.turned @ (own * equilibrium.force) + lines.vectors @ (own * active * turning))
-        right -= lines.tilted @ (own * equilibrium.moment)
-        right -= lines.tilt @ (own * resists * (lines.tilted.T @ equilibrium.q))
+        right = -(_sum(lines.turned, own * equilibrium.force) + _sum(lines.vectors, own * active * turning))
+        right -= _sum(lines.tilted, own * equilibrium.moment)
+        right -= _sum(lines.tilt, own * resists * tilting)
         terms.append((f"meshes.{mesh}.centre_line_angle", "N/rad", right, own * active * turning))
 
-    # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.
-    kept = []
-    columns = []
+    pressed, left = _approaches(equilibrium, [(name, right) for name, _, right, _ in terms])
+    kept = [(name, unit, direct) for name, unit, _, direct in terms if name in pressed]
+    approach = np.array([pressed[name] for name, *_ in kept]).reshape(len(kept), len(active))
+    force = active * approach + np.array([direct for *_, direct in kept]).reshape(approach.shape)
+    return tuple(name for name, *_ in kept), tuple(unit for _, unit, _ in kept), force, left
+
+
+def _sum(columns: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Columns (n, c) times weights (c,), few of which are not zero."""
+    used = np.flatnonzero(weights)
+    return np.asarray(columns[:, used] @ weights[used])
+
+
+def _approaches(
+    equilibrium: Equilibrated, loads: list[tuple[str, np.ndarray]]
+) -> tuple[dict[str, np.ndarray], tuple[Note, ...]]:
+    """What named loads (n,) add to the approach of each contact, (c,), and notes on those without a derivative."""
+    found: dict[str, np.ndarray] = {}
     left = []
-    for name, unit, right, direct in terms:
+    # Many at once; where one of them really pushes a free motion, which round-off of a stiffness term does not, one by one.
+    waiting = [loads[at : at + _TOGETHER] for at in range(0, len(loads), _TOGETHER)]
+    while waiting:
+        block = waiting.pop(0)
         try:
-            columns.append(equilibrium.solver.solve(right[:, None])[:, 0])
+            dq = equilibrium.solver.solve(np.column_stack([right for _, right in block]))
         except AnalysisError:
-            left.append(Note(name, "the derivative by it", "it would set the free motions going"))
+            if len(block) == 1:
+                left.append(Note(block[0][0], "the derivative by it", "it would set the free motions going"))
+            else:
+                waiting = [[one] for one in block] + waiting
             continue
-        kept.append((name, unit, direct))
-    dq = np.array(columns).reshape(len(kept), len(equilibrium.q)).T
-    direct_part = np.array([direct for *_, direct in kept]).reshape(len(kept), len(active))
-    force = (active[:, None] * (lines.vectors.T @ dq)).T + direct_part
-    return tuple(name for name, *_ in kept), tuple(unit for _, unit, _ in kept), force, tuple(left)
+        found |= zip([name for name, _ in block], (equilibrium.lines.vectors.T @ dq).T, strict=True)
+    return found, tuple(left)
 
 
 def _stiffness_terms(equilibrium: Equilibrated) -> dict[str, np.ndarray]:

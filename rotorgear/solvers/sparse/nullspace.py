@@ -58,6 +58,8 @@ def _bodies(R: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
 
 def by_label(label: np.ndarray) -> dict[int, np.ndarray]:
     """The places of each number among `label` (k,), ascending."""
+    if label.size and np.all(label == label[0]):  # as of one element group, of which there are many
+        return {int(label[0]): np.arange(label.size)}
     order = np.argsort(label, kind="stable")
     values, first = np.unique(label[order], return_index=True)
     return dict(zip(values.tolist(), np.split(order, first[1:]), strict=False))  # no places have one empty part

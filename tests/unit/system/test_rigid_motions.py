@@ -9,6 +9,19 @@ import rotorgear as rg
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
+COUPLING = {
+    "from_shaft": "s0",
+    "from_at": 0.1,
+    "to_shaft": "s2",
+    "to_at": 0.0,
+    "stiffness": {"radial": 1e8, "axial": 1e8, "tilt": 1e5, "torsion": 1e5},
+}
+PAIRS = {
+    f"{shaft}_{k}": {"shaft": shaft, "at": at, "stiffness": {"radial": 1e8}}
+    for shaft in ("s0", "s1")
+    for k, at in enumerate((0.0, 0.1))
+}
+
 
 def loose(count: int, **parts: object) -> System:
     """So many shafts with nothing that holds them but what is given."""
@@ -23,19 +36,16 @@ def loose(count: int, **parts: object) -> System:
         # A bearing across one shaft holds two motions, a pin three, a coupling of six stiffnesses six of the two.
         ({"bearings": {"b": {"shaft": "s0", "at": 0.0, "stiffness": {"radial": 1e8}}}}, 16),
         ({"supports": {"s": {"shaft": "s1", "at": 0.05, "fixed": ["x", "y", "z"]}}}, 15),
+        ({"couplings": {"c": COUPLING}}, 12),
+        # Each of two shafts in its bearings keeps two, which the coupling hands on to the third, or takes with a held torsion.
+        ({"bearings": PAIRS, "couplings": {"c": COUPLING}}, 4),
         (
             {
-                "couplings": {
-                    "c": {
-                        "from_shaft": "s0",
-                        "from_at": 0.1,
-                        "to_shaft": "s2",
-                        "to_at": 0.0,
-                        "stiffness": {"radial": 1e8, "axial": 1e8, "tilt": 1e5, "torsion": 1e5},
-                    }
-                }
+                "bearings": PAIRS,
+                "couplings": {"c": COUPLING},
+                "supports": {"s": {"shaft": "s2", "at": 0.05, "fixed": ["torsion"]}},
             },
-            12,
+            3,
         ),
     ],
 )
