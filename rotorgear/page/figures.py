@@ -121,7 +121,7 @@ class Painter:
         alpha = np.where(casing, _THROUGH, 1.0)
         order = np.argsort(depth)
         # One array, triangles with their last corner twice: matplotlib makes a path of each of a list with many checks.
-        polygons = np.concatenate([corners[0], corners[1][:, [0, 1, 2, 2]]])
+        polygons: Any = np.concatenate([corners[0], corners[1][:, [0, 1, 2, 2]]])
         figure = new_figure(self.size)
         figure.set_layout_engine("none")
         axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.frequency.frequency_range import TOLERANCE, FrequencyRange
-from rotorgear.solvers.frequency.harmonic import Dynamics, projected
+from rotorgear.solvers.frequency.harmonic import Dynamics, LowRank, projected
 
 
 def chain(n: int, damping: float, skew: float = 0.0) -> Dynamics:
@@ -72,7 +72,7 @@ def test_damping_of_single_modes_acts_as_the_matrix_that_it_stands_for(at_resona
     if at_resonance:
         plain = Dynamics(plain.M, 0.0 * plain.D, plain.K)
         assembled = Dynamics(plain.M, sp.csc_array(P @ np.diag(d) @ P.T), plain.K)
-    low_rank = Dynamics(plain.M, plain.D, plain.K, (P, d))
+    low_rank = Dynamics(plain.M, plain.D, plain.K, LowRank(P, d, np.zeros(3)))
     exact = np.linalg.solve((assembled.K + 1j * w * assembled.D - w**2 * assembled.M).toarray(), f)
     np.testing.assert_allclose(low_rank.solve(w, f), exact, rtol=1e-9, atol=1e-11 * np.abs(exact).max())
     pencil = projected(low_rank, np.eye(24))
