@@ -55,7 +55,7 @@ class Model(Tables):
         except ValidationError:
             problems, rest, broken = repaired(given)
             raise ModelError([*problems, *find_problems(rest, overrides, broken)]) from None
-        if self.carriers:
+        if self.carriers or any(gear.casing is not None for gear in self.gears.values()):
             once = {name: getattr(self, name) for name in type(self).model_fields}
             whole, problems = repeated(self, overrides)
             # The fields of a frozen part: what the analyses see are the parts of the whole gearbox.

@@ -96,6 +96,8 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
         if bearing.pedestal is not None:
             K = np.array(bearing.pedestal.stiffness.as_rows(), dtype=bool)
             held[nodes.of_pedestal(name), ~((K.any(axis=0) | K.any(axis=1)) & (np.arange(6) < 3))] = True
+    for name in layout.ring_seats:
+        held[nodes.at(*layout.place(f"gears.{name}"))] = True  # it moves with its seat
     by_support = int(held.sum()) - by_motion
     follows = np.array([motion == FOLLOWS for motion in nodes.internal], dtype=bool)
     inside = np.array([motion not in (*model.motions, CASING, GEAR_BODY) for motion in nodes.internal], dtype=bool)
@@ -103,8 +105,9 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
     groups = rigid_groups(model, nodes)
     counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}
     follow = layout.planets if not model.has("bending") else ()
-    if groups or nodes.feet or follow:
+    if groups or nodes.feet or follow or layout.ring_seats:
         tied = _with_feet(_tied(nodes, held, inside, groups, counts), layout, nodes)
+        tied = _with_rings(tied, layout, nodes)
         return _with_planets(tied, layout, nodes) if follow else tied
     free = np.flatnonzero(~np.concatenate([held.ravel(), inside]))
     size = held.size + inside.size
@@ -163,6 +166,22 @@ def _tied(
     places = (np.concatenate(rows).astype(INDEX), np.concatenate(cols).astype(INDEX))
     T = sp.csr_array((np.concatenate(values), places), shape=(size, n))
     return DofMap(T, np.full(size, -1), False, counts)
+
+
+def _with_rings(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:
+    """The map with the rings in casings, which their seats carry rigidly."""
+    size = dofs.transform.shape[0]
+    follow = sp.csr_array((size, size))
+    for name, (casing, number, arm) in layout.ring_seats.items():
+        place = layout.place(f"gears.{name}")
+        # A casing moves along the axes of the model.
+        carried = layout.model.shafts[place.shaft].frame.six.T @ rigid_transfer(arm)
+        rows = 6 * nodes.at(*place) + np.arange(6)
+        at = (np.repeat(rows, 6), np.tile(nodes.of_seat(casing, number), 6))
+        follow = follow + sp.csr_array(sp.coo_array((carried.ravel(), at), shape=(size, size)))
+    if not layout.ring_seats:
+        return dofs
+    return DofMap(sp.csr_array(dofs.transform + follow @ dofs.transform), dofs.column, False, dofs.held)
 
 
 def _with_planets(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:

@@ -89,7 +89,8 @@ def casing_notes(system: System) -> Iterator[str]:
             yield f"casings.{name}: the error of its reduction; its file says nothing of what was left out"
         yield from (f"casings.{name}: {note}" for note in body.notes)
         for part in model.casings[name].seats:
-            table = "bearings" if part in model.bearings else "nonlinear_elements"
+            tables = ("bearings", "nonlinear_elements", "gears")
+            table = next(table for table in tables if part in getattr(model, table))
             if getattr(model, table)[part].casing != name:
                 yield (
                     f"casings.{name}.seats.{part}: {table}.{part}, which stands elsewhere; casing = '{name}' among its keys "

@@ -73,6 +73,12 @@ def _in_seats(equilibrium: Equilibrated) -> Iterator[tuple[BearingSeat, np.ndarr
         if on_shaft is not None:
             frame = system.model.shafts[system.layout.place(address).shaft].frame
             yield seat, frame.six @ on_shaft
+    # What is missing for equilibrium at a ring comes from its seat.
+    rest = inner_forces(equilibrium) - equilibrium.loads if system.layout.ring_seats else np.zeros(0)
+    for name, seat in system.layout.ring_seats.items():
+        place = system.layout.place(f"gears.{name}")
+        node = system.nodes.at(*place)
+        yield seat, system.model.shafts[place.shaft].frame.six @ rest[6 * node : 6 * node + 6]
 
 
 def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:

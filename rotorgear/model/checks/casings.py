@@ -27,7 +27,8 @@ _UNIT = "files of meshes carry no unit of length; say unit = 'mm' or 'm'"
 def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     """Casings have mesh, unit and material; their seats are those of bearings."""
     tables = ("bearings", "nonlinear_elements")
-    seated = [*model.bearings, *model.nonlinear_elements, *(name for table, name in broken if table in tables)]
+    rings = {name: gear for name, gear in model.gears.items() if gear.casing is not None}
+    seated = [*model.bearings, *model.nonlinear_elements, *rings, *(name for table, name in broken if table in tables)]
     if model.casings:
         yield from _all_motions(model, "a casing", "seats move in all directions")
     for name, casing in model.casings.items():
@@ -69,7 +70,7 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
                 yield unknown(f"{address}.seats.{bearing}", bearing, seated, "a bearing")
             yield from _seat(f"{address}.seats.{bearing}", seat)
     # What stands in a casing has a seat there, and stands on nothing else.
-    for address, part in model.parts_of(*tables):
+    for address, part in [*model.parts_of(*tables), *((f"gears.{name}", ring) for name, ring in rings.items())]:
         owner = model.casings.get(part.casing or "")
         name = address.partition(".")[2]
         if owner is not None and owner.matrices is None and name not in owner.seats:

@@ -67,7 +67,7 @@ def find_problems(
         lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped), *loads_that_stand_still(rest)],
         lambda rest: [*massless_gears(rest), *planets.assembled(rest)],
     )
-    if model.carriers:
+    if model.carriers or any(gear.casing is not None for gear in model.gears.values()):
         dropped |= _parts_of(found)
         found += repeated(names.without(model, dropped), overrides)[1]
     for stage in stages:

@@ -53,10 +53,26 @@ def pressure_angle_problems(address: str, angle: float | None) -> Iterator[Probl
         yield Problem(address, degrees(angle), f"an angle between 0 and {_LARGEST_PRESSURE_ANGLE:g} deg")
 
 
+def _stand(address: str, gear: Gear) -> Iterator[Problem]:
+    """A gear stands on a shaft; a ring may stand in a casing instead."""
+    keys = [key for key in ("shaft", "at") if key in gear.model_fields_set]
+    if gear.casing is None:
+        for key, what in (("shaft", "name of the shaft"), ("at", "z of the gear's middle")):
+            if key not in keys:
+                yield missing(f"{address}.{key}", what)
+    elif keys:
+        yield Problem(address, f"casing and {' and '.join(keys)}", "one of the two ways to say where it stands")
+    elif not gear.internal:
+        yield Problem(
+            f"{address}.casing", f"'{gear.casing}' of an external gear", "shaft and at: only rings stand in casings"
+        )
+
+
 def gear_problems(model: Tables) -> Iterator[Problem]:
     """Yield what is missing or impossible in the teeth of each gear by itself."""
     for name, gear in model.gears.items():
         address = f"gears.{name}"
+        yield from _stand(address, gear)
         if gear.is_bevel:
             yield from _bevel_gear(address, gear)
             continue

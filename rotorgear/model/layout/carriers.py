@@ -20,6 +20,7 @@ from rotorgear.model.parts.carrier import Carrier, sister, written_name
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.references import PartName, references
+from rotorgear.model.parts.shaft import Shaft
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -57,10 +58,12 @@ def repeated(tables: Tables, overrides: Mapping[str, Mapping[str, Any]] | None =
         tables: as the file has them, whose names are those of parts.
         overrides: table -> name such as "sun_planet#2" -> the keys that one of the sisters has otherwise.
     """
+    tables, rings = _seated_rings(tables)
     if not tables.carriers:
-        return tables, []
+        return tables, rings
     parts = carried(tables)
     places, problems = _places(tables, parts)
+    problems = [*rings, *problems]
     # What hangs on a planet without a place is left out with it.
     lost = {part for part in parts if part[0] == "shafts" and part[1] not in places}
     arrows = list(references(tables))
@@ -88,6 +91,37 @@ def repeated(tables: Tables, overrides: Mapping[str, Mapping[str, Any]] | None =
     problems += _overridden(found, overrides or {})
     _coaxial(tables, found, parts)
     return tables.model_copy(update=found), problems
+
+
+def _seated_rings(tables: Tables) -> tuple[Tables, list[Problem]]:
+    """Rings in casings on shafts of their own, which stand still in the plane of a gear that meshes with them."""
+    seated = {name: gear for name, gear in tables.gears.items() if gear.casing is not None}
+    shafts = dict(tables.shafts)
+    gears = dict(tables.gears)
+    problems = []
+    for name, ring in seated.items():
+        beside = [
+            tables.gears[mesh.pinion] for mesh in tables.meshes.values() if mesh.gear == name and mesh.pinion in gears
+        ]
+        mate = next((gear for gear in beside if gear.shaft in tables.shafts), None)
+        carrier = tables.carriers.get(tables.shafts[mate.shaft].carrier or "") if mate else None
+        if name in tables.shafts:
+            problems.append(
+                Problem(f"gears.{name}", f"the name of shaft '{name}'", "a name of its own: its seat brings a shaft")
+            )
+            continue
+        if mate is None or carrier is None or carrier.shaft not in tables.shafts:
+            why = "a ring in a casing that no planet meshes with: give its shaft and at, and the shaft a bearing in the casing"
+            problems.append(Problem(f"gears.{name}.casing", f"'{ring.casing}'", why))
+            continue
+        own = tables.shafts[carrier.shaft]
+        at = tables.shafts[mate.shaft].station(mate.at)
+        where = {"position": tuple(own.frame.origin.tolist()), "axis": own.axis, "x_axis": own.x_axis}
+        shafts[name] = Shaft(**where, start=at, speed_ratio=0.0)
+        gears[name] = ring.model_copy(update={"shaft": name, "at": at})
+    for problem in problems:
+        gears.pop(problem.address.split(".")[1])
+    return (tables.model_copy(update={"shafts": shafts, "gears": gears}) if seated else tables), problems
 
 
 def _on_pin(tables: Tables, carrier: Carrier, place: Place, number: int) -> dict[str, Any]:

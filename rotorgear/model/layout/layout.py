@@ -102,6 +102,12 @@ class Layout:
             if (seat := self.seat(address)) is not None:
                 yield address, seat
 
+    @cached_property
+    def ring_seats(self) -> dict[str, BearingSeat]:
+        """Seats of the rings that stand in casings, by the name of the gear; errors as of `seat`."""
+        found = {name: self.seat(f"gears.{name}") for name, gear in self.model.gears.items() if gear.casing is not None}
+        return {name: seat for name, seat in found.items() if seat is not None}
+
     @property
     def gears(self) -> Iterator[GearLayout]:
         """All gears in the order of the file."""

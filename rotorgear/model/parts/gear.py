@@ -101,8 +101,15 @@ class GearBody(Part):
 class Gear(Part):
     """A gear on a shaft: a cylindrical one, external or internal, or a bevel gear."""
 
-    shaft: str = Field(description="name of the shaft")
-    at: Station = Field(description="z of the gear's middle; of a bevel gear the foot of its mean point on the axis")
+    shaft: str = Field("", description="name of the shaft; required but for a ring in a casing")
+    at: Station = Field(
+        0.0,
+        description="z of the gear's middle, required beside shaft; of a bevel gear the foot of its mean point on the axis",
+    )
+    casing: str | None = Field(
+        None,
+        description="of a ring in place of shaft and at: name of the casing that it stands in, whose seat has the ring's name",
+    )
     kind: Literal["spur", "helical", "herringbone", "bevel"] = Field(
         description="spur, helical, herringbone or bevel (straight, Zerol and spiral)"
     )

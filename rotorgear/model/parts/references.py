@@ -18,6 +18,7 @@ _NAMES: tuple[tuple[str, dict[str, str]], ...] = (
     ("loads", {"shaft": "shafts", "gear": "gears", "point": "points", "order_of": "shafts"}),
     ("meshes", {"pinion": "gears", "gear": "gears"}),
     ("couplings", {"from_shaft": "shafts", "to_shaft": "shafts"}),
+    ("gears", {"casing": "casings"}),
     ("bearings", {"casing": "casings"}),
     ("nonlinear_elements", {"casing": "casings"}),
     ("nonlinear_elements", {"to_shaft": "shafts"}),
@@ -29,7 +30,7 @@ def references(model: Tables) -> Iterator[tuple[PartName, str, PartName]]:
     for table, keys in _NAMES:
         for name, part in getattr(model, table).items():
             for key, named in keys.items():
-                if (target := getattr(part, key)) is not None:
+                if target := getattr(part, key):
                     yield (table, name), key, (named, target)
     for name, point in model.points.items():
         if point.on is not None:
