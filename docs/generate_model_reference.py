@@ -333,6 +333,8 @@ def _list(kind: dict[str, Any]) -> str:
             + ", ".join(f'"{o["examples"][0]}"' for i in kind["prefixItems"] for o in i["anyOf"] if "examples" in o)
             + "]`"
         )
+    if items.get("type") == "array" and "prefixItems" in items:
+        return f'rows of {len(items["prefixItems"])}, such as `["12 um", "0 um"]`'
     if items.get("type") == "array":
         return "6 rows of 6 numbers" if items.get("minItems") == 6 else f"rows of {_plural(items['items'])}"
     return f"list of {_plural(items)}"

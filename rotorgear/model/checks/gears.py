@@ -55,14 +55,9 @@ def pressure_angle_problems(address: str, angle: float | None) -> Iterator[Probl
 
 def _stand(address: str, gear: Gear) -> Iterator[Problem]:
     """A gear stands on a shaft; a ring may stand in a casing instead."""
-    keys = [key for key in ("shaft", "at") if key in gear.model_fields_set]
-    if gear.casing is None:
-        for key, what in (("shaft", "name of the shaft"), ("at", "z of the gear's middle")):
-            if key not in keys:
-                yield missing(f"{address}.{key}", what)
-    elif keys:
-        yield Problem(address, f"casing and {' and '.join(keys)}", "one of the two ways to say where it stands")
-    elif not gear.internal:
+    if gear.casing is not None and gear.shaft:
+        yield Problem(address, "casing and shaft", "one of the two ways to say where it stands")
+    elif gear.casing is not None and not gear.internal:
         yield Problem(
             f"{address}.casing", f"'{gear.casing}' of an external gear", "shaft and at: only rings stand in casings"
         )

@@ -6,9 +6,9 @@ Their flanks may deviate from the involute helicoid, by modifications and by err
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import Allowance
@@ -101,11 +101,8 @@ class GearBody(Part):
 class Gear(Part):
     """A gear on a shaft: a cylindrical one, external or internal, or a bevel gear."""
 
-    shaft: str = Field("", description="name of the shaft; required but for a ring in a casing")
-    at: Station = Field(
-        0.0,
-        description="z of the gear's middle, required beside shaft; of a bevel gear the foot of its mean point on the axis",
-    )
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the gear's middle; of a bevel gear the foot of its mean point on the axis")
     casing: str | None = Field(
         None,
         description="of a ring in place of shaft and at: name of the casing that it stands in, whose seat has the ring's name",
@@ -182,6 +179,14 @@ class Gear(Part):
     diametral_inertia: si.Inertia | None = Field(None, description="moment of inertia about x and y through its middle")
     body: GearBody = Field(default_factory=GearBody, description="shape of the blank, for mass and compliance")
     material: str | None = Field(None, description="material of the blank; default: the shaft's")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _stands_in_a_casing(cls, data: Any) -> Any:
+        """A ring in a casing has no shaft and no place on one."""
+        if isinstance(data, dict) and data.get("casing") is not None:
+            return {"shaft": "", "at": 0.0, **data}
+        return data
 
     @property
     def lumped(self) -> bool:

@@ -30,7 +30,8 @@ def references(model: Tables) -> Iterator[tuple[PartName, str, PartName]]:
     for table, keys in _NAMES:
         for name, part in getattr(model, table).items():
             for key, named in keys.items():
-                if target := getattr(part, key):
+                in_casing = table == "gears" and key == "shaft" and part.casing is not None
+                if (target := getattr(part, key)) is not None and not in_casing:
                     yield (table, name), key, (named, target)
     for name, point in model.points.items():
         if point.on is not None:

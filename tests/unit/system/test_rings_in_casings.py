@@ -45,15 +45,15 @@ def test_a_ring_in_a_casing_is_that_on_the_same_bar(tmp_path: Path) -> None:
     for speed in (None, "5000 rpm"):
         there, here = (rg.modal(model, speed=speed, modes=14, elements=1) for model in (shaft, casing))
         assert here.frequency_hz[1:] == pytest.approx(there.frequency_hz[1:], rel=1e-9)
-    moved, still = (rg.static(model, elements=1) for model in (casing, shaft))
+    moved, still = (rg.static(model, elements=1, speed=0.0) for model in (casing, shaft))
     assert moved.mesh_force == pytest.approx(still.mesh_force, rel=1e-9)
     # The seat hands the torque on the ring over, which Willis gives.
-    assert moved.casing_seat_force["bar.seat_3"][5] == pytest.approx(700.0 * 98 / 26, rel=1e-9)
+    assert moved.casing_seat_force["bar.seat_3"][5] == pytest.approx(-700.0 * 98 / 26, rel=1e-9)
 
 
 def test_what_keeps_a_ring_from_its_seat_is_said(tmp_path: Path) -> None:
     text = in_a_casing(tmp_path)
-    with pytest.raises(rg.ModelError, match=r"gears\.ring: got casing and shaft and at, expected one of the two ways"):
+    with pytest.raises(rg.ModelError, match=r"gears\.ring: got casing and shaft, expected one of the two ways"):
         rg.loads(text.replace('casing = "bar"', 'casing = "bar"\nshaft = "carrier"\nat = 0'))
     with pytest.raises(
         rg.ModelError, match=r"gears\.ring\.casing: got 'bar', expected a casing with a seat of this name"
@@ -61,5 +61,3 @@ def test_what_keeps_a_ring_from_its_seat_is_said(tmp_path: Path) -> None:
         rg.loads(text.replace('matrices = "', 'mesh = "').replace('{ring = "seat_3"}', '{other = "seat_3"}'))
     with pytest.raises(rg.ModelError, match=r"gears\.sun\.casing: got 'bar' of an external gear"):
         rg.loads(text.replace('shaft = "sun"\nat = 0\nwidth', 'casing = "bar"\nwidth'))
-    with pytest.raises(rg.ModelError, match=r"gears\.sun\.shaft: missing \(required: name of the shaft\)"):
-        rg.loads(text.replace('shaft = "sun"\nat = 0\nwidth', "at = 0\nwidth"))
