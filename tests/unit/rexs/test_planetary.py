@@ -363,3 +363,35 @@ def test_two_kinds_of_planets_share_the_pins_and_mesh_with_their_neighbours(tmp_
     assert speeds["ring"] == Fraction(2, 7)
     assert speeds["large"] == Fraction(-7, 9)
     assert len(model.meshes) == 8
+
+
+def test_two_stages_in_series_one_of_them_with_stepped_planets_have_the_product_of_their_ratios(tmp_path: Path) -> None:
+    g = Written()
+    speed = {"rotational_speed": Value(1000.0, "1 / min")}
+    sun, middle, out = g.shaft("sun", **speed), g.shaft("middle"), g.shaft("out")
+    for shaft in (sun, middle, out):
+        for u in (5.0, 95.0):
+            g.bearing(f"{g.components[shaft].name} {u:g}", shaft, g.casing, u)
+    # Stepped: 24 with 53, and 19 in a ring of 96; then 18, 21 and 60 teeth. Both rings are held.
+    for name, first, second, count, teeth in (
+        ("stepped", sun, middle, 2, (24, 53, 19, 96)),
+        ("plain", middle, out, 3, (18, 21, 21, 60)),
+    ):
+        stage = g.add("planetary_stage", name)
+        g.join("planet_carrier_shaft", planetary_stage=stage, shaft=second)
+        ring = g.shaft(f"{name} ring", d=2.0 * teeth[3] + 30.0)
+        g.held(ring)
+        at = {"stepped": (25.0, 45.0), "plain": (70.0, 70.0)}[name]
+        gears = (
+            g.gear(f"{name} sun", first, teeth[0], u=at[0]),
+            g.gear(f"{name} ring", ring, teeth[3], u=at[1], ring=True),
+        )
+        for k, (planet, _) in enumerate(g.planets(stage, name, count, float(teeth[0] + teeth[1]), 0.4)):
+            one = g.gear(f"{name} {k} a", planet, teeth[1], u=at[0])
+            other = one if teeth[1] == teeth[2] else g.gear(f"{name} {k} b", planet, teeth[2], u=at[1])
+            g.mesh(f"{name} {k} in", gears[0], one)
+            g.mesh(f"{name} {k} out", other, gears[1])
+    model = model_of(g.document(), tmp_path)
+    assert sorted(model.carriers) == ["plain", "stepped"]
+    assert model.layout.train.ratios["middle"] == Fraction(19, 231)
+    assert model.layout.train.ratios["out"] == Fraction(19, 231) * Fraction(18, 78)
