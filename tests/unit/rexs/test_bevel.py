@@ -84,6 +84,17 @@ def test_axes_stand_where_the_file_has_them_and_speeds_follow_from_the_teeth(tmp
     assert abs(torques["loads.output"] or 0.0) == pytest.approx(200.0 * 41 / 17)
 
 
+def test_where_the_gear_unit_itself_stands_changes_nothing(tmp_path: Path) -> None:
+    moved = changed(
+        document(),
+        "1",
+        support_vector=Value([130.0, -70.0, 45.0], MM),
+        u_axis_vector=Value([0.0, 1.0, 0.0], MM),
+        w_axis_vector=Value([1.0, 0.0, 0.0], MM),
+    )
+    assert model_of(moved, tmp_path) == model_of(document(), tmp_path)
+
+
 def test_a_shaft_drawn_from_its_other_end_is_the_same_shaft(tmp_path: Path) -> None:
     base = document()
     turned = changed(

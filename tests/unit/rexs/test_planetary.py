@@ -122,6 +122,31 @@ def test_a_stage_whose_axis_lies_in_space_has_the_same_frequencies(tmp_path: Pat
     )
 
 
+def test_where_the_gear_unit_itself_stands_changes_nothing(tmp_path: Path) -> None:
+    moved = changed(
+        document(),
+        "1",
+        support_vector=Value([130.0, -70.0, 45.0], MM),
+        u_axis_vector=Value([0.0, 0.0, 1.0], MM),
+        w_axis_vector=Value([1.0, 0.0, 0.0], MM),
+    )
+    assert model_of(moved, tmp_path) == model_of(document(), tmp_path)
+
+
+def test_a_ring_on_a_shaft_inside_of_its_teeth_has_a_rim_of_three_modules(tmp_path: Path) -> None:
+    ring = model_of(stage_of((18, 21, 60), 3), tmp_path).gears["ring_gear"]
+    assert ring.mass == 0.0  # the section of the shaft is around the teeth
+    small = stage_of((18, 21, 60), 3)
+    (section,) = (
+        part for part in small.of_type("shaft_section") if part.attributes["outer_diameter_begin"].raw == 150.0
+    )
+    result = imported(changed(small, section.id, outer_diameter_begin=Value(50.0, MM)), tmp_path)
+    found = rg.loads(result.toml).gears["ring_gear"].body.outer_diameter
+    # Roots lie 1.25 modules of 2 mm outside of 120 mm.
+    assert found == pytest.approx(0.120 + 2 * 1.25 * 0.002 + 2 * 3 * 0.002, rel=1e-12)
+    assert any(item.address == "gears.ring_gear.body.outer_diameter" for item in result.assumptions)
+
+
 def test_a_ring_with_the_signs_of_iso_21771_is_the_same_gear(tmp_path: Path) -> None:
     whole = document()
     ring = named(whole, "Ring")
