@@ -12,7 +12,7 @@ VALIDATION = ROOT / "validation" / "cases"
 SOUND = ROOT / "tests" / "sound"
 
 # Their teeth, or their casing, are computed by finite elements first, which takes longer than most tests.
-COSTLY = {"elastic_wheel", "overhung_pinion", "split_torque_casing"}
+COSTLY = {"elastic_wheel", "helicopter", "overhung_pinion", "split_torque_casing"}
 SHIPPED = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem in COSTLY else [])
     for path in sorted(MODELS.glob("*.toml"))

@@ -14,7 +14,7 @@ from rotorgear.errors import AnalysisError
 from tests.paths import ROOT
 
 # Models whose teeth or casing are computed by finite elements first.
-COSTLY = {"elastic_wheel", "overhung_pinion", "relieved_pair", "split_torque_casing", "web_wheel"}
+COSTLY = {"elastic_wheel", "helicopter", "overhung_pinion", "relieved_pair", "split_torque_casing", "web_wheel"}
 
 
 @pytest.mark.parametrize("costly", [False, pytest.param(True, marks=pytest.mark.long)])
