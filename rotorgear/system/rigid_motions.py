@@ -34,8 +34,10 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     bodies, P = _candidates(system)
     T = sp.csc_array(system.dofs.transform)
     selects = system.dofs.selects
-    # The elements of which some strain meets a stiffness.
+    # The elements of which some strain meets a stiffness, each strain relative to the largest that a candidate could give it:
+    # what round-off leaves of a direction that the motions of the bodies don't have would else be scaled up to a strain.
     strained: list[Strained] = []
+    reach = abs(P).max(axis=1).toarray().ravel()
     for group in groups:
         B = group.matrices.strain
         D = group.matrices.modulus
@@ -47,7 +49,10 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         used = np.broadcast_to(used, (e, used.shape[1]))
         some = used.any(axis=1)
         if some.any():
-            strained.append((np.broadcast_to(B, (e, *B.shape[1:]))[some], used[some], group.dofs[some]))
+            own = group.dofs[some]
+            B = np.broadcast_to(B, (e, *B.shape[1:]))[some]
+            largest = np.einsum("esd,ed->es", np.abs(B), reach[own])
+            strained.append((B / np.where(largest > 0.0, largest, 1.0)[:, :, None], used[some], own))
 
     # Bodies by themselves first: most are held by what is theirs alone, and a long train has few motions left to be solved for.
     body = _labels(P, T, [dofs[None] for dofs in bodies])
@@ -141,9 +146,7 @@ def _unstrained(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[St
     held = largest > 1e-12
     rows = [off_range[held] / largest[held, None]]
     for B, used, dofs in strained:
-        strains = np.einsum("esd,edp->esp", B, P[dofs])
-        sizes = np.einsum("esd,edp->esp", np.abs(B), np.abs(P[dofs])).max(axis=2)
-        rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[used])
+        rows.append(np.einsum("esd,edp->esp", B, P[dofs])[used])
     A = np.vstack(rows)
     # The triangle of a tall matrix has its null space, without a square of its rows.
     A = np.asarray(np.linalg.qr(A, mode="r")) if A.shape[0] > A.shape[1] else A
