@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+import scipy.linalg as la
+
 import rotorgear as rg
+from rotorgear.system.system import System
 
 Springs = Mapping[str, float]
 
@@ -124,3 +128,45 @@ def helical_stage(
         f'[supports.{name}]\nshaft = "{name}"\nat = 0\nstiffness = {springs(values)}' for name, values in ground.items()
     ]
     return "\n".join([*parts, more])
+
+
+def eigenvalues(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """All s of s^2 M + s D + K."""
+    n = len(M)
+    return np.asarray(la.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(M, K), -la.solve(M, D)]])))
+
+
+def frequencies(s: np.ndarray, *, above: float = 10.0) -> np.ndarray:
+    """Oscillating ones in rad/s, ascending, without the free rotation."""
+    return np.sort(s.imag[s.imag > above])
+
+
+def in_frame_of_the_carrier(system: System, carrier: float) -> np.ndarray:
+    """Frequencies where everything is told in axes that turn with the carrier: the same rule for all bodies, no classes.
+
+    M y'' + (2 W M S + W_s G) y' + (K + W^2 M S S + W W_s G S + K_g) y = 0, exact for springs to the ground without preferred
+    directions.
+    """
+    speed = carrier / system.train.ratio("carrier")
+    M = system.mass.toarray()
+    quarter = np.zeros((6, 6))
+    quarter[[1, 4], [0, 3]] = 1.0
+    quarter[[0, 3], [1, 4]] = -1.0
+    S = np.kron(np.eye(system.n // 6), quarter)
+    G = np.zeros_like(M)
+    for group in system.groups:
+        if group.matrices.gyroscopic is not None and not group.part.startswith("carriers."):
+            for dofs, own in zip(group.dofs, group.matrices.gyroscopic, strict=True):
+                G[np.ix_(dofs, dofs)] += group.spin * speed * own
+    K = system.stiffness(0.0).toarray()
+    planet = system.model.gears["planet#1"]
+    assert planet.mass is not None
+    pull = planet.mass * carrier**2
+    r = system.layout.planets[0].radius
+    f = pull * r / (1.0 - pull / PIN["radial"])
+    node = 6 * system.nodes.at("carrier", 0.0)
+    count = len(system.layout.planets[0].planets)
+    K[node + 3 : node + 6, node + 3 : node + 6] += f * r * count * np.diag([0.5, 0.5, 1.0])
+    return frequencies(
+        eigenvalues(M, 2.0 * carrier * M @ S + G, K + carrier**2 * M @ S @ S + carrier * G @ S), above=10.0
+    )

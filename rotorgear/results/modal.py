@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from rotorgear.results.table import Block, Column, Line, error_words, exact, tab
 
 # The senses of whirl; results hold numbers into this tuple, "" for torsional and axial modes, which don't whirl.
 WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
+# The classes of motions of a planetary stage (`analysis/modal/planet_classes.py`).
+MODE_CLASSES = ("rotational", "translational", "planet")
 WRITTEN_WHIRL = Written("whirl", lambda result, numbers: np.array(WHIRL_WORDS)[numbers])
 
 
@@ -158,6 +161,38 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         json="point_amplitude",
         default_factory=dict,
     )
+    mode_class: tuple[str, ...] = of(
+        "classes of a planetary mode",
+        "",
+        "mode",
+        note=", in a few words, with shares of the energy of the stage where there are several; empty without planets",
+        column="class",
+        default=(),
+    )
+    class_energy: dict[str, np.ndarray] = of(
+        "share of a class in the kinetic energy",
+        "",
+        "CLASS",
+        "mode",
+        note=" of a planetary stage, such as `stage rotational`: what is missing from 1 moves elsewhere",
+        default_factory=dict,
+    )
+    carrier_frequency_hz: dict[str, np.ndarray] = of(
+        "frequency in the frame of a carrier",
+        "Hz",
+        "CARRIER",
+        "mode",
+        note=" that turns, of the part with the most energy; `null`: its stage rests",
+        default_factory=dict,
+    )
+    carrier_frequency_share: dict[str, np.ndarray] = of(
+        "share of what a carrier sees at that frequency",
+        "",
+        "CARRIER",
+        "mode",
+        note=", in the kinetic energy of its stage",
+        default_factory=dict,
+    )
 
     def __len__(self) -> int:
         return len(self.eigenvalues)
@@ -184,6 +219,12 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         # A rigid body has no frequency whose error could be relative to it.
         error = Column("", "error_estimate", where=lambda k: not self.rigid[k])
         yield table_over(self, "mode", number, "frequency_hz", error, *damped, "description", caption="Modes")
+        if self.mode_class:
+            seen = [
+                Column(f"from {name} Hz", partial(self._seen, name), left=False) for name in self.carrier_frequency_hz
+            ]
+            caption = "Classes of planetary motions"
+            yield table_over(self, "mode", number, "frequency_hz", *seen, "mode_class", caption=caption, titled=True)
         if energies:
             kinetic = Column("kinetic, by part", lambda k: _largest(self.kinetic_energy, k))
             strain = Column("strain, by part", lambda k: _largest(self.strain_energy, k))
@@ -193,6 +234,12 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         if estimates.size:
             yield f"error: estimated relative error of each frequency; largest {error_words(estimates.max(), 1)}"
         yield from (*self.remarks(), "")
+
+    def _seen(self, carrier: str, k: int) -> str:
+        """The frequency of a mode in the frame of a carrier, with its share where that is not all."""
+        share = self.carrier_frequency_share[carrier][k]
+        text = exact(".4f")(self.carrier_frequency_hz[carrier][k])
+        return f"{text}, {100.0 * share:.0f} %" if share < 0.995 else text
 
 
 def _largest(shares: dict[str, np.ndarray], k: int) -> str:

@@ -94,13 +94,13 @@ def planet_groups(layout: Layout, groups: Iterable[ElementGroup]) -> list[Elemen
         return []
     require_constant(layout)
     found = []
-    for carrier, sisters in _sisters(layout, groups):
+    for carrier, alike in sisters(layout, groups):
         if layout.train.ratios[layout.model.carriers[carrier].shaft] != 0:
-            found += list(_carried(layout, carrier, sisters))
+            found += list(_carried(layout, carrier, alike))
     return found
 
 
-def _sisters(layout: Layout, groups: Iterable[ElementGroup]) -> Iterator[tuple[str, list[ElementGroup]]]:
+def sisters(layout: Layout, groups: Iterable[ElementGroup]) -> Iterator[tuple[str, list[ElementGroup]]]:
     """The carrier and the groups of one part of all planets, one for each."""
     found: dict[tuple[str, int], list[ElementGroup]] = {}
     seen: dict[str, int] = {}
@@ -108,8 +108,8 @@ def _sisters(layout: Layout, groups: Iterable[ElementGroup]) -> Iterator[tuple[s
         if MARK in group.part:
             number = seen[group.part] = seen.get(group.part, -1) + 1
             found.setdefault((written_name(group.part), number), []).append(group)
-    for sisters in found.values():
-        yield _carrier_of(layout, sisters[0].part), sisters
+    for alike in found.values():
+        yield _carrier_of(layout, alike[0].part), alike
 
 
 def _carrier_of(layout: Layout, address: str) -> str:
@@ -125,34 +125,34 @@ def _carrier_of(layout: Layout, address: str) -> str:
     return next(carrier for shaft in shafts if (carrier := model.shafts[shaft].carrier) is not None)
 
 
-def _carried(layout: Layout, carrier: str, sisters: list[ElementGroup]) -> Iterator[ElementGroup]:
+def _carried(layout: Layout, carrier: str, alike: list[ElementGroup]) -> Iterator[ElementGroup]:
     """The terms of one part of all planets."""
     part = layout.model.carriers[carrier]
     T = sister_turn(np.array(part.directions))
     ratio = layout.train.ratio(part.shaft)
-    first = sisters[0].matrices
-    for other in sisters[1:]:
+    first = alike[0].matrices
+    for other in alike[1:]:
         for name in ("mass", "modulus", "viscosity"):
             mine = getattr(first, name)
             its = getattr(other.matrices, name)
             if (mine is None) != (its is None) or (mine is not None and not _equal(mine, its)):
                 raise AnalysisError(
-                    f"{other.part}: its {_WORDS[name]} differs from that of {sisters[0].part}, and planets that differ have "
+                    f"{other.part}: its {_WORDS[name]} differs from that of {alike[0].part}, and planets that differ have "
                     "coefficients that change with the angle of their carrier, which is not built. Make them equal, or hold the "
                     f"carrier: speed_ratio = 0 of shafts.{part.shaft}."
                 )
-    dofs = np.hstack([group.dofs for group in sisters])
-    motions = tuple(motion for group in sisters for motion in group.dof_motions)[6:]
+    dofs = np.hstack([group.dofs for group in alike])
+    motions = tuple(motion for group in alike for motion in group.dof_motions)[6:]
 
     def of_all(matrices: ElementMatrices) -> ElementGroup:
         return ElementGroup(f"carriers.{carrier}", part.shaft, matrices, dofs, ratio, body_motions=motions)
 
     if first.mass is not None:
-        D = np.kron(np.eye(len(T)), quarter_turn(sisters[0])) - np.kron(T, np.eye(sisters[0].dofs.shape[1]))
+        D = np.kron(np.eye(len(T)), quarter_turn(alike[0])) - np.kron(T, np.eye(alike[0].dofs.shape[1]))
         M = _repeated(first.mass, len(T))
         square = M @ D @ D
         if first.gyroscopic is not None:
-            square = square + sisters[0].spin / ratio * (_repeated(first.gyroscopic, len(T)) @ D)
+            square = square + alike[0].spin / ratio * (_repeated(first.gyroscopic, len(T)) @ D)
         identity = np.broadcast_to(np.eye(D.shape[0]), square.shape)
         yield of_all(
             ElementMatrices(
@@ -163,7 +163,7 @@ def _carried(layout: Layout, carrier: str, sisters: list[ElementGroup]) -> Itera
             )
         )
     if first.viscosity is not None:
-        blocks = [group.matrices.strain for group in sisters]
+        blocks = [group.matrices.strain for group in alike]
         strain = np.stack(
             [_block_diagonal([block[e] for block in blocks if block is not None]) for e in range(len(dofs))]
         )

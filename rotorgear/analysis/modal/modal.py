@@ -20,6 +20,7 @@ from rotorgear.analysis.modal.conditioning import conditioning_warnings, too_far
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import mode_energies
 from rotorgear.analysis.modal.mode_count import MOST_MODES, check_count
+from rotorgear.analysis.modal.planet_classes import classes_of, separated
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, errors_of, total_error
 from rotorgear.analysis.modal.solve import Modes, Wanted, solve
@@ -119,6 +120,7 @@ def modes_about(
             break
         taken = further
     progress(0.9, "energies")
+    found = separated(system, found)
     s = found.eigenvalues
     q = system.dofs.expand(found.vectors)
     nodes, displaced = shapes_at_stations(system, q)
@@ -126,6 +128,7 @@ def modes_about(
     energies = mode_energies(system, speed or 0.0, q, found.rigid)
     whirl = whirl_of(system, shapes[: len(system.nodes)], speed or 0.0)
     description = describe(system, q, energies, found.rigid, (s.imag == 0.0) & ~found.rigid)
+    classes = classes_of(system, s, q, energies, speed or 0.0)
     clock.lap("energies")
     progress(1.0, "done")
     return ModalResult(
@@ -157,6 +160,10 @@ def modes_about(
         ),
         method=found.method + about_state(system.state),
         point_amplitudes=point_amplitudes(system, nodes, shapes),
+        mode_class=classes.words if classes.energy else (),
+        class_energy=classes.energy,
+        carrier_frequency_hz={name: w / (2.0 * np.pi) for name, w in classes.seen.items()},
+        carrier_frequency_share=classes.seen_share,
     )
 
 
