@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.internal_load import InternalLoad, load_named
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable
 from rotorgear.results.schema import Record, Written, derived, force_and_moment, of, rows
@@ -197,6 +198,15 @@ class StaticResult(AboutEquilibrium, kind="static"):
     share_derivative: np.ndarray = of("derivative of each row of `shares`", "", "parameter", "share", json="share")
     mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
     assembly: tuple[LoopAssembly, ...] = of("how closed loops go together", "", "loop", record=LoopAssembly)
+    internal_loads: tuple[InternalLoad, ...] = of(
+        "loads inside shafts and couplings",
+        "",
+        "load",
+        note=" at the points that read one",
+        record=InternalLoad,
+        default=(),
+        kw_only=True,
+    )
     imbalance: float = of(
         "largest force that is missing for equilibrium",
         note=" at a degree of freedom, relative to the largest of an element or load; moments beside moments",
@@ -209,6 +219,14 @@ class StaticResult(AboutEquilibrium, kind="static"):
     place_displacement: dict[str, np.ndarray] = of(
         "displacements of parts on shafts", "m, rad", "PLACE", "component", json="displacement", default_factory=dict
     )
+
+    def load_at(self, point: str) -> float:
+        """The load that a point reads inside its shaft or coupling, in N or N m.
+
+        Raises:
+            AnalysisError: no such point reads a load.
+        """
+        return load_named(self.internal_loads, point).load
 
     def contacts_of(self, mesh: str) -> list[int]:
         """Numbers of the contacts of a mesh."""
@@ -259,6 +277,8 @@ class StaticResult(AboutEquilibrium, kind="static"):
             yield from ("", self._on_shafts())
         if self.casing_seat_force:
             yield from ("", self._on_casings())
+        if self.internal_loads:
+            yield from ("", table_of(self, "internal_loads"))
         if self.laws:
             yield from ("", self.operating_points())
         yield from ("", self._moves(), "")

@@ -63,10 +63,7 @@ def centrifugal_loads(system: System, speed: float) -> np.ndarray:
 def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndarray:
     """Weight of all parts in a field of gravity in m/s^2, (a,): M times the acceleration, so that it does the right work."""
     f = np.zeros(system.dofs.transform.shape[0])
-    moved = np.zeros_like(f)
-    count = 6 * len(system.nodes)
-    own = {name: np.array(gravity) @ shaft.frame.axes for name, shaft in system.model.shafts.items()}
-    moved[:count].reshape(-1, 6)[:, :3] = [own[shaft] for shaft in system.nodes.shaft]
+    moved = weight_accelerations(system, gravity)
     for name in system.model.casings:
         forces = system.layout.casing(name).inertia_force[:, :3] @ np.array(gravity)
         # A body that was reduced elsewhere may come without its weight; results say so.
@@ -75,3 +72,12 @@ def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndar
         if group.matrices.mass is not None and not group.part.startswith("casings."):
             np.add.at(f, group.dofs, np.einsum("eij,ej->ei", group.matrices.mass, moved[group.dofs]))
     return f
+
+
+def weight_accelerations(system: System, gravity: tuple[float, float, float]) -> np.ndarray:
+    """A field of gravity in m/s^2 over all dofs, (a,), in the frame of each shaft."""
+    moved = np.zeros(system.dofs.transform.shape[0])
+    count = 6 * len(system.nodes)
+    own = {name: np.array(gravity) @ shaft.frame.axes for name, shaft in system.model.shafts.items()}
+    moved[:count].reshape(-1, 6)[:, :3] = [own[shaft] for shaft in system.nodes.shaft]
+    return moved

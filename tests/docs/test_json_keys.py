@@ -17,6 +17,7 @@ from update import load_generator
 
 from rotorgear.analysis.static.static import static
 from rotorgear.cli.main import app
+from rotorgear.model.load import load
 from rotorgear.results.kinds import kinds
 from tests.models import pair_file
 from tests.unit.analysis.static.test_bearing_states import rotor
@@ -218,6 +219,8 @@ def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
     for part, place in (("casing_ground", "feet"), ("casing_seat", "left")):
         data[f"{part}_force_n"] = data[f"{part}_moment_n_m"] = {"box": {place: [0.0, 0.0, 0.0]}}
     bearing = rotor('kind = "ball", elements = 7, element_diameter = 0.01, pitch_diameter = 0.04', "[9.0, 0.0, 0.0]")
+    read = load(MODEL).with_("points.torque", {"on": "gears.bull", "quantity": "torque"})
+    data["internal_loads"] = static(read).to_dict()["internal_loads"]
     data |= {key: static(bearing).to_dict()[key] for key in ("laws", "load_force_n", "load_moment_n_m")}  # nor these
     assert differences(data, documented("static")) == NONE
 

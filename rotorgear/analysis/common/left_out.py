@@ -75,6 +75,7 @@ _NOT_TAKEN = (
             ("casings", "damping_ratio"),
         )
     ),
+    ("points", "quantity", "modes", "free vibrations have no size of their own that a load could have"),
     ("scatter", "", _ALL, "only rotorgear scatter takes it"),
 )
 # What only loaded teeth see of a gear.

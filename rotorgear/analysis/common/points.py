@@ -18,10 +18,19 @@ from rotorgear.results.modal import NodeTable
 from rotorgear.system.system import System
 
 
+def motion_points(model: Model) -> tuple[str, ...]:
+    """The points that read a motion, in the order of the model; the others read a load (`read_loads`)."""
+    return tuple(name for name, point in model.points.items() if point.quantity is None)
+
+
 def point_amplitudes(system: System, nodes: NodeTable, shapes: np.ndarray) -> dict[str, np.ndarray]:
-    """Complex amplitude of each named point in its direction: name -> (m,), from shapes (p, 6, m) at all nodes and surfaces."""
+    """Complex amplitude of each named point of a motion in its direction: name -> (m,).
+
+    They are read from shapes (p, 6, m) at all nodes and surfaces.
+    """
     found = {}
-    for name, point in system.model.points.items():
+    for name in motion_points(system.model):
+        point = system.model.points[name]
         if point.on_casing is not None:
             found[name] = shapes[point_node(system.model, nodes, name)]
             continue
@@ -121,6 +130,10 @@ def located(model: Model, text: str) -> tuple[str, Place | str | int, int]:
         AnalysisError: the model has no such place; the sentence lists what there is.
     """
     point = model.points.get(text)
+    if point is not None and point.quantity is not None:
+        raise AnalysisError(
+            f"'{text}' reads a load inside a shaft or coupling ({point.quantity}): a motion is needed here"
+        )
     if point is not None and point.on_casing is not None:
         assert point.place is not None, "checked: a point on a casing has a place"
         text = f"{point.on}({'; '.join(f'{x!r} m' for x in point.place)}):{point.direction}"

@@ -33,7 +33,7 @@ def forces_on_gears(equilibrium: Equilibrated) -> np.ndarray:
 _MANY = 40
 
 
-def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
+def inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
     """Force that an element's own strains put on its dofs, (e, d)."""
     B = group.matrices.strain
     D = group.matrices.modulus
@@ -52,7 +52,7 @@ def bearing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force and moment of each bearing on its shaft, (6,), and of each nonlinear element by its address."""
     q = equilibrium.system.dofs.expand(equilibrium.q)
     forces = {
-        group.part.removeprefix("bearings."): -_inner(group, q)[0, -6:]
+        group.part.removeprefix("bearings."): -inner(group, q)[0, -6:]
         for group in equilibrium.groups
         if group.part.startswith("bearings.") and not group.part.endswith(".pedestal")
     }
@@ -141,7 +141,7 @@ def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     forces = {}
     for group in equilibrium.groups:
         if group.part.startswith("supports."):
-            forces[group.part.removeprefix("supports.")] = -_inner(group, q)[0, -6:]
+            forces[group.part.removeprefix("supports.")] = -inner(group, q)[0, -6:]
     for name, support in system.model.supports.items():
         node = system.nodes.at(*system.layout.place(f"supports.{name}"))
         held = [k for k, dof in enumerate(DOF_NAMES) if dof in support.fixed or "all" in support.fixed]
@@ -155,7 +155,7 @@ def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     return forces
 
 
-def _of_elements(equilibrium: Equilibrated) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def element_forces(equilibrium: Equilibrated) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Dofs (e, d) and forces (e, d) on them of the elements of each group, contacts with their gaps closed first, and of laws."""
     q = equilibrium.system.dofs.expand(equilibrium.q)
     closed = equilibrium.closed
@@ -166,7 +166,7 @@ def _of_elements(equilibrium: Equilibrated) -> Iterator[tuple[np.ndarray, np.nda
             strains = group.matrices.strain[0]
             yield group.dofs[:1], (np.array(next(meshes))[: len(strains)] @ strains)[None]
         else:
-            yield group.dofs, _inner(group, q)
+            yield group.dofs, inner(group, q)
     for law in equilibrium.laws:
         yield np.arange(len(q))[None], (law.part.columns @ law.force)[None]
 
@@ -174,7 +174,7 @@ def _of_elements(equilibrium: Equilibrated) -> Iterator[tuple[np.ndarray, np.nda
 def inner_forces(equilibrium: Equilibrated) -> np.ndarray:
     """Sum of the forces of all elements on all dofs, (a,)."""
     total = np.zeros(equilibrium.system.dofs.transform.shape[0])
-    for dofs, force in _of_elements(equilibrium):
+    for dofs, force in element_forces(equilibrium):
         np.add.at(total, dofs, force)
     return total
 
@@ -188,7 +188,7 @@ def imbalance(equilibrium: Equilibrated) -> float:
     T = system.dofs.transform
     missing = -equilibrium.loads
     most = np.abs(equilibrium.loads)
-    for dofs, force in _of_elements(equilibrium):
+    for dofs, force in element_forces(equilibrium):
         np.add.at(missing, dofs, force)
         np.maximum.at(most, dofs, np.abs(force))
     kind = np.full(len(most), _INNER)

@@ -24,6 +24,7 @@ from rotorgear.analysis.static.forces import (
     seat_forces,
     support_forces,
 )
+from rotorgear.analysis.static.internal_loads import load_rows_of
 from rotorgear.analysis.static.sensitivity import sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate, is_loaded
@@ -83,7 +84,8 @@ def static(
         found = solved(model, Plan(count), given, progress)
         progress(0.5, "error estimate")
         # Change of all forces when every element is halved, relative to the largest.
-        there = forces_of(equilibrate(found.system.with_plan(Plan(2 * count)), given or 0.0))
+        finer = equilibrate(found.system.with_plan(Plan(2 * count)), given or 0.0)
+        there = forces_of(finer)
         size = float(np.max(np.abs(there), initial=0.0))
         change = float(np.max(np.abs(forces_of(found) - there), initial=0.0))
         estimate = change / size if size else 0.0
@@ -94,7 +96,7 @@ def static(
         accuracy, estimate, "the forces no longer change with the elements, what is left is rounding; ask for less"
     )
     progress(0.8, "sensitivities")
-    result = replace(_result(found, given, estimate), model=model)
+    result = replace(_result(found, given, estimate), model=model, internal_loads=load_rows_of(found, finer))
     if short:
         result = replace(result, status=short, warnings=(*result.warnings, short))
     progress(1.0, "done")

@@ -13,6 +13,7 @@ from rotorgear.errors import Problem
 from rotorgear.model.checks import axes, names, planets, sizes
 from rotorgear.model.checks.casings import casings, gear_bodies
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
+from rotorgear.model.checks.internal_loads import cut_places, load_points
 from rotorgear.model.checks.loads import loads, loads_that_stand_still, operating_point, train_problems
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
 from rotorgear.model.layout.carriers import repeated
@@ -58,12 +59,13 @@ def find_problems(
         *sizes.nonlinear_elements(rest),
         *mesh_settings(rest),
         *names.points(rest),
+        *load_points(rest),
         *loads(rest),
         *operating_point(rest, dropped),
     ]
     stages: tuple[Callable[[Layout], Iterable[Problem]], ...] = (
         lambda rest: [*sizes.stations(rest.model), *axes.coupled_points(rest.model)],
-        mesh_problems,
+        lambda rest: [*mesh_problems(rest), *cut_places(rest)],
         lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped), *loads_that_stand_still(rest)],
         lambda rest: [*massless_gears(rest), *planets.assembled(rest)],
     )

@@ -8,7 +8,7 @@ from rotorgear.errors import Problem
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.torque_flow import applied_torques
 from rotorgear.model.parts.load import Load
-from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.operation import Operation, Point
 from rotorgear.model.parts.problems import not_default, told
 from rotorgear.model.parts.references import PartName
 from rotorgear.model.parts.tables import Tables
@@ -35,10 +35,12 @@ def loads(model: Tables) -> Iterator[Problem]:
             )
         else:
             point = model.points.get(load.point or "")
-            yield from _force(f"loads.{name}", load, on_casing=point is not None and point.on_casing is not None)
+            yield from _force(f"loads.{name}", load, point)
 
 
-def _force(address: str, load: Load, *, on_casing: bool) -> Iterator[Problem]:
+def _force(address: str, load: Load, point: Point | None) -> Iterator[Problem]:
+    on_casing = point is not None and point.on_casing is not None
+    inside = point is not None and point.quantity is not None
     of_torques = not_default(load, _TORQUES)[:1]
     either = f"a torque of the train ({', '.join(_TORQUES)}), or a force and moment at a place, not both"
     places = [key for key in ("shaft", "gear", "point") if getattr(load, key) is not None]
@@ -56,6 +58,7 @@ def _force(address: str, load: Load, *, on_casing: bool) -> Iterator[Problem]:
         ("at", place == "shaft" and load.at is None, "", "missing", "required beside shaft: z on that shaft"),
         ("at", beside, f"at beside {place}", f"a {place} alone, which says where it is"),
         ("point", on_casing, f"'{load.point}', on a casing", "a point on a shaft", "frf takes it as an input"),
+        ("point", inside, f"'{load.point}', which reads a load", "a point without quantity, where the force acts"),
         ("", both, "a history beside force or moment", columns),
         ("", len(ways) > 1, " and ".join(ways), "one of them, or none for a constant load"),
         ("phase", phase, "a phase", "beside an order or a frequency only", "a constant load has none"),

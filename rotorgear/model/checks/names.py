@@ -64,7 +64,7 @@ def _is_lost(model: Tables, target: PartName, gone: set[PartName]) -> bool:
 
 
 # Tables of what a point may be on.
-_WITH_POINTS = (*ON_SHAFTS, "casings")
+_WITH_POINTS = (*ON_SHAFTS, "casings", "couplings")
 
 Broken = Collection[PartName]
 _LISTED = 20  # names that a hint lists at most

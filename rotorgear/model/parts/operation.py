@@ -38,12 +38,26 @@ class ModelDamping(Part):
 _PLACE = "the coordinates x y z of a place, such as ['0 mm', '280 mm', '200 mm']"
 
 
+# What a point of an internal load reads: along x y z, and the moments about them, by its direction.
+_LOADS = {
+    "axial": {"x": 2, "z": 2},
+    "torque": {"x": 5, "torsion": 5},
+    "shear": {"x": 0, "y": 1},
+    "bending": {"x": 3, "y": 4, "tilt_x": 3, "tilt_y": 4},
+}
+
+
+# Motion of the model that each of them belongs to.
+MOTION_OF_LOAD = {"axial": "axial", "torque": "torsion", "shear": "bending", "bending": "bending"}
+
+
 class Point(Part):
-    """A named point with a direction: an output or a sensor."""
+    """A named point with a direction: an output or a sensor of a motion, or of the load inside a shaft or coupling."""
 
     on: str | None = Field(
         None,
-        description="address of a part, such as 'bearings.input_left' or 'gears.wheel', or of a casing: 'casings.box'",
+        description="address of a part, such as 'bearings.input_left' or 'gears.wheel', of a casing, 'casings.box', or of a "
+        "coupling, of which a load is known",
     )
     place: Annotated[tuple[si.Length, si.Length, si.Length], listed(3, _PLACE)] | None = Field(
         None, description="on a casing: x y z of a place; the point is that of its surface which is next to it"
@@ -51,6 +65,26 @@ class Point(Part):
     shaft: str | None = Field(None, description="name of a shaft, in place of a part")
     at: Station | None = Field(None, description="z on that shaft")
     direction: Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion"] = Field("x", description="direction looked along")
+    quantity: Literal["axial", "torque", "shear", "bending"] | None = Field(
+        None,
+        description="the load inside the shaft or coupling there, in place of the motion: the force along z, the torque about "
+        "z, the shear force along the direction x or y, or the bending moment about x or y",
+    )
+    side: Literal["left", "right"] | None = Field(
+        None,
+        description="of a load, the side of the place on which it is looked at, which counts where a part acts there; default: "
+        "the right one, towards larger z, where the shaft goes on elastically",
+    )
+
+    @property
+    def load(self) -> int | None:
+        """Number of the internal load that it reads in Fx Fy Fz Mx My Mz; None of a motion, or of a direction without one."""
+        return None if self.quantity is None else _LOADS[self.quantity].get(self.direction)
+
+    @property
+    def on_coupling(self) -> bool:
+        """Whether it is on a coupling."""
+        return self.on is not None and self.on.startswith("couplings.")
 
     @property
     def on_casing(self) -> str | None:

@@ -184,6 +184,19 @@ class Shaft(Part):
             left = right
         return found
 
+    def elastic_sides(self, z: float) -> tuple[bool, bool]:
+        """Whether an elastic section touches z from the left, and whether one goes on to the right of it."""
+        left = self.start
+        sides = [False, False]
+        tolerance = 1e-9 * max(self.length, abs(z))
+        for section in self.sections:
+            right = left + section.length
+            if not section.rigid:
+                sides[0] |= left + tolerance < z <= right + tolerance
+                sides[1] |= left - tolerance <= z < right - tolerance
+            left = right
+        return sides[0], sides[1]
+
 
 class Place(NamedTuple):
     """Name of a shaft and z on it in m."""

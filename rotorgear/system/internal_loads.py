@@ -1,0 +1,162 @@
+"""Loads inside shafts and couplings at named points: forces that an element's strains, inertia and damping put on its end.
+
+Cut at a node, the part at larger z acts on the other one with the forces that the element beside the cut needs at that end,
+
+    L = r (B^T (D s + V s') + M a + G v - f),    s = B q, s' = B v,
+
+with f the load along the element, such as its weight. Strains s, not displacements, make the forces: those of stiff parts are
+small differences. By the equations of motion the elements on both sides of a node, and each part that a cut leaves, give the
+same load to rounding, whatever the mesh; a stress D s alone would keep the error of its shape functions (T. J. R. Hughes,
+The Finite Element Method, 1987, section 1.10: consistent fluxes).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.tables import Tables
+from rotorgear.system.groups import ElementGroup, relative_motion
+from rotorgear.system.loads import weight_accelerations
+from rotorgear.system.nodes import Nodes
+from rotorgear.system.system import System
+
+# Of the load that a point reads: its unit.
+_UNITS = ("N", "N", "N", "N m", "N m", "N m")
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Where a point reads a load.
+
+    Attributes:
+        name: of the point. part: address of the part that is cut.
+        dofs: numbers (12,) of the dofs of its element at both ends.
+        row: (12,) the load from the forces at these dofs.
+    """
+
+    name: str
+    part: str
+    dofs: np.ndarray
+    row: np.ndarray
+
+    def element(self, groups: Sequence[ElementGroup]) -> tuple[int, int]:
+        """Number of the group among some that holds its element, and number of the element in it."""
+        for number, group in enumerate(groups):
+            if group.part == self.part and group.dofs.shape[1] >= len(self.dofs):
+                found = np.flatnonzero(np.all(group.dofs[:, : len(self.dofs)] == self.dofs, axis=1))
+                if found.size:
+                    return number, int(found[0])
+        raise KeyError(f"{self.part} has no element there")
+
+    def load(self, force: np.ndarray) -> float:
+        """The load from the forces (d,) on all dofs of its element, of which those at the ends come first."""
+        return float(self.row @ force[: len(self.row)])
+
+
+def read_loads(model: Tables) -> dict[str, str]:
+    """The points that read a load, in the order of the model, with its unit."""
+    return {
+        name: _UNITS[point.load]
+        for name, point in model.points.items()
+        if point.quantity is not None and point.load is not None
+    }
+
+
+def cuts(layout: Layout, nodes: Nodes) -> tuple[Cut, ...]:
+    """The cuts at all points that read a load, in the order of the model."""
+    return tuple(_cut(layout, nodes, name) for name in read_loads(layout.model))
+
+
+def _cut(layout: Layout, nodes: Nodes, name: str) -> Cut:
+    point = layout.model.points[name]
+    assert point.load is not None, "checked"
+    k = point.load
+    row = np.zeros(12)
+    if point.on_coupling:
+        assert point.on is not None
+        dofs, relative = relative_motion(layout, nodes, point.on)
+        # A unit of relative displacement by the second end alone does the work of the load.
+        row[6:] = np.linalg.inv(relative[:, 6:])[:, k]
+        return Cut(name, point.on, dofs, row)
+    place = layout.place(f"points.{name}")
+    node = nodes.at(*place)
+    sections = layout.model.shafts[place.shaft].sections
+    beside = {
+        side: element
+        for element in nodes.elements[place.shaft]
+        for side, end in (("right", element.left), ("left", element.right))
+        if end == node and not sections[element.section].rigid
+    }
+    side = point.side or ("right" if "right" in beside else "left")
+    element = beside[side]
+    # The left end of an element feels the reaction of the load.
+    row[k if side == "right" else 6 + k] = -1.0 if side == "right" else 1.0
+    ends = np.concatenate([6 * end + np.arange(6) for end in (element.left, element.right)])
+    return Cut(name, f"shafts.{place.shaft}", ends, row)
+
+
+def weight_in(group: ElementGroup, number: int, accelerations: np.ndarray) -> np.ndarray:
+    """Weight (d,) along an element of a group in a field of accelerations over all dofs, (a,)."""
+    M = group.matrices.mass
+    return np.zeros(group.dofs.shape[1]) if M is None else M[number] @ accelerations[group.dofs[number]]
+
+
+@dataclass(frozen=True)
+class LoadRows:
+    """Loads of p points as L = q_rows q + v_rows v + a_rows a - weight, each (p, n), and (p,) in N or N m."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    weight: np.ndarray
+
+    def amplitudes(self, w: np.ndarray, q: np.ndarray, brake: np.ndarray | float = 0.0) -> np.ndarray:
+        """Complex amplitudes (p, o) for displacements q (n, o) at frequencies w (o,) in rad/s.
+
+        `brake` (n, o): accelerations that do what damping of modes does, D v = M brake.
+        """
+        return np.asarray(self.q @ q + self.v @ (1j * w * q) + self.a @ (brake - w**2 * q))
+
+
+def load_rows(system: System, speed: float) -> LoadRows:
+    """Rows on the free dofs of a system at a reference speed in rad/s."""
+    groups = system.groups_at(speed)
+    damping = system.model.damping
+    T = system.dofs.transform
+    every = cuts(system.layout, system.nodes)
+    rows = {kind: np.zeros((len(every), system.n)) for kind in "qva"}
+    weight = np.zeros(len(every))
+    gravity = system.model.operation.gravity if system.model.operation else None
+    field = weight_accelerations(system, gravity) if gravity else None
+    for p, cut in enumerate(every):
+        number, e = cut.element(groups)
+        group = groups[number].turning_at(speed)
+        m = group.matrices
+        d = group.dofs.shape[1]
+        row = np.concatenate([cut.row, np.zeros(d - len(cut.row))])
+        nothing = np.zeros((d, d))
+
+        def of_strains(*moduli: np.ndarray | None, m=m, e=e, row=row, d=d) -> np.ndarray:  # type: ignore[no-untyped-def]
+            total = [D[e] for D in moduli if D is not None]
+            if m.strain is None or not total:
+                return np.zeros(d)
+            return np.asarray((row @ m.strain[e].T) @ sum(total) @ m.strain[e])
+
+        M = nothing if m.mass is None else m.mass[e]
+        G = nothing if m.gyroscopic is None else group.spin * speed * m.gyroscopic[e]
+        damped = damping.rayleigh_beta * m.modulus if m.modulus is not None and damping.rayleigh_beta else None
+        local = {
+            "q": of_strains(m.modulus, m.circulation),
+            "v": of_strains(m.viscosity, damped) + row @ (damping.rayleigh_alpha * M + G),
+            "a": row @ M,
+        }
+        own = T[group.dofs[e], :]
+        for kind, values in local.items():
+            rows[kind][p] = np.asarray(own.T @ values)
+        if field is not None:
+            weight[p] = cut.load(weight_in(group, e, field))
+    return LoadRows(**rows, weight=weight)
