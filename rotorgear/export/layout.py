@@ -139,9 +139,12 @@ def display_frames(model: Model) -> dict[str, Frame]:
     given = {name: shaft.position for name, shaft in model.shafts.items()}
     if all(given.values()):
         return {name: shaft.frame for name, shaft in model.shafts.items()}
-    # Axes that are not parallel to z have positions, and so have all others beside them.
+    # Axes that are not parallel to z, and planets with axes of their own, have positions.
     axes = _display_axes(model)
-    return {name: frame_along(given[name] or axes[name], (0.0, 0.0, 1.0), None) for name in model.shafts}
+    return {
+        name: shaft.frame if given[name] else frame_along(axes[name], (0.0, 0.0, 1.0), None)
+        for name, shaft in model.shafts.items()
+    }
 
 
 def _display_axes(model: Model) -> dict[str, Axis]:

@@ -255,10 +255,15 @@ def bearing_surfaces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterat
         foot = wedge(-housing, -housing - _FOOT_HEIGHT * radius, _FOOT_HALF * radius, z - half, z + half)
         beside_axis = np.hypot(*ring.points[:, :2].T)
         ring, foot = (skeleton.placed(bearing.shaft, surface) for surface in (ring, foot))
-        if bearing.casing is not None:
-            # Inside the shaft carries the ring, outside the casing, which is nearest there.
+        pin = model.layout.carrier_pin(f"bearings.{name}")
+        if bearing.casing is not None or pin is not None:
+            # Inside the shaft carries the ring, outside the casing, which is nearest there, or the carrier of a planet.
             surface = ring
-            others = [skeleton.on_casing(bearing.casing, ring.points)]
+            others = [
+                skeleton.on_casing(bearing.casing or "", ring.points)
+                if pin is None
+                else skeleton.rigid(*pin[0], ring.points)
+            ]
             which = (beside_axis < (1.0 - 1e-9) * housing).astype(int)
         else:
             # The ring stretches from the shaft to the housing, the foot from the housing to the ground.

@@ -18,9 +18,11 @@ from rotorgear.errors import AnalysisError
 from rotorgear.export.attachment import in_space, nodes_in_order
 from rotorgear.export.paraview import add_texts, save_mesh, save_shape, undeformed, write_collection
 from rotorgear.export.solids import Solids
+from rotorgear.export.turning import Motion, turning_of
 from rotorgear.files.write import filling, publish
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
+from rotorgear.system.planets import turning_carriers
 
 # Points and colours of frames are rounded to these shares of the model's size: invisible, and they compress to half.
 _POINT_GRID = 2.0**-16
@@ -40,8 +42,9 @@ def write_vtk(
 
     `mode_NN.vtp` holds the undeformed solids with the point data `displacement_real` and `displacement_imag` (scaled) and
     `mass_normalised_real` and `mass_normalised_imag` (m, modal mass 1); `mode_NN.pvd` plays the motion over a period, from frames
-    with displaced points and their `displacement`; `beam.vtp` holds all nodes with all six dofs of all modes; `model.vtp` the
-    undeformed solids; `index.pvd` all modes, one a time step; `README.txt` says so. Other files in the folder are left alone.
+    with displaced points and their `displacement`; where carriers turn, these have planets at their places. `beam.vtp` holds all
+    nodes with all six dofs of all modes; `model.vtp` the undeformed solids; `index.pvd` all modes, one a time step; `README.txt`
+    says so. Other files in the folder are left alone.
 
     Args:
         result: modes of a model.
@@ -61,6 +64,7 @@ def write_vtk(
     if frames < 2:
         raise AnalysisError(f"an animation needs at least 2 frames, got {frames}")
     pv, solids, plain = undeformed(result)
+    turning = turning_of(result.model, result.nodes, solids, result.speed)
     target = Path(directory)
     with filling(target) as scratch:
         save_mesh(plain, scratch / "model.vtp")
@@ -80,7 +84,8 @@ def write_vtk(
             }
             shapes = {"displacement*": scaled, "mass_normalised*": scaled / scale}
             save_shape(plain, scratch / f"{name}.vtp", shapes, facts)
-            names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, frames, scratch, name)]
+            motion = Motion(solids, result.shapes[:, :, mode], scaled, scale, turning)
+            names += [f"{name}.vtp", *write_period(pv, motion, plain, frames, scratch, name)]
         index = [(mode + 1, f"mode_{mode + 1:02d}.vtp") for mode in chosen]
         write_collection(scratch / "index.pvd", index)
         (scratch / "README.txt").write_text(readme(result, chosen, frames), encoding="utf-8")
@@ -110,28 +115,26 @@ def check_amplitude(amplitude: float | None) -> None:
         raise AnalysisError(f"the amplitude is a positive share of the model's size, such as 0.05, got {amplitude:g}")
 
 
-def write_period(
-    pv: ModuleType, solids: Solids, plain: Any, scaled: np.ndarray, frames: int, scratch: Path, name: str
-) -> list[str]:
-    """Write frames of a motion over a period to `name/`, and `name.pvd`, which plays them; return their names, that one last.
+def write_period(pv: ModuleType, motion: Motion, plain: Any, frames: int, scratch: Path, name: str) -> list[str]:
+    """Write frames of a motion to `name/`, and `name.pvd`, which plays them; return their names, that one last.
 
-    `scaled` are displacements (P, 3) of the surface points, complex. Where all points move in phase, the second half of the
-    period shows the files of the first one backwards. The time is the phase in degrees.
+    They go over a period, and over more where its picture comes again later. Where all points move in phase, the second half of
+    the period shows the files of the first one backwards. The time is the phase in degrees.
     """
     (scratch / name).mkdir()
-    in_phase = not np.any(scaled.imag)
+    size = motion.solids.size
+    count = frames * motion.periods
     steps = []
-    for frame in range(frames + 1):
-        number = frame % frames
-        number = min(number, frames - number) if in_phase else number
+    for frame in range(count + 1):
+        number = frame % count
+        number = min(number, count - number) if motion.is_in_phase else number
         file = f"{name}/phase_{number:03d}.vtp"
         if not (scratch / file).exists():
-            phase = 2.0 * math.pi * number / frames
-            displacement = scaled.real * math.cos(phase) - scaled.imag * math.sin(phase)
+            points, displacement = motion.at(number / frames)
             mesh = plain.copy(deep=False)  # the same cells, but points of its own
             mesh.clear_field_data()
-            mesh.SetPoints(pv.vtk_points(_rounded(solids.points + displacement, _POINT_GRID * solids.size)))
-            mesh.point_data["displacement"] = _rounded(displacement, _COLOUR_GRID * solids.size)
+            mesh.SetPoints(pv.vtk_points(_rounded(points + displacement, _POINT_GRID * size)))
+            mesh.point_data["displacement"] = _rounded(displacement, _COLOUR_GRID * size)
             save_mesh(mesh, scratch / file)
         steps.append((360.0 * frame / frames, file))
     write_collection(scratch / f"{name}.pvd", steps)
@@ -192,7 +195,16 @@ def readme(result: ModalResult, modes: Sequence[int], frames: int) -> str:
         f"{result.description[mode]}"
         for mode in modes
     ]
-    return _README.format(title=result.model.title or "Mode shapes", speed=speed, frames=frames, rows="\n".join(rows))
+    turns = _CARRIERS if result.speed and turning_carriers(result.model.layout) else ""
+    title = result.model.title or "Mode shapes"
+    return _README.format(title=title, speed=speed, frames=frames, rows="\n".join(rows), turns=turns)
+
+
+_CARRIERS = """
+CARRIERS
+  From frame to frame go several periods: in a period that is shown, the pins of the carrier whose planets move most go on to the
+  next place, and all shafts with them by their ratios. Motions that stay with each planet are shown over a turn of the carrier.
+"""
 
 
 _README = """{title}: mode shapes ({speed})
@@ -201,12 +213,12 @@ _README = """{title}: mode shapes ({speed})
 {rows}
 
 FILES
-  mode_NN.pvd   the motion of a mode over a period, {frames} frames; the time is the phase in degrees
+  mode_NN.pvd   the motion of a mode, {frames} frames a period; the time is the phase in degrees
   mode_NN.vtp   the undeformed gearbox with a mode's displacement, real and imaginary
   index.pvd     all mode_NN.vtp, one after the other; the time is the number of the mode
   beam.vtp      the beam model: nodes, sizes, all six degrees of freedom of all modes
   model.vtp     the undeformed gearbox
-
+{turns}
 IN PARAVIEW
   See a mode move: open mode_NN.pvd, Apply, colour by displacement, Play. (Animation View: mode Sequence, a loop.)
   See a mode as a still: open mode_NN.vtp, Apply, filter Warp By Vector with displacement_real.

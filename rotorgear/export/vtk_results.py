@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.export.paraview import save_shape, undeformed, write_collection
+from rotorgear.export.turning import Motion, turning_of
 from rotorgear.export.vtk import check_amplitude, write_period
 from rotorgear.files.write import filling, publish
 from rotorgear.progress import Progress, silent
@@ -56,6 +57,7 @@ def write_deflections(
             save_shape(plain, scratch / names[0], shapes, {"displacement_scale": scale})
         else:
             names = []
+            turning = turning_of(result.model, result.nodes, solids, result.shape_speed)
             for o, order in enumerate(result.orders):
                 progress(o / len(result.orders), order)
                 scaled, scale = solids.scaled(result.shapes[:, :, o], amplitude)
@@ -69,7 +71,8 @@ def write_deflections(
                 shapes = {"displacement*": scaled, "displacement*_m": scaled / scale}
                 save_shape(plain, scratch / f"{name}.vtp", shapes, facts)
                 # The collection, which refers to the others, comes last.
-                names += [f"{name}.vtp", *write_period(pv, solids, plain, scaled, FRAMES, scratch, name)]
+                motion = Motion(solids, result.shapes[:, :, o], scaled, scale, turning)
+                names += [f"{name}.vtp", *write_period(pv, motion, plain, FRAMES, scratch, name)]
         written = publish(scratch, Path(directory), names)
     progress(1.0, "done")
     return written
