@@ -39,8 +39,9 @@ def require_matrix_name(path: str | Path, endings: tuple[str, ...] = _ENDINGS) -
 def write_state_space(result: StateSpace, path: str | Path) -> Path:
     """Write a state space as .mat (MATLAB 5, which Octave and scipy read) or .npz (numpy).
 
-    Both hold A, B, C, D of x' = A x + B u, y = C x + D u; M, D_v, K, F, P of M q'' + D_v q' + K q = F u, y = P q; names and
-    units of inputs and outputs; speed in rad/s, fmax in Hz, and the error of the reduction.
+    Both hold A, B, C, D of x' = A x + B u, y = C x + D u; M, D_v, K, F, P of M q'' + D_v q' + K q = F u, y = P q, with
+    P_v q' + P_a q'' beside it where outputs read loads; names and units of inputs and outputs; speed in rad/s, fmax in Hz, and
+    the error of the reduction.
 
     Args:
         result: of `state_space`.
@@ -65,6 +66,8 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
         "fmax_hz": result.fmax,
         "reduction_error": result.reduction_error,
     }
+    if np.any(result.velocity_output) or np.any(result.acceleration_output):
+        values |= {"P_v": result.velocity_output, "P_a": result.acceleration_output}
     names = {key: getattr(result, key) for key in ("inputs", "outputs", "input_units", "output_units")}
     with written(target) as scratch:
         stream = BytesIO()

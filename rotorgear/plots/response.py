@@ -17,11 +17,13 @@ _WIDTH = 5.6
 _HEIGHT = 2.9
 # Directions of a point that are rotations.
 _TURNING = ("tilt_x", "tilt_y", "torsion")
+# Loads that a point reads about an axis.
+_MOMENTS = ("torque", "bending")
 _HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 
 
 def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
-    """Draw amplitudes over speed: mesh forces, transmission errors, bearing forces and accelerations.
+    """Draw amplitudes over speed: mesh forces, transmission errors, bearing forces, accelerations and internal loads.
 
     Left: each mesh, bearing or point with all its orders together (root of the sum of squares, of bearings over x, y and z,
     too); right: the strongest of them by order. The eight strongest lines are drawn. The dashed line is the operating speed.
@@ -65,6 +67,11 @@ def _quantities(result: ResponseResult) -> Iterator[tuple[str, list[str], np.nda
     for chosen, unit in ((~turns, "m/s$^2$"), (turns, "rad/s$^2$")):
         names = [name for name, drawn in zip(result.points, chosen, strict=True) if drawn]
         yield label(result, "acceleration", unit), names, np.abs(result.acceleration[:, :, chosen])
+    moments = np.array([result.model.points[name].quantity in _MOMENTS for name in result.load_points], bool)
+    for chosen, unit in ((~moments, "N"), (moments, "N m")):
+        names = [name for name, drawn in zip(result.load_points, chosen, strict=True) if drawn]
+        if names:
+            yield label(result, "internal_load", unit), names, np.abs(result.internal_load[:, :, chosen])
     if result.casings:  # the power of orders adds up, as the squares of amplitudes do
         yield "root of the equivalent radiated power, W$^{1/2}$", list(result.casings), np.sqrt(result.radiated_power)
     if not meshes and not result.bearings:
@@ -184,7 +191,10 @@ def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.n
         turns = result.model.points[name].direction in _TURNING
         size = np.abs(result.acceleration[:, :, result.points.index(name)])
         return f"acceleration at {name}", "rad/s$^2$" if turns else "m/s$^2$", size
-    known = [*dict.fromkeys(result.contact_mesh), *result.bearings, *result.points]
+    if name in result.load_points:
+        size = np.abs(result.internal_load[:, :, result.load_points.index(name)])
+        return f"load at {name}", "N m" if result.model.points[name].quantity in _MOMENTS else "N", size
+    known = [*dict.fromkeys(result.contact_mesh), *result.bearings, *result.points, *result.load_points]
     raise AnalysisError(
         f"'{at}' is no mesh, bearing or point of the model: expected one of {', '.join(known) or 'none'}"
     )

@@ -23,7 +23,7 @@ class Peak(Record):
     quantity: str = of(
         "quantity",
         note=": mesh force, transmission error, approach, bearing force, seat force, ground force, acceleration, "
-        "displacement or normal velocity",
+        "internal load, displacement or normal velocity",
         column="largest of",
     )
     part: str = of("mesh, bearing, point, place, seat, or held set or mount", column="of")
@@ -47,7 +47,19 @@ AIR_IMPEDANCE = 1.204 * 343.2
 class ResponseResult(AboutEquilibrium, kind="response"):
     """Linear response of a model at s speeds to o orders, complex amplitudes of Re(x e^{+iwt}) about the static forces."""
 
-    json_axes = ("MESH", "BEARING", "POINT", "PLACE", "CASING.SEAT", "CASING.SET", "CASING", "AXIS", "order", "speed")
+    json_axes = (
+        "MESH",
+        "BEARING",
+        "POINT",
+        "GAUGE",
+        "PLACE",
+        "CASING.SEAT",
+        "CASING.SET",
+        "CASING",
+        "AXIS",
+        "order",
+        "speed",
+    )
 
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm")
     orders: tuple[str, ...] = of("name of each order", "", "order", json="order")
@@ -88,6 +100,19 @@ class ResponseResult(AboutEquilibrium, kind="response"):
     points: tuple[str, ...] = of("names of the points", "", "point", json=None)
     acceleration: np.ndarray = of(
         "acceleration of a named point", "m/s^2, rad/s^2", "order", "speed", "point", note=" along its direction"
+    )
+    load_points: tuple[str, ...] = of(
+        "names of the points that read a load", "", "gauge", json=None, default=(), kw_only=True
+    )
+    internal_load: np.ndarray = of(
+        "load inside a shaft or coupling",
+        "N, N m",
+        "order",
+        "speed",
+        "gauge",
+        note=" at a point that reads one",
+        default_factory=lambda: np.zeros((0, 0, 0)),
+        kw_only=True,
     )
     places: tuple[str, ...] = of("gears, disks and bearings by address", "", "place", json=None)
     displacement: np.ndarray = of(

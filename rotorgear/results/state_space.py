@@ -14,10 +14,10 @@ from rotorgear.results.table import Block, Line, error_words, grid
 
 
 class StateSpace(BetweenPlaces, kind="state_space"):
-    """M x'' + D x' + K x = B u,  y = C x  with s coordinates x, forces u and displacements y.
+    """M x'' + D x' + K x = B u,  y = C x + C_v x' + C_a x''  with s coordinates x, forces u and displacements or loads y.
 
     Whole, x are the free displacements; reduced, they are coordinates of modes and of static shapes. D = C + W G holds damping
-    and gyroscopic moments at the speed.
+    and gyroscopic moments at the speed. C_v and C_a are of outputs that read a load.
     """
 
     fmax: float = of("highest frequency that the system is meant for", "Hz")
@@ -25,7 +25,25 @@ class StateSpace(BetweenPlaces, kind="state_space"):
     velocity_terms: np.ndarray = of("damping and gyroscopic matrix", "", "coordinate", "coordinate", json=None)
     stiffness_matrix: np.ndarray = of("stiffness matrix", "", "coordinate", "coordinate", json=None)
     input_matrix: np.ndarray = of("forces on the coordinates", "", "coordinate", "input", json=None)
-    output_matrix: np.ndarray = of("displacements of the coordinates", "", "output", "coordinate", json=None)
+    output_matrix: np.ndarray = of("outputs from the coordinates", "", "output", "coordinate", json=None)
+    velocity_output: np.ndarray = of(
+        "outputs from the velocities of the coordinates",
+        "",
+        "output",
+        "coordinate",
+        json=None,
+        default_factory=lambda: np.zeros((0, 0)),
+        kw_only=True,
+    )
+    acceleration_output: np.ndarray = of(
+        "outputs from the accelerations of the coordinates",
+        "",
+        "output",
+        "coordinate",
+        json=None,
+        default_factory=lambda: np.zeros((0, 0)),
+        kw_only=True,
+    )
     reduced: bool = of("whether it is reduced to modes and static shapes")
     kept_modes: int = of("number of modes that were kept", note="; 0 without a reduction")
     reduction_error: float = of(
@@ -58,17 +76,24 @@ class StateSpace(BetweenPlaces, kind="state_space"):
         forces = la.solve_triangular(L, self.input_matrix, lower=True)
         A = np.block([[zero, np.eye(n)], [-reduced(self.stiffness_matrix), -reduced(self.velocity_terms)]])
         B = np.vstack([np.zeros_like(forces), forces])
-        read = la.solve_triangular(L, self.output_matrix.T, lower=True).T
-        C = np.hstack([read, np.zeros_like(read)])
-        return A, B, C, np.zeros((len(self.outputs), len(self.inputs)))
+        # y = C x + C_v x' + C_a x'', with the accelerations that the equations of motion give.
+        read, rate, inertia = (
+            la.solve_triangular(L, rows.T, lower=True).T if rows.size else np.zeros((len(self.outputs), n))
+            for rows in (self.output_matrix, self.velocity_output, self.acceleration_output)
+        )
+        C = np.hstack([read, rate]) + inertia @ A[n:]
+        return A, B, C, inertia @ forces
 
     def receptance(self, frequencies: np.ndarray) -> np.ndarray:
-        """C (K + i w D - w^2 M)^-1 B at frequencies in Hz, (f, o, i)."""
+        """(C + i w C_v - w^2 C_a) (K + i w D - w^2 M)^-1 B at frequencies in Hz, (f, o, i)."""
         found = []
         for hz in np.asarray(frequencies, float).ravel():
             w = 2.0 * np.pi * hz
             Z = self.stiffness_matrix + 1j * w * self.velocity_terms - w**2 * self.mass_matrix
-            found.append(self.output_matrix @ np.linalg.solve(Z, self.input_matrix.astype(complex)))
+            read = self.output_matrix.astype(complex)
+            if self.velocity_output.size:
+                read += 1j * w * self.velocity_output - w**2 * self.acceleration_output
+            found.append(read @ np.linalg.solve(Z, self.input_matrix.astype(complex)))
         return np.array(found)
 
     def tables(self) -> Iterator[Block]:

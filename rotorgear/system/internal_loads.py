@@ -13,11 +13,12 @@ The Finite Element Method, 1987, section 1.10: consistent fluxes).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.operation import ModelDamping
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.groups import ElementGroup, relative_motion
 from rotorgear.system.loads import weight_accelerations
@@ -107,56 +108,75 @@ def weight_in(group: ElementGroup, number: int, accelerations: np.ndarray) -> np
 
 @dataclass(frozen=True)
 class LoadRows:
-    """Loads of p points as L = q_rows q + v_rows v + a_rows a - weight, each (p, n), and (p,) in N or N m."""
+    """Loads of p points as L = q_rows q + v_rows v + a_rows a - weight: rows (p, n) at a reference speed, weight (p,).
+
+    `per_speed`: what q_rows and v_rows grow by for each rad/s of it.
+    """
 
     q: np.ndarray
     v: np.ndarray
     a: np.ndarray
     weight: np.ndarray
+    per_speed: tuple[np.ndarray, np.ndarray]
 
-    def amplitudes(self, w: np.ndarray, q: np.ndarray, brake: np.ndarray | float = 0.0) -> np.ndarray:
-        """Complex amplitudes (p, o) for displacements q (n, o) at frequencies w (o,) in rad/s.
+    def at(self, speed: float) -> LoadRows:
+        """The rows at a reference speed in rad/s, from those at standstill."""
+        q, v = self.per_speed
+        return replace(self, q=self.q + speed * q, v=self.v + speed * v)
 
-        `brake` (n, o): accelerations that do what damping of modes does, D v = M brake.
-        """
-        return np.asarray(self.q @ q + self.v @ (1j * w * q) + self.a @ (brake - w**2 * q))
+    def braked(self, modes: np.ndarray, d: np.ndarray, P: np.ndarray) -> LoadRows:
+        """The rows with damping P diag(d) P^T of modes (n, m), P = M modes: it brakes as accelerations modes d P^T v would."""
+        return replace(self, v=self.v + ((self.a @ modes) * d) @ P.T)
+
+    def amplitudes(self, w: np.ndarray, q: np.ndarray, speed: float | np.ndarray = 0.0) -> np.ndarray:
+        """Complex amplitudes (p, o) of displacements q (n, o) at frequencies w (o,), at this much more speed, in rad/s."""
+        v = 1j * w * q
+        found = self.q @ q + self.v @ v - w**2 * (self.a @ q)
+        by_q, by_v = self.per_speed
+        return np.asarray(found + speed * (by_q @ q + by_v @ v))
 
 
-def load_rows(system: System, speed: float) -> LoadRows:
-    """Rows on the free dofs of a system at a reference speed in rad/s."""
-    groups = system.groups_at(speed)
-    damping = system.model.damping
-    T = system.dofs.transform
+def load_rows(system: System, speed: float = 0.0) -> LoadRows:
+    """Rows of all points that read a load on the free dofs of a system, at a reference speed in rad/s."""
     every = cuts(system.layout, system.nodes)
-    rows = {kind: np.zeros((len(every), system.n)) for kind in "qva"}
-    weight = np.zeros(len(every))
+    groups = system.groups_at(speed) if every else []
+    T = system.dofs.transform
     gravity = system.model.operation.gravity if system.model.operation else None
-    field = weight_accelerations(system, gravity) if gravity else None
+    field = weight_accelerations(system, gravity) if gravity else np.zeros(T.shape[0])
+    rows = np.zeros((5, len(every), system.n))
+    weight = np.zeros(len(every))
     for p, cut in enumerate(every):
         number, e = cut.element(groups)
-        group = groups[number].turning_at(speed)
-        m = group.matrices
-        d = group.dofs.shape[1]
-        row = np.concatenate([cut.row, np.zeros(d - len(cut.row))])
-        nothing = np.zeros((d, d))
+        group = groups[number]
+        of_element = _of_element(group, e, cut.row, system.model.damping)
+        rows[:, p] = np.asarray(T[group.dofs[e], :].T @ of_element.T).T
+        weight[p] = cut.load(weight_in(group, e, field))
+    q, v, a, *per_speed = rows
+    return LoadRows(q, v, a, weight, (per_speed[0], per_speed[1])).at(speed)
 
-        def of_strains(*moduli: np.ndarray | None, m=m, e=e, row=row, d=d) -> np.ndarray:  # type: ignore[no-untyped-def]
-            total = [D[e] for D in moduli if D is not None]
-            if m.strain is None or not total:
-                return np.zeros(d)
-            return np.asarray((row @ m.strain[e].T) @ sum(total) @ m.strain[e])
 
-        M = nothing if m.mass is None else m.mass[e]
-        G = nothing if m.gyroscopic is None else group.spin * speed * m.gyroscopic[e]
-        damped = damping.rayleigh_beta * m.modulus if m.modulus is not None and damping.rayleigh_beta else None
-        local = {
-            "q": of_strains(m.modulus, m.circulation),
-            "v": of_strains(m.viscosity, damped) + row @ (damping.rayleigh_alpha * M + G),
-            "a": row @ M,
-        }
-        own = T[group.dofs[e], :]
-        for kind, values in local.items():
-            rows[kind][p] = np.asarray(own.T @ values)
-        if field is not None:
-            weight[p] = cut.load(weight_in(group, e, field))
-    return LoadRows(**rows, weight=weight)
+def _of_element(group: ElementGroup, e: int, ends: np.ndarray, damping: ModelDamping) -> np.ndarray:
+    """A load as rows (5, d) on the d dofs of an element: on q, v and a, and on q and v for each rad/s of the reference speed."""
+    m = group.matrices
+    d = group.dofs.shape[1]
+    row = np.zeros(d)
+    row[: len(ends)] = ends
+    mass = np.zeros(d) if m.mass is None else row @ m.mass[e]
+    turning = np.zeros(d) if m.gyroscopic is None else group.spin * (row @ m.gyroscopic[e])
+    if m.strain is None:
+        return np.array([np.zeros(d), damping.rayleigh_alpha * mass, mass, np.zeros(d), turning])
+    B = m.strain[e]
+    none = np.zeros((len(B), len(B)))
+    D, V, Z, by_speed = (
+        none if A is None else A[e] for A in (m.modulus, m.viscosity, m.circulation, m.circulation_per_speed)
+    )
+    stress = row @ B.T
+    return np.array(
+        [
+            stress @ (D + Z) @ B,
+            stress @ (V + damping.rayleigh_beta * D) @ B + damping.rayleigh_alpha * mass,
+            mass,
+            group.spin * (stress @ by_speed @ B),
+            turning,
+        ]
+    )

@@ -22,6 +22,7 @@ from rotorgear.analysis.common.stream import Piece, Stream, unkept
 from rotorgear.analysis.common.stream import pieces as kept_pieces
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.mesh import aims, damped_plant, highest_peaks, meshed
+from rotorgear.analysis.response.outputs import Outputs, output_rows, output_unit
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model, model_hash
@@ -74,7 +75,7 @@ def frf(
         frequencies: frequencies in Hz, positive, (f,), in place of an evenly spaced range.
         inputs: places where unit forces act: points, a part and a direction such as "bearings.left:x", a seat of a casing such
             as "casings.box.left:x", or the point of its surface next to a place, "casings.box(0 mm; 280 mm; 200 mm):y".
-        outputs: places where the response is read, named as the inputs are.
+        outputs: places where the response is read, named as the inputs are, and points that read a load.
         fmax: highest frequency of the range in Hz.
         fmin: lowest frequency of the range in Hz (default: one step).
         points: number of frequencies between them, evenly spaced.
@@ -156,7 +157,7 @@ def checked_places(model: Model, inputs: Sequence[str], outputs: Sequence[str]) 
         "inputs": tuple(inputs),
         "outputs": tuple(outputs),
         "input_units": tuple("N m" if rotates(model, text) else "N" for text in inputs),
-        "output_units": tuple("rad" if rotates(model, text) else "m" for text in outputs),
+        "output_units": tuple(output_unit(model, text) for text in outputs),
     }
 
 
@@ -211,10 +212,11 @@ def _solved(
         progress: is told how far it is.
         piece: does the work of a piece, or takes it over.
     """
-    dynamics = damped_plant(system, speed, *damping).dynamics(speed)
-    inputs, outputs = (moving_rows(system, names) for names in places)
+    plant = damped_plant(system, speed, *damping)
+    dynamics = plant.dynamics(speed)
+    outputs = output_rows(plant, places[1], speed)
     w = 2.0 * np.pi * hz
-    f = inputs.T
+    f = moving_rows(system, places[0]).T
 
     def solve(at: np.ndarray) -> Sequence[np.ndarray]:
         done = piece(lambda: {"solutions": tuple(np.ascontiguousarray(dynamics.solve(float(one), f)) for one in at)})
@@ -243,7 +245,7 @@ def _block(
     speed: float,
     w: np.ndarray,
     f: np.ndarray,
-    outputs: np.ndarray,
+    outputs: Outputs,
     solve: Callable[[], np.ndarray],
 ) -> dict[str, np.ndarray]:
     """Receptances at some frequencies w (b,) in rad/s, and what shares in their errors: the largest of each input (i,)."""
@@ -265,7 +267,7 @@ def _block(
             )
         )
     change, residual, moved, largest = map(np.array, zip(*columns, strict=True))
-    found = {"receptance": outputs @ solutions, "change": change.T}
+    found = {"receptance": outputs.of(w, solutions), "change": change.T}
     return {**found, "residual": residual, "moved": moved, "largest": largest}
 
 

@@ -41,6 +41,8 @@ _PEAKS = 2
 _SPEEDS_A_PEAK = 2.0
 # An order pushes a mode that takes more than this share of what the most pushed one takes: the rest is rounding.
 _PUSHED = 1e-9
+# A load below this share of the largest is rounding.
+_NOTHING = 1e-9
 # A width of a resonance below this share of the speed is rounding: nothing damps it.
 _UNDAMPED = 1e-12
 # Below this share of it a resonance is too narrow for any range of speeds: what lacks is damping, not points.
@@ -153,14 +155,15 @@ def mesh_error(
     wanted = {order.name: order for order in orders_of(replace(setup, system=finer, lines=rich.lines))[0]}
     for o in strongest_orders(size):
         order = [wanted[orders[o].name]]
-        changed = 0.0
-        largest = float(size[:, o].max())
+        known = [judged[:, o] for judged in readings.judged]
+        changed = np.zeros(len(known))
+        largest = np.array([np.abs(judged).max(initial=0.0) for judged in known])
         for s in np.union1d(highest_peaks(size[:, [o]], _PEAKS), highest_peaks(lacking[:, [o]], _PEAKS)):
-            there = answer(rich, order, float(speeds[s])).stacked[0]
-            largest = max(largest, float(np.abs(there).max(initial=0.0)))
-            changed = max(changed, float(np.abs(there - forces[s, o]).max()))
-        if largest:
-            worst = max(worst, changed / largest)
+            for b, there in enumerate(answer(rich, order, float(speeds[s])).judged):
+                largest[b] = max(largest[b], np.abs(there).max(initial=0.0))
+                changed[b] = max(changed[b], np.abs(there[0] - known[b][s]).max(initial=0.0))
+        felt = largest > _NOTHING * largest.max(initial=0.0)
+        worst = max(worst, float(np.max(changed[felt] / largest[felt], initial=0.0)))
     return worst
 
 

@@ -17,7 +17,7 @@ from functools import partial
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.common.points import point_rows
+from rotorgear.analysis.common.points import motion_points, point_rows
 from rotorgear.analysis.common.stations import part_nodes
 from rotorgear.analysis.response.order import Order
 from rotorgear.solvers.frequency.harmonic import Dynamics, DynamicsOverSpeed, LowRank
@@ -26,6 +26,7 @@ from rotorgear.solvers.sparse.factor import Factor
 from rotorgear.solvers.sparse.sums import SparseSums
 from rotorgear.system.bubble_errors import ForcedChanges
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.internal_loads import LoadRows, load_rows, read_loads
 from rotorgear.system.system import System
 
 
@@ -36,7 +37,8 @@ class Readings:
     Attributes:
         mesh_force, transmission_error, approach: (o, c), the approach in the middle of the face, transverse.
         pressed: (o, c) approach along the flank normal at the place of the face where the contact has its stiffness.
-        bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
+        bearing_force: (o, b, 3); acceleration: of the named points of a motion, (o, k).
+        internal_load: of the points that read a load inside a shaft or coupling, (o, l).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
         normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
         casing_seat_force: on seats of casings, (o, s, 6); casing_ground_force: of the ground on casings, (o, g, 6).
@@ -49,6 +51,7 @@ class Readings:
     pressed: np.ndarray
     bearing_force: np.ndarray
     acceleration: np.ndarray
+    internal_load: np.ndarray
     displacement: np.ndarray
     normal_velocity: np.ndarray
     casing_seat_force: np.ndarray
@@ -66,6 +69,11 @@ class Readings:
         if forces.size:
             return forces
         return self.displacement[..., :3].reshape(*orders, -1) if self.displacement.size else self.acceleration
+
+    @property
+    def judged(self) -> list[np.ndarray]:
+        """What the error of a mesh is looked at in, each by its own largest: forces (o, k), and each internal load (o, 1)."""
+        return [self.stacked, *(self.internal_load[..., [k]] for k in range(self.internal_load.shape[-1]))]
 
 
 # What of the readings is in the result of a response.
@@ -168,16 +176,18 @@ class Plant:
         self.system = system
         self.lines = replace(lines, damping=lines.damping + beta * lines.stiffness)
         self.low_rank: LowRank | None = None
-        damped = None
+        self.damped: tuple[np.ndarray, LowRank] | None = None
         if damping is not None and damping[2] > 0.0 and damping[1].size:
             modes, w, zeta = damping
             self.low_rank = LowRank(np.asarray(system.mass @ modes), 2.0 * zeta * w, w)
-            damped = modes, self.low_rank
+            self.damped = modes, self.low_rank
         self.has_tables = system.has_tables
         self.places = part_nodes(system)
         rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
         self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]
-        self._points = point_rows(system, tuple(system.model.points)).toarray()
+        self.points = motion_points(system.model)
+        self._points = point_rows(system, self.points).toarray()
+        self.load_units = read_loads(system.model)
         self.surfaces = {
             name: surface
             for name in system.model.casings
@@ -191,10 +201,11 @@ class Plant:
         for part, (casing, number, _) in system.layout.seats:
             name = f"{casing}.{system.layout.casing(casing).seats[number]}"
             self.seats.setdefault(name, []).append(part)
-        self.ground = GroundLoads(system, damped)
+        self.ground = GroundLoads(system, self.damped)
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._sums: SparseSums | None = None
         self._rows: tuple[tuple[np.ndarray, ...], tuple[sp.csr_array, ...]] | None = None
+        self._load_rows: LoadRows | None = None
         self._bubbles = ForcedChanges.of(system)
 
     def dynamics(self, speed: float) -> Dynamics:
@@ -253,6 +264,8 @@ class Plant:
         force = lines.forces(approach - error, w, np.reshape(speed, (-1, 1))) + varied
         held, seated = (-(K @ q + (C @ q) * (1j * w)).T for K, C in self._force_rows(np.ravel(speed)[0]))
         moved = (self._points @ q).T
+        about = float(np.ravel(speed)[0])
+        inside = self.load_rows(about).amplitudes(w, q, np.asarray(speed) - about).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
         place = np.array([state.face.place if state.face else 0.0 for state in lines.states])
         middle = approach - place * (lines.tilt.T @ q).T
@@ -267,12 +280,25 @@ class Plant:
             pressed=approach,
             bearing_force=held.reshape(len(w), -1, 3),
             acceleration=-(w**2)[:, None] * moved,
+            internal_load=inside,
             displacement=there,
             normal_velocity=normal,
             casing_seat_force=np.asarray(seated).reshape(len(w), -1, 6),
             casing_ground_force=self.ground.read(w, q),
             bubble_change=lacking,
         )
+
+    def load_rows(self, speed: float) -> LoadRows:
+        """Loads of the points that read one, from displacements, at a reference speed in rad/s."""
+        if self.has_tables:
+            still = load_rows(self.system, speed)
+        else:
+            self._load_rows = self._load_rows or load_rows(self.system)
+            still = self._load_rows.at(speed)
+        if self.damped is None:
+            return still
+        modes, (P, d, _) = self.damped
+        return still.braked(modes, d, P)
 
     def _normal(self, q: np.ndarray) -> np.ndarray:
         """Root of the mean square of the normal displacement over each casing's surface, (o, k), from q (n, o)."""

@@ -86,9 +86,11 @@ def _quantities(plant: Plant, readings: Readings) -> Iterable[tuple[str, str, st
             yield field.replace("_", " "), mesh, unit, getattr(readings, field)[:, :, contacts]
     for k, name in enumerate(model.bearings):
         yield "bearing force", name, "N", readings.bearing_force[:, :, k]
-    for k, (name, point) in enumerate(model.points.items()):
-        unit = "rad/s^2" if point.direction in _MOTIONS_THAT_TURN else "m/s^2"
+    for k, name in enumerate(plant.points):
+        unit = "rad/s^2" if model.points[name].direction in _MOTIONS_THAT_TURN else "m/s^2"
         yield "acceleration", name, unit, readings.acceleration[:, :, k]
+    for k, (name, unit) in enumerate(plant.load_units.items()):
+        yield "internal load", name, unit, readings.internal_load[:, :, k]
     for k, (name, standing) in enumerate(plant.seats.items()):
         # The load of a seat with one bearing and nothing else is that of the bearing.
         if len(standing) > 1 or not standing[0].startswith("bearings."):

@@ -23,6 +23,8 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, missed, speed_in_si
 from rotorgear.analysis.response.frequency_response import checked_places, receptance_error
 from rotorgear.analysis.response.mesh import aims, damped_modes, damped_plant, meshed
+from rotorgear.analysis.response.outputs import Outputs, output_rows
+from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
@@ -75,12 +77,14 @@ def state_space(
     full: bool = False,
     progress: Progress = silent,
 ) -> StateSpace:
-    """Return the linear system between places, M x'' + D x' + K x = B u and y = C x, with the model's damping at a speed.
+    """Return the linear system between places, M x'' + D x' + K x = B u, with the model's damping at a speed.
+
+    Outputs are y = C x, and y = C x + C_v x' + C_a x'' of those that read a load.
 
     Args:
         model: any model; contacts are closed, on the flanks that its loads choose.
         inputs: as in `frf`.
-        outputs: places where displacements are read, named as the inputs are.
+        outputs: places where displacements are read, named as the inputs are, and points that read a load.
         fmax: highest frequency in Hz that the system is meant for; the mesh is refined for it as that of `frf`.
         speed: as in `frf`.
         modal_damping: as in `frf`.
@@ -112,12 +116,15 @@ def state_space(
                 "reduced one, or write sparse matrices"
             )
         B = moving_rows(system, inputs).T
-        C = moving_rows(system, outputs)
         groups = _groups(system, turns)
-        ends = np.hstack([B, C.T])
-        reached = np.arange(system.n) if full else _reached(system, groups, ends)
         damping = damped_up_to(system, limit), zeta
-        dynamics = damped_plant(system, turns, *damping, reached).dynamics(turns).cut(reached)
+        # Damping of modes reads in loads, too, but adds no displacement to those that a place reads.
+        touched = output_rows(Plant(system), outputs, turns).touched.T
+        reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, touched]))
+        plant = damped_plant(system, turns, *damping, reached)
+        C = output_rows(plant, outputs, turns)
+        ends = np.hstack([B, C.q.T])
+        dynamics = plant.dynamics(turns).cut(reached)
         damped = bool(zeta) or bool(system.damping(turns).nnz)
         progress(0.4, "matrices")
         with single_thread(system.n):
@@ -129,7 +136,7 @@ def state_space(
                 factor = factor_general(sp.csc_array(symmetric + (_SHIFT * limit) ** 2 * dynamics.M, dtype=complex))
                 basis = _joined(basis, np.real(factor.solve(ends[reached].astype(complex))), dynamics.M)
             progress(0.6, "error of the reduction")
-            cut = B[reached], C[:, reached]
+            cut = B[reached], C.cut(reached)
             made = _Matrices.of(dynamics, *cut, basis)
             learnt, held_out = (_Seen.at(dynamics, B[reached], w) for w in _judging(made, limit, damped))
             if full:
@@ -144,14 +151,14 @@ def state_space(
             at = zip(np.repeat(seen[:, None], len(inputs), axis=1), q, strict=True)
             lacking = np.array([bubbles.change(turns, w, q_w, turning=False) for w, q_w in at])
         hz = seen / (2.0 * np.pi)
-        estimate = receptance_error(system, turns, hz, C @ q, lacking, (inputs, outputs), damping)
+        estimate = receptance_error(system, turns, hz, C.of(seen, q), lacking, (inputs, outputs), damping)
         if accuracy is None or elements is not None or estimate <= accuracy:
             break
     progress(1.0, "done")
     unmoved = tuple(
         Note("", f"no input moves {text}", "its responses are 0")
-        for text, row in zip(outputs, C, strict=True)
-        if not np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size
+        for text, row in zip(outputs, touched.T, strict=True)
+        if not np.intersect1d(groups[row], groups[np.any(B, axis=1)]).size
     )
     missing = (
         missed(accuracy or ACCURACY, error, "write the full system, or ask for less"),
@@ -167,7 +174,9 @@ def state_space(
         velocity_terms=made.D,
         stiffness_matrix=made.K,
         input_matrix=made.B,
-        output_matrix=made.C,
+        output_matrix=made.C.q,
+        velocity_output=made.C.v,
+        acceleration_output=made.C.a,
         reduced=not full,
         kept_modes=0 if full else len(kept),
         reduction_error=error,
@@ -225,16 +234,16 @@ def _apart(system: System, reached: np.ndarray) -> tuple[Note, ...]:
 
 @dataclass(frozen=True)
 class _Matrices:
-    """Dense M, D, K (s, s), B (s, i) and C (o, s)."""
+    """Dense M, D, K (s, s), B (s, i) and rows C (o, s)."""
 
     M: np.ndarray
     D: np.ndarray
     K: np.ndarray
     B: np.ndarray
-    C: np.ndarray
+    C: Outputs
 
     @classmethod
-    def of(cls, dynamics: Dynamics, B: np.ndarray, C: np.ndarray, V: np.ndarray | None = None) -> _Matrices:
+    def of(cls, dynamics: Dynamics, B: np.ndarray, C: Outputs, V: np.ndarray | None = None) -> _Matrices:
         """All degrees of freedom, or the coordinates of a basis V (n, s): V^T M V and so on."""
         parts = (dynamics.M, dynamics.D, dynamics.K)
         M, D, K = (A.toarray() if V is None else V.T @ (A @ V) for A in parts)
@@ -242,13 +251,13 @@ class _Matrices:
             P, d, _ = dynamics.low_rank
             P = P if V is None else V.T @ P
             D = D + (P * d) @ P.T
-        return cls(M, D, K, B, C) if V is None else cls(0.5 * (M + M.T), D, K, V.T @ B, C @ V)
+        return cls(M, D, K, B, C) if V is None else cls(0.5 * (M + M.T), D, K, V.T @ B, C.within(V))
 
     def receptance(self, w: float) -> np.ndarray:
         """C Z^-1 B at a frequency in rad/s, (o, i)."""
         Z = self.K + 1j * w * self.D - w**2 * self.M
         try:
-            return np.asarray(self.C @ la.solve(Z, self.B.astype(complex)))
+            return np.asarray(self.C.of(np.array([w]), la.solve(Z, self.B.astype(complex))[None])[0])
         except la.LinAlgError:
             raise ConvergenceError(
                 f"the reduced system is singular at {w / 2.0 / np.pi:.6g} Hz, as at a mode without damping: look at the modes "
@@ -273,15 +282,15 @@ def _joined(basis: np.ndarray, shapes: np.ndarray, M: sp.csc_array) -> np.ndarra
     return np.array(columns).T
 
 
-def _differences(made: _Matrices, C: np.ndarray, w: np.ndarray, q: np.ndarray) -> np.ndarray:
+def _differences(made: _Matrices, C: Outputs, w: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Largest difference of reduced and whole responses (f,) at w (f,) in rad/s, over the largest size of each response.
 
     The whole displacements there are q (f, n, i).
     """
-    whole = C @ q
+    whole = C.of(w, q)
     reduced = np.array([made.receptance(float(value)) for value in w])
     # A response that symmetry forbids is rounding of what moves there.
-    forbidden = _FORBIDDEN * np.max(abs(C) @ np.abs(q), axis=0)
+    forbidden = _FORBIDDEN * np.max(abs(C.q) @ np.abs(q), axis=0)
     size = np.maximum(np.abs(whole).max(axis=0), forbidden)
     relative = np.abs(whole - reduced) / np.where(size > 0.0, size, 1.0)
     return np.asarray(relative.reshape(len(w), -1).max(axis=1))
@@ -312,7 +321,7 @@ def _judging(made: _Matrices, limit: float, damped: bool) -> tuple[np.ndarray, n
 
 
 def _reduced(
-    dynamics: Dynamics, B: np.ndarray, C: np.ndarray, basis: np.ndarray, seen: tuple[_Seen, _Seen], accuracy: float
+    dynamics: Dynamics, B: np.ndarray, C: Outputs, basis: np.ndarray, seen: tuple[_Seen, _Seen], accuracy: float
 ) -> tuple[_Matrices, float]:
     """The reduced matrices, and twice the largest difference that was found where the basis was not made.
 
