@@ -242,16 +242,25 @@ def try_samples(count: int, seed: int, only: Sequence[str], limit: float, jobs: 
     """Try so many faults of each package whose name holds one of the texts; print what survives, and the share that is killed."""
     from tests.mutation.sample import drawn, packages  # which imports this file
 
+    equivalent = {(each.file, _with(each)) for each in read() if each.equivalent}
     for package in packages():
         if not any(text in package for text in only):
             continue
-        outcomes = try_all([each for each in drawn(package, count, seed) if each.tests], limit, jobs)
+        some = [each for each in drawn(package, count, seed) if each.tests]
+        tried = [each for each in some if (each.file, _with(each)) not in equivalent]
+        outcomes = try_all(tried, limit, jobs)
         killed = sum(each.status == KILLED for each in outcomes)
-        print(f"{package:24} tried {len(outcomes)}, killed {killed}", flush=True)
+        told = f", equivalent {len(some) - len(tried)}" if len(some) > len(tried) else ""
+        print(f"{package:24} tried {len(outcomes)}, killed {killed}{told}", flush=True)
         for each in outcomes:
             if each.status != KILLED:
                 print(f"    {each.status}: {each.mutation.name}\n        {each.mutation.why}", flush=True)
     return 0
+
+
+def _with(mutation: Mutation) -> str | None:
+    """Text of a file of the package with a fault in it."""
+    return mutated((ROOT / "rotorgear" / mutation.file).read_text(encoding="utf-8"), mutation)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,7 +1,9 @@
 """Faults of one operator, function or number, drawn at random from the arithmetic of the package, and the tests nearest to them.
 
-A draw is the same for the same seed and sources. Shares of a progress bar are not drawn: they change no result. Some other faults
-change nothing that matters either; a survivor is read before it becomes a test, and then an entry of the list.
+A draw is the same for the same seed and sources. What changes no result is not drawn: shares of a progress bar, tiny numbers that
+only keep a divisor from zero, and a product that becomes a quotient by a sign. Some other faults change nothing that matters
+either; a survivor is read before it becomes a test, and then an entry of the list, with a reason in place of tests where it is
+equivalent: such ones are told apart when they are drawn again.
 """
 
 from __future__ import annotations
@@ -34,6 +36,10 @@ _FUNCTIONS = {
 }
 # Functions that are told a share of the work.
 _OF_PROGRESS = ("progress", "tell", "part_of")
+# Smaller numbers keep divisors from zero.
+_GUARD = 1e-100
+# Names of numbers that are 1 or -1: a product with them is the quotient.
+_SIGNS = ("sign", "sense", "side")
 # Laws that every part of a kind holds; quick, and run behind the tests that mirror a module.
 _OF_LAWS = {
     "forces": "test_force_laws.py",
@@ -107,16 +113,25 @@ def faults_of(text: str) -> list[tuple[int, int, str, str]]:
             old, new = _OPERATORS.get(type(operator), ("", ""))
             begin = offset(left.end_lineno or 1, left.end_col_offset or 0)
             between = text[begin : offset(right.lineno, right.col_offset)]
+            if old in ("*", "/") and _name_of(right) in _SIGNS:
+                continue
             if old and between.count(old) == 1:
                 found.append((begin + between.index(old), len(old), old, new))
         if isinstance(node, ast.Attribute) and node.attr in _FUNCTIONS:
             end = offset(node.end_lineno or 1, node.end_col_offset or 0)
             found.append((end - len(node.attr), len(node.attr), node.attr, _FUNCTIONS[node.attr]))
-        if isinstance(node, ast.Constant) and isinstance(node.value, float) and 0.0 < node.value < 1e3:
+        if isinstance(node, ast.Constant) and isinstance(node.value, float) and _GUARD < node.value < 1e3:
             begin = offset(node.lineno, node.col_offset)
             old = text[begin : offset(node.end_lineno or 1, node.end_col_offset or 0)]
             found.append((begin, len(old), old, f"{2.0 * node.value!r}"))
     return sorted(set(found))
+
+
+def _name_of(node: ast.expr) -> str:
+    """The last name of a variable, an attribute, an entry of one or a call; "" of other expressions."""
+    while isinstance(node, (ast.Subscript, ast.Call)):
+        node = node.value if isinstance(node, ast.Subscript) else node.func
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
 
 
 def _arithmetic(node: ast.AST, inside: bool = False) -> Iterator[ast.AST]:

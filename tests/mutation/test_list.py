@@ -55,10 +55,13 @@ def f(x: float | None = 2.0) -> float:
     é = "a - b" + f"{x - 1.0}"
     y: int | None = 3
     progress(0.3 + 0.2 * x, "half")
+    z = x / np.maximum(y, 1e-300) + side[0] * self.sense * 7
     return np.sin(x) * 0.5 if x < y else x
 '''
     found = [(old, new) for *_, old, new in faults_of(text)]
-    assert found == [("+", "-"), ("sin", "cos"), ("*", "/"), ("0.5", "1.0"), ("<", ">")]
+    # No guard of a divisor, and no product with a sign.
+    third = [("/", "*"), ("maximum", "minimum"), ("+", "-"), ("*", "/")]
+    assert found == [("+", "-"), *third, ("sin", "cos"), ("*", "/"), ("0.5", "1.0"), ("<", ">")]
     for begin, length, old, _ in faults_of(text):
         assert text[begin : begin + length] == old
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -144,9 +145,14 @@ def test_a_map_that_no_machine_holds_is_refused_before_it_begins(monkeypatch: py
     """An odd tooth of each gear: 1360 base pitches, of which few differ."""
     odd = FlankModification(pitch_error=((0, 5e-6),))
     monkeypatch.setattr("rotorgear.memory.free_memory", lambda: 2e9)
-    sentence = r"over 1360 base pitches would take [\d.]+ GB of memory, and 2 GB are free: give pitch errors"
-    with pytest.raises(AnalysisError, match=sentence):
+    sentence = r"over 1360 base pitches would take ([\d.]+) GB of memory, and 2 GB are free: give pitch errors"
+    with pytest.raises(AnalysisError, match=sentence) as caught:
         contact_map(spur(first_flank=odd, second_flank=odd), LOAD)
+    # Twelve numbers of eight bytes for each of 512 positions a base pitch under each load.
+    said = re.search(sentence, str(caught.value))
+    assert said is not None
+    loads = len(contact_map(spur(), LOAD, POSITIONS).load)
+    assert float(said[1]) == pytest.approx(12 * 8 * 1360 * 512 * loads / 1e9, rel=0.02)
 
 
 def test_a_kept_map_is_read_again_and_another_key_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
