@@ -122,7 +122,8 @@ def test_the_orbit_at_the_operating_speed_is_that_of_the_trial_unbalance() -> No
 
 def test_stability_speaks_of_the_logarithmic_decrement_of_the_forward_whirl() -> None:
     for zeta, verdict in ((0.05, "within"), (0.015, "not within")):
-        check = next(c for c in rg.standards(jeffcott(zeta, 1.4)).checks if c.rule == "stability")
+        # Modes that whirl backward and die away are not listed.
+        (check,) = [c for c in rg.standards(jeffcott(zeta, 1.4)).checks if c.rule == "stability"]
         assert check.value == pytest.approx(2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2), rel=1e-5)
         assert check.verdict == verdict
 
@@ -268,3 +269,59 @@ fixed = ["x", "y", "z", "tilt_x", "tilt_y"]
     )
     assert peak.amplification_factor == pytest.approx(factor, rel=5e-3)
     assert peak.whirl == "forward"
+
+
+def test_the_orbit_in_a_loose_bearing_is_held_against_three_quarters_of_its_play() -> None:
+    """Springs hold the mass in the middle of the clearance of 40 um: the limit of the major axis is 30 um."""
+    loose = """
+[bearings.loose]
+shaft = "rotor"
+at = "start"
+rolling = { kind = "roller", elements = 9, element_diameter = 0.012, pitch_diameter = 0.06, length = 0.012, clearance = 40e-6 }
+"""
+    text = jeffcott_text(0.05, 1.4).replace("[bearings.spring]", "[supports.spring]") + loose
+    checks = rg.standards(rg.loads(text)).checks
+    found = {check.rule: check for check in checks if check.part == "bearings.loose"}
+    assert found["clearance"].limit == pytest.approx(30.0)
+    assert found["clearance"].value == found["vibration limit"].value
+
+
+def cross_coupled(q: float, sense: float) -> rg.Model:
+    """m u'' + c u' + (k - i q) u = m e w^2 e^{iwt} of u = x + iy, as in a seal; sense: of rotation and of q."""
+    source = jeffcott_text(0.05, sense * 1.4).replace(
+        f"radial = {STIFFNESS} ", f"radial = {STIFFNESS}, xy = {sense * q}, yx = {-sense * q} "
+    )
+    return rg.loads(source)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_seal_that_drives_the_forward_whirl_takes_its_force_from_the_damping(sense: float) -> None:
+    damping, q = 2.0 * 0.05 * MASS * NATURAL, 4e3
+    result = rg.standards(cross_coupled(q, sense))
+
+    def radius(w: float) -> float:
+        return w * w / abs(STIFFNESS / MASS - w * w + 1j * (damping * w - q) / MASS)
+
+    (peak,) = result.criticals
+    top, low, high, factor = half_power(radius, NATURAL)
+    rpm = 30.0 / math.pi
+    assert [peak.shaft_rpm, peak.below_rpm, peak.above_rpm] == pytest.approx(
+        [top * rpm, low * rpm, high * rpm], rel=1e-5
+    )
+    assert peak.amplification_factor == pytest.approx(factor, rel=1e-3)
+    (check,) = [one for one in result.checks if one.rule == "stability"]
+    s = max(np.roots([MASS, damping, STIFFNESS - 1j * q]), key=lambda root: root.imag)
+    zeta = -s.real / abs(s)
+    assert check.value == pytest.approx(2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2), rel=1e-5)
+
+
+def test_a_backward_whirl_that_grows_is_told_beside_the_forward_one() -> None:
+    q = -1.5e4
+    checks = [one for one in rg.standards(cross_coupled(q, 1.0)).checks if one.rule == "stability"]
+    found = {}
+    for s in np.roots([MASS, 2.0 * 0.05 * MASS * NATURAL, STIFFNESS - 1j * q]):
+        zeta = -s.real / abs(s)
+        found[s.imag > 0.0] = 2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2)
+    assert [check.value for check in checks] == pytest.approx([found[True], found[False]], rel=1e-5)
+    assert [check.verdict for check in checks] == ["within", "not within"]
+    assert [check.part.split(" ")[0] for check in checks] == ["shafts.rotor", "mode"]
