@@ -11,9 +11,9 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 import rotorgear as rg
+from rotorgear.casings import mesh_error
 from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.fe_body import finite_element_body
-from rotorgear.casings import mesh_error
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.reduced_body import mass_properties
 from rotorgear.casings.reduction import free_modes, held_modes, reduce, rigid_residual
