@@ -325,3 +325,10 @@ def test_a_backward_whirl_that_grows_is_told_beside_the_forward_one() -> None:
     assert [check.value for check in checks] == pytest.approx([found[True], found[False]], rel=1e-5)
     assert [check.verdict for check in checks] == ["within", "not within"]
     assert [check.part.split(" ")[0] for check in checks] == ["shafts.rotor", "mode"]
+
+
+def test_of_a_peak_with_one_flank_the_factor_is_that_of_twice_the_distance_to_it() -> None:
+    for below, above, factor in ((97.0, 104.0, 100.0 / 7.0), (math.nan, 104.0, 12.5), (97.0, math.nan, 100.0 / 6.0)):
+        peak = rules.ResponsePeak(100.0, 1.0, below, above)
+        assert peak.amplification_factor == pytest.approx(factor)
+    assert math.isnan(rules.ResponsePeak(100.0, 1.0, math.nan, math.nan).amplification_factor)
