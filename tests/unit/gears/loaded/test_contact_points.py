@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from rotorgear.gears.geometry.line_of_action import LineOfAction
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
@@ -150,4 +151,4 @@ def test_positions_stand_for_half_of_the_intervals_beside_them(periods: int) -> 
     weight = MeshCycle.weight.fget(SimpleNamespace(position=u))  # type: ignore[attr-defined]
     values = np.random.default_rng(5).random(len(u))
     closed_u, closed = np.append(u, u[0] + periods), np.append(values, values[0])
-    assert weight @ values == pytest.approx(np.trapezoid(closed, closed_u) / periods, rel=1e-12)
+    assert weight @ values == pytest.approx(trapezoid(closed, closed_u) / periods, rel=1e-12)
