@@ -309,6 +309,9 @@ def test_a_seal_that_drives_the_forward_whirl_takes_its_force_from_the_damping(s
         [top * rpm, low * rpm, high * rpm], rel=1e-5
     )
     assert peak.amplification_factor == pytest.approx(factor, rel=1e-3)
+    # Its page shows the response from a fiftieth of the highest speed on, which is half above the operating one.
+    top = 1.5 * 1.4 * NATURAL
+    assert (result.curve_speeds[0], result.curve_speeds[-1]) == pytest.approx((0.02 * top, top))
     (check,) = [one for one in result.checks if one.rule == "stability"]
     s = max(np.roots([MASS, damping, STIFFNESS - 1j * q]), key=lambda root: root.imag)
     zeta = -s.real / abs(s)
