@@ -216,7 +216,11 @@ class TransientResult(ModelResult, kind="transient"):
     )
     channels = rows("channels in the time that counts", "channel")
     channel: tuple[str, ...] = of(
-        "name of the channel", "", "channel", note=": force of a bearing, or motion of a part", json="name"
+        "name of the channel",
+        "",
+        "channel",
+        note=": force of a bearing, motion of a part, or load inside a shaft",
+        json="name",
     )
     unit: tuple[str, ...] = of("unit", "", "channel")
     value_mean: np.ndarray = of("mean in the time that counts", "", "channel", json="mean")

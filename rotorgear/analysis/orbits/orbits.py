@@ -28,7 +28,7 @@ from rotorgear.analysis.orbits.follow import (
 )
 from rotorgear.analysis.orbits.kept import AnyOrbits, packed, remembering, unpacked
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
-from rotorgear.analysis.transient.notes import left_out_in_time
+from rotorgear.analysis.transient.notes import left_out_in_time, unread_loads
 from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model, model_hash
@@ -235,6 +235,7 @@ def orbits(
         status=short or "success",
         left_out=(
             *left_out_in_time(family.local, plant.speed, contacts_only=not outputs.place),
+            *unread_loads(model),
             *family.notes,
             *_modes_left_out(problem),
         ),

@@ -17,7 +17,7 @@ from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large
-from rotorgear.analysis.transient.notes import left_out_in_time
+from rotorgear.analysis.transient.notes import left_out_in_time, unread_loads
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.batch.columns import OWN_LAW, TABLE_ROWS, Columns
@@ -221,7 +221,7 @@ class PointMaker:
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
         watched = np.hstack([built.local.watched_vectors, approach])
         built = replace(built, local=replace(built.local, watched=watched))
-        self.left_out.append(left_out_in_time(built, speed, contacts_only=True))
+        self.left_out.append((*left_out_in_time(built, speed, contacts_only=True), *unread_loads(model)))
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")

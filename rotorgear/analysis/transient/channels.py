@@ -1,4 +1,7 @@
-"""What a transient records beside its contacts: bearing forces, motions of points, bearings and gears, as rows on q, v and a."""
+"""What a transient records beside its contacts: bearing forces, motions of points, bearings and gears, loads inside shafts.
+
+They are rows on q, v and a.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.common.points import point_rows
+from rotorgear.analysis.common.points import motion_points, point_rows
+from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.time.local_system import Observed, Records
+from rotorgear.system.internal_loads import load_rows, read_loads
 from rotorgear.system.local import LocalModel
 
 _AXES = ("x", "y", "z")
@@ -17,15 +22,19 @@ _AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Channels:
-    """p channels: value = Y_q q + Y_v v + Y_a a + Y_F F, with rows (p, n) and (p, m) by kind for those that have any."""
+    """p channels: value = Y_q q + Y_v v + Y_a a + Y_F F + c, with rows (p, n) and (p, m) by kind for those that have any.
+
+    `constant`: c (p,), what weight adds to loads; sums that integrators gather are without it.
+    """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     rows: dict[str, tuple[np.ndarray, np.ndarray]]
+    constant: np.ndarray
 
     def values(self, records: Records) -> np.ndarray:
         """Values (r, p) at the recorded steps."""
-        values = np.zeros((len(records.t), len(self.names)))
+        values = np.tile(self.constant, (len(records.t), 1))
         for kind, (which, Y) in self.rows.items():
             values[:, which] += records.F @ Y.T if kind == "F" else records.rows(kind, Y)
         return values
@@ -42,12 +51,16 @@ def channels(local: LocalModel) -> Channels:
     """Forces of bearings, motions of points, orbits of the shafts in their bearings, and fluctuations of the gears' speeds."""
     system = local.system
     every = list(_bearing_forces(local))
-    for name, point in system.model.points.items():
-        dof = DOF_NAMES.index(point.direction)
+    for name in motion_points(system.model):
+        dof = DOF_NAMES.index(system.model.points[name].direction)
         row = point_rows(system, (name,)).toarray()[0]
         unit = "m" if dof < 3 else "rad"
         for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
             every.append((f"points.{name} {what}", unit + per, {kind: row}))
+    constant = {}
+    for label, unit, by_kind, weight in _internal_loads(local):
+        constant[label] = -weight
+        every.append((label, unit, by_kind))
 
     motions = [
         (f"bearings.{name} displacement {axis}", "m", "q", 6 * system.nodes.at(*place) + k)
@@ -67,7 +80,31 @@ def channels(local: LocalModel) -> Channels:
         which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)
         if which.size:
             rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
-    return Channels(tuple(item[0] for item in every), tuple(item[1] for item in every), rows)
+    names, units, _ = zip(*every, strict=True) if every else ((), (), ())
+    return Channels(names, units, rows, np.array([constant.get(name, 0.0) for name in names]))
+
+
+def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray], float]]:
+    """The load of each point that reads one, by kind of row, and the weight along its element.
+
+    Raises:
+        AnalysisError: a load that the speed of the shaft takes part in, where that changes.
+    """
+    system = local.system
+    units = read_loads(system.model)
+    if not units:
+        return
+    rotation = local.local.rotation
+    rows = load_rows(system, float(rotation.speeds[0]))
+    for k, (name, unit) in enumerate(units.items()):
+        if not rotation.is_constant and any(part[k].any() for part in rows.per_speed):
+            raise AnalysisError(
+                f"points.{name}: gyroscopic moments take part in this load, which is known at a constant speed only: leave the "
+                "point out of a run-up, or read a torque or an axial force"
+            )
+        quantity = system.model.points[name].quantity
+        by_kind = {kind: row for kind, row in (("q", rows.q[k]), ("v", rows.v[k]), ("a", rows.a[k])) if row.any()}
+        yield f"points.{name} {quantity}", unit, by_kind, float(rows.weight[k])
 
 
 def _bearing_forces(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray]]]:

@@ -19,6 +19,7 @@ from rotorgear.note import Note, as_notes
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import unbalanced
+from rotorgear.system.internal_loads import read_loads
 from rotorgear.system.local import LocalModel
 
 # Numerical share of the energy above which a run is warned about.
@@ -33,6 +34,22 @@ def left_out_in_time(local: LocalModel, speed: float, *, contacts_only: bool = F
     system = local.system
     told = left_out(system, "time", speed, contacts_only=contacts_only)
     return (*told, *transient_left_out(local), *mean_torsion_notes(system, speed))
+
+
+def unread_loads(model: Model) -> tuple[Note, ...]:
+    """The points that read a load, of an analysis that tells motions and contacts alone."""
+    why = "of the loads, the result tells those of the contacts; a transient tells this one"
+    return tuple(Note(f"points.{name}.quantity", "", why) for name in read_loads(model))
+
+
+def damped_at_nodes(model: Model) -> tuple[Note, ...]:
+    """The loads inside shafts of a model whose modes have a damping ratio."""
+    if not model.damping.modal_ratio:
+        return ()
+    why = "it acts at the nodes, as forces from outside"
+    return tuple(
+        Note(f"points.{name}", "what damping of modes does between two nodes", why) for name in read_loads(model)
+    )
 
 
 def transient_left_out(local: LocalModel) -> tuple[Note, ...]:

@@ -76,7 +76,7 @@ def of_meshes(found: Histories, task: Task) -> MotionStatistics:
 def of_channels(found: Histories, task: Task) -> Statistics:
     """Statistics of the channels over all steps that count."""
     all_of = Statistics.of_steps(found.state.gathered)
-    return all_of.chosen(slice(all_of.mean.size - len(task.channels.names), None))
+    return all_of.chosen(slice(all_of.mean.size - len(task.channels.names), None)).about(task.channels.constant)
 
 
 def quantities_of(found: Histories, task: Task) -> Quantities:

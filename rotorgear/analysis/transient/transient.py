@@ -24,7 +24,14 @@ from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.transient.errors import FALLS, Stated, fine_enough, stated
 from rotorgear.analysis.transient.histories import Histories, run_task
-from rotorgear.analysis.transient.notes import adrift, intact, left_out_in_time, thinned, transient_warnings
+from rotorgear.analysis.transient.notes import (
+    adrift,
+    damped_at_nodes,
+    intact,
+    left_out_in_time,
+    thinned,
+    transient_warnings,
+)
 from rotorgear.analysis.transient.request import (
     STARTS,
     Grid,
@@ -230,7 +237,11 @@ def _result(
         motion_time=np.concatenate([np.zeros(0), *(t for t, _ in found.motion)]),
         motion=shapes,
         status=found.status,
-        left_out=(*left_out_in_time(task.local, task.largest), *thinned(task, grid)),
+        left_out=(
+            *left_out_in_time(task.local, task.largest),
+            *damped_at_nodes(system.model),
+            *thinned(task, grid),
+        ),
     )
     notes = [*transient_warnings(result, task, estimated=estimated, keeps_energy=integrator.keeps_energy)]
     if result.status == "success":

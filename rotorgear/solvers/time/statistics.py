@@ -91,6 +91,10 @@ class Statistics:
         least, largest = gathered.extremes.T
         return Statistics.of_sums(steps, sums, squares, least.copy(), largest.copy(), gathered.level)
 
+    def about(self, constant: np.ndarray) -> Statistics:
+        """Those of the quantities with constants (g,) added to them."""
+        return Statistics(self.mean + constant, self.rms, self.least + constant, self.largest + constant)
+
     def chosen(self, which: np.ndarray | slice) -> Statistics:
         """Those of some quantities."""
         return Statistics(self.mean[which], self.rms[which], self.least[which], self.largest[which])
