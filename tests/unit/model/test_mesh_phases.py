@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.model.layout.assembly import tooth_numbers
 
 GEAR: dict[str, Any] = {"kind": "spur", "normal_module": 0.004, "width": 0.03, "at": "start", "body": {"bore": 0.02}}
 
@@ -121,3 +122,65 @@ def test_phases_of_the_same_teeth_do_not_depend_on_which_gear_is_called_pinion()
         **{**{name: getattr(model, name) for name in ("operation", "shafts", "gears", "bearings")}, "meshes": meshes}
     )
     assert np.abs(apart(rg.static(model).mesh_phase["pair"], rg.static(other).mesh_phase["pair"])) < 1e-9
+
+
+def central(teeth: int, others: list[tuple[int, float]], is_pinion: bool, shift: float) -> rg.Model:
+    """A gear with one wrong tooth among others at some angles about it, all with loaded teeth of 4 mm."""
+    spring = {"stiffness": {"radial": 1e9, "axial": 1e9, "tilt": 1e7}}
+    shafts: dict[str, Any] = {"middle": {"position": [0.0, 0.0]}}
+    own = {**GEAR, "profile_shift": shift, "flank": {"pitch_errors": {"0": "5 um"}}}
+    gears: dict[str, Any] = {"middle": {"shaft": "middle", "teeth": teeth, **own}}
+    meshes = {}
+    for k, (z, angle) in enumerate(others):
+        distance = 0.002 * (teeth + z)
+        shafts[f"s{k}"] = {"position": [distance * math.cos(angle), distance * math.sin(angle)]}
+        gears[f"g{k}"] = {"shaft": f"s{k}", "teeth": z, **GEAR, "profile_shift": -shift}
+        pinion, gear = ("middle", f"g{k}") if is_pinion else (f"g{k}", "middle")
+        meshes[f"m{k}"] = {"pinion": pinion, "gear": gear, "stiffness": "tooth_fe"}
+    return rg.Model(
+        operation={"input_shaft": "middle" if is_pinion else "s0", "speed": 10.0},
+        shafts=shafts,
+        gears=gears,
+        meshes=meshes,
+        bearings={name: {"shaft": name, "at": "start", **spring} for name in shafts},
+    )
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("drives", [True, False])
+@pytest.mark.parametrize("is_pinion", [True, False])
+def test_maps_of_a_gear_with_a_wrong_tooth_begin_with_the_teeth_that_stand_there(
+    is_pinion: bool, drives: bool, direction: int
+) -> None:
+    """Tooth by tooth: the last one whose carrying flank has passed the pitch point, in the order in which they come there."""
+    teeth, others = 23, [(31, 0.4), (37, 2.9), (29, -1.7)]
+    layout = central(teeth, others, is_pinion, 0.3).layout
+    # Sense of rotation of the middle gear: the reference shaft is its own, or that of the first other gear.
+    sense = direction if is_pinion else -direction
+    pinion_drives = drives == is_pinion
+    # A pinion that drives is pressed in the sense in which it turns, one that is driven against it.
+    on_pinion = (sense if is_pinion else -sense) * (1 if pinion_drives else -1)
+    pressed = {f"m{k}": (on_pinion, pinion_drives) for k in range(3)}
+    ahead, unknown = tooth_numbers(layout.assembly, layout.meshes, direction, pressed)
+    assert unknown == []
+    geometry = layout.gear("middle").geometry
+    assert geometry is not None
+    pitch = 2.0 * math.pi / teeth
+    numbers = []
+    for k, (_, angle) in enumerate(others):
+        mesh = layout.mesh(f"m{k}")
+        # Half the tooth at the working circle; without backlash both halves of a pair are half a pitch.
+        working = 2.0 * geometry.base_radius / math.cos(mesh.pressure_angle)
+        half = geometry.transverse_thickness(working) / working
+        flank = on_pinion * half
+        passed = [
+            (sense * (layout.assembly.angle(layout.gear("middle")) - sense * j * pitch + flank - angle))
+            % (2.0 * math.pi)
+            for j in range(teeth)
+        ]
+        (number,) = [j for j, way in enumerate(passed) if way < pitch]
+        numbers.append(number)
+    assert [ahead[f"m{k}"] for k in range(3)] == [(number - numbers[0]) % teeth for number in numbers]
+    # Where it drives in one mesh and is driven in another, one map runs against the order of the teeth.
+    pressed["m1"] = (-on_pinion, not pinion_drives)
+    assert tooth_numbers(layout.assembly, layout.meshes, direction, pressed)[1] == ["middle"]

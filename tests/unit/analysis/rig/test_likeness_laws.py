@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from rotorgear.analysis.rig import frf_misfit
+from rotorgear.analysis.rig import compare_shapes, frf_misfit
 from rotorgear.analysis.rig.compare import compare_lines
 from rotorgear.analysis.rig.compare_shapes import _comac, phase_collinearity
 from rotorgear.analysis.rig.frf_misfit import FrfMisfit
 from rotorgear.analysis.rig.likeness import frac, mac, pairs_by_both
-from rotorgear.analysis.rig.measured import MeasuredFrf
+from rotorgear.analysis.rig.measured import MeasuredFrf, _sensor
 from rotorgear.analysis.rig.posterior import Posterior, line_noise, spring_shares
 from rotorgear.analysis.rig.sensors import best_rows, independence
 from rotorgear.results.comparison import RigLine
@@ -224,3 +225,48 @@ def test_one_number_by_several_lines_weighs_them_by_their_variances() -> None:
     assert posterior.sigma[0] == pytest.approx(sigma, rel=1e-12)
     residual = 0.5 * 0.1 * np.ones(4)
     assert posterior.estimate(residual)[0] == pytest.approx(0.1 * weights.sum() * sigma**2, rel=1e-12)
+
+
+def test_random_lists_fill_the_band_of_the_lines_and_their_shapes_are_mixed_from_unit_ones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    drawn: list[np.ndarray] = []
+    mixed: list[np.ndarray] = []
+
+    def pairs(hz: np.ndarray, *rest: Any) -> tuple[list[tuple[int, int]], float]:
+        drawn.append(hz)
+        return [(0, 1)] if hz[0] > 150.0 else [], float(hz[0])
+
+    def likeness(shapes: np.ndarray) -> np.ndarray:
+        mixed.append(shapes)
+        return np.full((2, 3), 0.95)
+
+    monkeypatch.setattr(compare_shapes, "pairs_by_both", pairs)
+    rng = np.random.default_rng(1)
+    points = (rng.normal(size=(3, 4)) + 1j * rng.normal(size=(3, 4))) * np.array([1.0, 100.0, 0.0])[:, None]
+    modes: Any = SimpleNamespace(hz=np.array([90.0, 160.0, 300.0]), at_points=points, likeness=likeness)
+    rig = np.array([120.0, 210.0])
+    found = compare_shapes._chance(modes, rig, np.full((2, 3), 0.9), np.ones(3), 0.05, 400, 7)
+    assert np.array_equal(drawn[0], rig)
+    lists = np.array(drawn[1:])
+    low, high = 120.0 / 1.05, 210.0 * 1.05
+    assert low <= lists.min() < 1.01 * low
+    assert 0.99 * high < lists.max() <= high
+    # Evenly over the logarithm.
+    share = np.log(lists / low) / math.log(high / low)
+    assert share.mean() == pytest.approx(0.5, abs=0.04)
+    # One match where the first line is above 150 Hz and within 5 % of the mode at 160.
+    first = lists[:, 0]
+    matched = (first > 150.0) & (np.abs(160.0 / first - 1.0) <= 0.05)
+    assert found.expected == pytest.approx(matched.mean())
+    assert found.probability_as_close == pytest.approx((1 + np.count_nonzero(first <= 120.0)) / 401)
+    # Each mode has the same part in random shapes, but one that no sensor sees.
+    shapes = np.vstack(mixed)
+    assert np.mean(np.abs(shapes) ** 2, axis=0).sum() == pytest.approx(2.0, rel=0.15)
+
+
+@pytest.mark.parametrize(("direction", "sign", "expected"), [(2, 1, 1.0), (-2, 1, -1.0), (2, -1, -1.0), (-2, -1, 1.0)])
+def test_signs_of_a_freedom_and_of_its_sensor_multiply(direction: int, sign: int, expected: float) -> None:
+    sensor: Any = SimpleNamespace(sign=sign)
+    assert _sensor((5, direction), {(5, 1): sensor}) == (sensor, expected)
+    assert _sensor((6, direction), {(5, 1): sensor}) == (None, math.copysign(1.0, direction))
