@@ -1,9 +1,9 @@
 """Faults of one operator, function or number, drawn at random from the arithmetic of the package, and the tests nearest to them.
 
-A draw is the same for the same seed and sources. What changes no result is not drawn: shares of a progress bar, tiny numbers that
-only keep a divisor from zero, and a product that becomes a quotient by a sign. Some other faults change nothing that matters
-either; a survivor is read before it becomes a test, and then an entry of the list, with a reason in place of tests where it is
-equivalent: such ones are told apart when they are drawn again.
+A draw is the same for the same seed and sources. What changes no result is not drawn: shares of a progress bar, examples of laws,
+tiny numbers that only keep a divisor from zero, and a product that becomes a quotient by a sign. Some other faults change nothing
+that matters either; a survivor is read before it becomes a test, and then an entry of the list, with a reason in place of tests
+where it is equivalent: such ones are told apart when they are drawn again.
 """
 
 from __future__ import annotations
@@ -40,6 +40,8 @@ _OF_PROGRESS = ("progress", "tell", "part_of")
 _GUARD = 1e-100
 # Names of numbers that are 1 or -1: a product with them is the quotient.
 _SIGNS = ("sign", "sense", "side")
+# Numbers that tests try laws with.
+_FOR_TESTS = "examples"
 # Laws that every part of a kind holds; quick, and run behind the tests that mirror a module.
 _OF_LAWS = {
     "forces": "test_force_laws.py",
@@ -138,6 +140,8 @@ def _arithmetic(node: ast.AST, inside: bool = False) -> Iterator[ast.AST]:
     """Nodes of the bodies of functions, without annotations, defaults, texts of messages and shares of progress."""
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "args") and isinstance(node, (ast.FunctionDef, ast.AnnAssign)):
+            continue
+        if isinstance(node, ast.FunctionDef) and node.name == _FOR_TESTS:
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.Call) and isinstance(child.func, ast.Name) and child.func.id in _OF_PROGRESS:

@@ -57,9 +57,13 @@ def f(x: float | None = 2.0) -> float:
     progress(0.3 + 0.2 * x, "half")
     z = x / np.maximum(y, 1e-300) + side[0] * self.sense * 7
     return np.sin(x) * 0.5 if x < y else x
+
+
+def examples():
+    return Spring(2.0 * 7)
 '''
     found = [(old, new) for *_, old, new in faults_of(text)]
-    # No guard of a divisor, and no product with a sign.
+    # No guard of a divisor, no product with a sign, and no example.
     third = [("/", "*"), ("maximum", "minimum"), ("+", "-"), ("*", "/")]
     assert found == [("+", "-"), *third, ("sin", "cos"), ("*", "/"), ("0.5", "1.0"), ("<", ">")]
     for begin, length, old, _ in faults_of(text):
