@@ -157,7 +157,8 @@ def report(call: Call) -> None:
         asked = {"output": call["output"]} | call.arguments("report")
         done = rg.report(call.source_path, **asked, stream=stream, progress=progress)
     stream.close()
-    write_json(call, done.to_dict())
+    if call["json"]:
+        write_json(call, done.to_dict())
     say(f"wrote {done.path}, {done.path.stat().st_size / 1e6:.2f} MB")
     for name, reason in done.missing.items():
         say(f"not there: {name}: {reason}")

@@ -100,7 +100,7 @@ def computed(
         found.run("rig", 0.18, lambda: compare(modes, rig, known_to_hz=wanted.get("fmax")))
     if speed:
         # The analyses over a range of speeds.
-        found.run("campbell", 0.2, lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
+        found.run("campbell", 0.2, lambda: campbell(model, points=CAMPBELL_SPEEDS, modes=MODES, mesh_orders=(1,)))
         # The rules judge the critical speeds of the table: both go as far as the widest margin reaches.
         speeds = found.run("critical", 0.45, lambda: critical(model, stop=HIGHEST * speed))
         if model.bearings:

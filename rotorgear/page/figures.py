@@ -1,4 +1,4 @@
-"""Pictures inside the page: curves as SVG, solids drawn by matplotlib, which needs no graphics driver.
+"""Pictures inside the page: curves as SVG, solids painted face by face, which needs no graphics driver.
 
 Solids are seen along an isometric direction, their faces painted from the farthest to the nearest with the light of their slope.
 """
@@ -15,6 +15,7 @@ import numpy as np
 
 from rotorgear.export.solids import Solids
 from rotorgear.page.contents import Contents, error_of
+from rotorgear.page.ticks import settle
 from rotorgear.plots.figure import COLOURS, beside, label, legend_below, name_axes, new_figure, values
 from rotorgear.results.standards import StandardsResult
 
@@ -36,6 +37,8 @@ _SHADE = 0.42
 # Letters of an SVG above which a picture is an image.
 _LARGEST = 600_000
 _THROUGH = 0.16  # how much of a casing is seen
+_DOTS = 96  # of a picture of solids, an inch
+_FINER = 4  # each of its dots is the mean of so many by so many that were painted, which makes edges smooth
 # An error of zero has no place on a logarithmic axis.
 _LEAST = 1e-13
 _LINKS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
@@ -46,15 +49,17 @@ def svg_of(picture: Any, shows: str) -> str:
     import matplotlib
 
     one = np.asarray(picture, dtype=object).flat[0]
+    figure = one.figure.figure
     out = StringIO()
     # Ids of clip paths begin with the salt, so that no two pictures of the page share one.
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": shows, "font.family": "DejaVu Sans"}):
-        one.figure.figure.savefig(
-            out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
-        )
+        settle(figure)
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     text = out.getvalue()
     if len(text) > _LARGEST:  # very many lines as SVG would make the page heavy
-        return _image(one.figure.figure, shows, dpi=150)
+        pixels = BytesIO()
+        figure.savefig(pixels, format="png", dpi=150)
+        return _image(pixels.getvalue(), shows)
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
@@ -67,11 +72,9 @@ def svg_of(picture: Any, shows: str) -> str:
     )
 
 
-def _image(figure: Any, shows: str, **look: Any) -> str:
-    """A figure as an image element that holds its pixels."""
-    out = BytesIO()
-    figure.savefig(out, format="png", **look)
-    data = base64.b64encode(out.getvalue()).decode("ascii")
+def _image(pixels: bytes, shows: str) -> str:
+    """A picture (PNG) as an image element that holds its pixels."""
+    data = base64.b64encode(pixels).decode("ascii")
     return f'<img alt="{escape(shows)}" src="data:image/png;base64,{data}">'
 
 
@@ -98,41 +101,36 @@ class Painter:
             moved: displacements (P, 3); none for the gearbox at rest.
             level: (P,) from 0 to 1, shown by colour in place of the kinds of parts.
         """
+        solids = self.solids
+        points = (solids.points if moved is None else solids.points + moved) @ self.axes - self.middle
+        # Triangles have their last corner twice.
+        corners = points[np.concatenate([solids.quads, solids.triangles[:, [0, 1, 2, 2]]])]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        lengths = np.linalg.norm(normals, axis=1)
+        slope = np.abs(normals @ self.light) / np.where(lengths > 0.0, lengths, 1.0)
+        colour = self._colours(level) * (_SHADE + (1.0 - _SHADE) * slope)[:, None]
+        casing = "casing" in solids.kind_names and solids.kind == solids.kind_names.index("casing")
+        alpha = np.where(casing, _THROUGH, 1.0)
+        depth = np.concatenate([points[solids.quads, 2].mean(axis=1), points[solids.triangles, 2].mean(axis=1)])
+        order = np.argsort(depth)
+        # Faces that look away are hidden by those before them, but in casings, through which one sees.
+        order = order[(normals[order, 2] > 0.0) | (alpha[order] < 1.0)]
+        colours = np.column_stack([colour, np.broadcast_to(alpha, len(colour))])[order]
+        wide, high = (round(_DOTS * inches) for inches in self.size)
+        reach = 0.56 * max(self.span[0], self.span[1] * self.size[0] / self.size[1])
+        dots = (0.5 * wide / reach) * np.array([1.0, -1.0]) * corners[order, :, :2] + 0.5 * np.array([wide, high])
+        return _image(painted(dots, colours, (wide, high)), shows)
+
+    def _colours(self, level: np.ndarray | None) -> np.ndarray:
+        """Colours (C, 3) of the faces: those of the kinds of parts, or of a level at each point."""
         from matplotlib import colormaps
-        from matplotlib.collections import PolyCollection
         from matplotlib.colors import to_rgb
 
         solids = self.solids
-        points = (solids.points if moved is None else solids.points + moved) @ self.axes - self.middle
-        faces = [points[solids.quads], points[solids.triangles]]
-        corners = [face[:, :, :2] for face in faces]
-        depth = np.concatenate([face[:, :, 2].mean(axis=1) for face in faces])
-        normals = np.concatenate([np.cross(face[:, 1] - face[:, 0], face[:, 2] - face[:, 0]) for face in faces])
-        lengths = np.linalg.norm(normals, axis=1)
-        slope = np.abs(normals @ self.light) / np.where(lengths > 0.0, lengths, 1.0)
         if level is None:
-            table = np.array([to_rgb(_COLOURS.get(name, "#999999")) for name in solids.kind_names])
-            colour = table[solids.kind]
-        else:
-            shown = np.concatenate([level[solids.quads].mean(axis=1), level[solids.triangles].mean(axis=1)])
-            colour = colormaps["viridis"](shown)[:, :3]
-        colour = colour * (_SHADE + (1.0 - _SHADE) * slope)[:, None]
-        casing = "casing" in solids.kind_names and solids.kind == solids.kind_names.index("casing")
-        alpha = np.where(casing, _THROUGH, 1.0)
-        order = np.argsort(depth)
-        # One array, triangles with their last corner twice: matplotlib makes a path of each of a list with many checks.
-        polygons: Any = np.concatenate([corners[0], corners[1][:, [0, 1, 2, 2]]])
-        figure = new_figure(self.size)
-        figure.set_layout_engine("none")
-        axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        colours = np.column_stack([colour, np.broadcast_to(alpha, len(colour))])[order]
-        faces_seen = PolyCollection(polygons[order], facecolors=colours, edgecolors=colours, linewidths=0.25)
-        axis.add_collection(faces_seen, autolim=False)
-        reach = 0.56 * max(self.span[0], self.span[1] * self.size[0] / self.size[1])
-        axis.set_xlim(-reach, reach)
-        axis.set_ylim(-reach * self.size[1] / self.size[0], reach * self.size[1] / self.size[0])
-        axis.axis("off")
-        return _image(figure, shows, dpi=96, pil_kwargs={"optimize": True})
+            return np.array([to_rgb(_COLOURS.get(name, "#999999")) for name in solids.kind_names])[solids.kind]
+        shown = np.concatenate([level[solids.quads].mean(axis=1), level[solids.triangles].mean(axis=1)])
+        return colormaps["viridis"](shown)[:, :3]
 
     def mode(self, shows: str, shape: np.ndarray) -> str:
         """A mode at phase 0: deformed, coloured by displacement over the largest.
@@ -143,6 +141,27 @@ class Painter:
         moved, _ = self.solids.scaled(shape)
         size = np.linalg.norm(np.abs(moved), axis=1)
         return self.image(shows, np.real(moved), size / (size.max(initial=0.0) or 1.0))
+
+
+def painted(polygons: np.ndarray, colours: np.ndarray, size: tuple[int, int]) -> bytes:
+    """A picture (PNG) of polygons on white, each painted over those before it.
+
+    A list of polygons in matplotlib is stroked and smoothed one by one, which takes ten times as long.
+
+    Args:
+        polygons: corners (C, 4, 2) in dots from the upper left. colours: (C, 4) red, green, blue and alpha from 0 to 1.
+        size: width and height in dots.
+    """
+    from PIL import Image, ImageDraw
+
+    picture = Image.new("RGB", (_FINER * size[0], _FINER * size[1]), "white")
+    draw = ImageDraw.Draw(picture, "RGBA")
+    tint = [tuple(one) for one in np.round(255.0 * colours).astype(int).tolist()]
+    for corners, colour in zip((_FINER * polygons).reshape(len(polygons), -1).tolist(), tint, strict=True):
+        draw.polygon(corners, colour)
+    out = BytesIO()
+    picture.reduce(_FINER).save(out, format="png")
+    return out.getvalue()
 
 
 def draw_unbalance(result: StandardsResult) -> Any:

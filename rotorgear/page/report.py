@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -36,13 +37,21 @@ class Report:
         path: of the page.
         results: by the name that they have in the page's numbers, such as "modal" or "mesh stage_1".
         missing: sections that are not there, and why.
+        about: what `numbers` says before the results: model, settings, CPU seconds, errors.
         numbers: all numbers of the page and many more, as `--json` writes them.
     """
 
     path: Path
     results: dict[str, Result]
     missing: dict[str, str]
-    numbers: dict[str, Any]
+    about: dict[str, Any]
+
+    @cached_property
+    def numbers(self) -> dict[str, Any]:
+        """Made when they are asked for: the page itself takes what it shows from the results."""
+        from rotorgear.page.sections import RESULTS
+
+        return {**self.about, RESULTS: {name: result.to_dict() for name, result in self.results.items()}}
 
     def __repr__(self) -> str:
         """Where the page is, and the names of what stands on it."""
@@ -111,14 +120,14 @@ def report(
         studies.append(stored)
     # All analyses, which take a second to load.
     from rotorgear.page.contents import computed, error_of
-    from rotorgear.page.sections import RESULTS, sections
+    from rotorgear.page.sections import sections
 
     start = cpu_seconds()
     asked = {"modal_damping": modal_damping, "fmax": fmax}
     piece = pieces(stream, {"model": model_hash(built), "run": f"{lines} {grade} {asked}"})
     found = computed(built, lines, grade, asked, progress, piece)
     found.seconds_of_all = cpu_seconds() - start
-    numbers = {
+    about = {
         "analysis": "report",
         "title": built.title,
         "file": source,
@@ -134,7 +143,6 @@ def report(
         "cpu_seconds_of_all": found.seconds_of_all,
         "largest_error_estimate": {name: error_of(result) for name, result in found.results.items()},
         "missing": dict(found.missing),
-        RESULTS: {name: result.to_dict() for name, result in found.results.items()},
     }
     progress(0.9, "page")
     modes = found.results.get("modal")
@@ -143,14 +151,14 @@ def report(
         from rotorgear.page.turntable import scene
 
         surfaces = scene(modes)
-    text = _page(built, numbers, list(sections(found, studies)), surfaces)
+    text = _page(built, about, list(sections(found, studies)), surfaces)
     with written(target) as scratch:
         scratch.write_text(text, encoding="utf-8")
     progress(1.0, "done")
-    return Report(target, dict(found.results), dict(found.missing), numbers)
+    return Report(target, dict(found.results), dict(found.missing), about)
 
 
-def _page(model: Model, numbers: dict[str, Any], parts: list[Any], turntable: str) -> str:
+def _page(model: Model, about: dict[str, Any], parts: list[Any], turntable: str) -> str:
     """The template filled; what comes from the model is escaped."""
     from jinja2 import Environment, StrictUndefined
 
@@ -158,8 +166,8 @@ def _page(model: Model, numbers: dict[str, Any], parts: list[Any], turntable: st
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string(text_of(folder / "page.html"))
     return template.render(
-        title=model.title or numbers["file"] or "A model",
-        numbers=numbers,
+        title=model.title or about["file"] or "A model",
+        about=about,
         sections=parts,
         turntable=turntable,
         script=text_of(folder / "turntable.js") if turntable else "",

@@ -10,7 +10,7 @@ import numpy as np
 
 from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.note import sentences
-from rotorgear.page.contents import Contents, error_of
+from rotorgear.page.contents import MODES, Contents, error_of
 from rotorgear.page.figures import Painter, draw_errors, draw_unbalance, svg_of
 from rotorgear.results.casing import CasingRow
 from rotorgear.results.mesh import MeshResult
@@ -111,6 +111,9 @@ def _campbell(made: dict[str, Any]) -> Section:
     """The diagram, margins at the operating speed, and onsets of instability."""
     result = made["campbell"]
     section = Section("campbell", "Campbell diagram and margins").show(result.tables(), RESULTS, "campbell")
+    section.words.append(
+        f"The {MODES} lowest branches at any speed; rotorgear campbell follows those up to the mesh frequencies, too."
+    )
     section.draw("Natural frequencies over speed, and lines of excitation.", result.plot(), "Campbell diagram")
     if result.onsets:
         section.show([table_of(result, "onsets")], RESULTS, "campbell")

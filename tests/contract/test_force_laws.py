@@ -249,3 +249,16 @@ def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
 def test_an_unknown_law_is_answered_with_those_that_exist() -> None:
     with pytest.raises(AnalysisError, match="no force law 'glue'; there are mesh_contact"):
         registry.law_of("glue")
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+@pytest.mark.parametrize("speed", [0.0, 310.0])
+def test_linearisations_about_several_displacements_are_those_about_each(
+    name: str, law: ForceLaw, speed: float
+) -> None:
+    places = np.array([[3e-6], [-2e-5], [7e-5]]) * np.linspace(0.4, 1.3, law.components)
+    for place, found in zip(places, law.linearised_at(places, speed=speed), strict=True):
+        alone = law.linearised(place, speed=speed)
+        np.testing.assert_array_equal(found.force, alone.force)
+        np.testing.assert_array_equal(found.stiffness, alone.stiffness)
+        np.testing.assert_array_equal(found.damping, alone.damping)

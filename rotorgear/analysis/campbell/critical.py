@@ -113,16 +113,18 @@ def critical(
         family = SpeedFamily(system, *sorted((low, top)))
         found: list[tuple[ExcitationOrder, Synchronous]] = []
         counted: list[bool] = []
+        ranges = list(affine_pieces(system, family, top, damped))
         for k, line in enumerate(lines):
             progress(0.3 + 0.6 * k / len(lines), line.name)
             limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
             if limit > abs(low):
-                roots, confirmed = roots_of(system, family, line.order, np.copysign(limit, top), damped)
+                upto = np.copysign(limit, top)
+                pieces_to = ranges if upto == top else list(affine_pieces(system, family, upto, damped))
+                roots, confirmed = roots_of(system, family, pieces_to, line.order, upto)
                 counted += confirmed
                 # The pieces begin where tables do, which may be below the range.
                 found += [(line, root) for root in roots if root.speed >= abs(low)]
         clock.lap("critical speeds")
-        ranges = list(affine_pieces(system, family, top, damped))
         errors = [_speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]
         clock.lap("error estimate")
         worst = max(errors, default=0.0)
@@ -189,15 +191,15 @@ def _too_slow(system: System, top: float, lines: tuple[ExcitationOrder, ...]) ->
 
 
 def roots_of(
-    system: System, family: SpeedFamily, order: float, top: float, damped: bool
+    system: System, family: SpeedFamily, ranges: Sequence[Affine], order: float, top: float
 ) -> tuple[list[Synchronous], list[bool]]:
     """Synchronous speeds of all groups of dofs, as positive speeds, and whether those of each group and range were counted.
 
-    They lie between the lowest speed of the family and `top` in rad/s, whose sign is that of the rotation.
+    They lie in the `ranges`, those of `affine_pieces` up to `top` in rad/s, whose sign is that of the rotation.
     """
     found = []
     counted = []
-    for whole, dofs in itertools.product(affine_pieces(system, family, top, damped), family.groups):
+    for whole, dofs in itertools.product(ranges, family.groups):
         roots, confirmed = synchronous_speeds(whole.cut(dofs), order)
         counted.append(confirmed)
         for root in roots:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotorgear.analysis.campbell.critical import looks_of, roots_of
+from rotorgear.analysis.campbell.critical import affine_pieces, looks_of, roots_of
 from rotorgear.analysis.campbell.crossings import whirl_for
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed, system_for_speeds
@@ -98,7 +98,9 @@ def critical_map(
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
         begun = cpu_seconds()
         system = mesh.with_state(with_radial_stiffness(model, about, float(value), top))
-        found, _ = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
+        family = SpeedFamily(system, *sorted((0.0, top)))
+        ranges = list(affine_pieces(system, family, top, damped=False))
+        found, _ = roots_of(system, family, ranges, line.order, top)
         found.sort(key=lambda root: root.speed)
         _, _, speeds, seen = looks_of(system, found, top)
         bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
