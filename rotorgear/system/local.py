@@ -19,12 +19,14 @@ from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce, contact_geometry
+from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.solvers.time.local_system import LocalSystem, Rotation
+from rotorgear.solvers.time.contact_equilibrium import free_motions
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation, sisters_of
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
 from rotorgear.system.groups import ElementGroup, face_of, mesh_damping, mesh_dofs
-from rotorgear.system.loads import outer_loads
+from rotorgear.system.loads import centrifugal_loads, outer_loads
 from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
@@ -37,7 +39,8 @@ from rotorgear.system.local_parts import (
     unbalance_parts,
     without_linear_part,
 )
-from rotorgear.system.planets import turning_carriers
+from rotorgear.system.planets import require_constant, sister_places, turning_carriers
+from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -68,6 +71,11 @@ class LocalModel:
         return [i for i, part in enumerate(self.parts) if part.is_mesh]
 
     @property
+    def watched_names(self) -> list[str]:
+        """Address and label of what each watched displacement is the transmission error of."""
+        return [f"{self.parts[i].part} {self.parts[i].label}" for i in self.meshes]
+
+    @property
     def mesh_columns(self) -> np.ndarray:
         """(c,) local displacements of these contacts."""
         return self.local.forces.first[self.meshes].astype(int)
@@ -89,13 +97,9 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
             keep the tilt of the static state, and resist another one by the tangent about it.
 
     Raises:
-        AnalysisError: planets go round with a carrier that turns.
+        AnalysisError: planets go round with what their carrier's turn does not allow (`_require_plain_planets`).
     """
-    for planets in turning_carriers(system.layout):
-        raise AnalysisError(
-            f"carriers.{planets.carrier}: motions in time of planets that go round are not built: their meshes turn with the "
-            f"carrier. Hold it, speed_ratio = 0 of shafts.{planets.shaft}, as in a star gear, or ask for a linear analysis."
-        )
+    _require_plain_planets(system, rotation)
     from rotorgear.solvers.time.local_forces import gather
 
     laws = {f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law}
@@ -107,8 +111,10 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         if group.part in laws
         else group
         for group in system.groups_at(speed)
-        if not group.part.startswith(("meshes.", "nonlinear_elements."))
+        if not group.part.startswith(("meshes.", "nonlinear_elements.", "carriers."))
     ]
+    carriers = system.of_carriers(speed)
+    groups += carriers
     for k, group in enumerate(group for group in system.groups if group.part.startswith("meshes.")):
         m = group.matrices
         if m.strain is None or m.modulus is None or m.strain.shape[1] != 2:
@@ -137,7 +143,7 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     nothing = np.zeros((T.shape[0], 0))
     lines = contact_lines(system)
     couple = np.where(np.isin(np.arange(len(lines.states)), list(mapped)), 0.0, lines.couple)
-    load = T.T @ outer_loads(system, steady=True) - lines.tilt @ couple
+    load = T.T @ (outer_loads(system, steady=True) + centrifugal_loads(system, speed)) - lines.tilt @ couple
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
     about = forces.reference_stiffness.copy()
@@ -156,7 +162,78 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         G=system.gyroscopic if system.gyroscopic.nnz else None,
         watched=T.T @ np.column_stack([nothing, *(part.rotation for part in parts if part.rotation is not None)]),
     )
+    if carriers:
+        columns = [f"{part.part} {part.label} {k}" for part in parts for k in range(part.columns.shape[1])]
+        joined = [*groups, *(group for group in system.groups if group.part.startswith("meshes."))]
+        local = replace(
+            local,
+            sisters=sisters_of(sister_places(system.layout, columns)),
+            load=_on_rigid_train(local, rigid_motions(system, joined)),
+        )
     return LocalModel(system, local, parts, tuple(groups))
+
+
+def _require_plain_planets(system: System, rotation: Rotation) -> None:
+    """Refuse, by name, what motions in time do not take of planets that go round.
+
+    Raises:
+        AnalysisError: a speed that changes, loaded teeth, laws of bearings and elements, unbalances, loads that vary or differ.
+    """
+    model = system.model
+    turning = {planets.shaft: planets for planets in turning_carriers(system.layout)}
+    if not turning or not np.any(rotation.speeds):
+        return
+    require_constant(system.layout)
+    first = next(iter(turning.values()))
+    hold = "or hold the carrier: speed_ratio = 0 of shafts."
+    if not rotation.is_constant:
+        raise AnalysisError(
+            f"carriers.{first.carrier}: motions in time of planets that go round are built for a constant speed, not for a "
+            f"run-up. Give one speed, {hold}{first.shaft}."
+        )
+    round_with = {planet: planets for planets in turning.values() for planet in planets.planets}
+    for mesh in model.meshes:
+        both = system.layout.mesh(mesh)
+        if both.carrier in turning and (both.has_loaded_teeth or mesh in system.state.faces):
+            raise AnalysisError(
+                f"meshes.{written_name(mesh)}.stiffness: loaded teeth of planets that go round are not built in time. Give a "
+                f"stiffness such as 'iso' and a transmission_error, {hold}{both.carrier}."
+            )
+    for table in ("bearings", "nonlinear_elements", "unbalances"):
+        for name, part in getattr(model, table).items():
+            planets = round_with.get(part.shaft)
+            if planets is not None and (table != "bearings" or part.has_law):
+                what = {"bearings": "the law of a bearing", "unbalances": "an unbalance"}.get(table, "an element")
+                raise AnalysisError(
+                    f"{table}.{written_name(name)}: {what} on planets that go round is not built in time. "
+                    f"Leave it out, {hold}{planets.shaft}."
+                )
+    same: dict[str, np.ndarray] = {}
+    for load in system.layout.external_loads:
+        planets = round_with.get(load.places[0].shaft)
+        if planets is None:
+            continue
+        name = load.address.removeprefix("loads.")
+        first_of = same.setdefault(written_name(name), load.constant)
+        if load.history is not None or load.amplitude.any() or not np.array_equal(first_of, load.constant):
+            raise AnalysisError(
+                f"loads.{written_name(name)}: a load on planets that go round is built in time where it is constant and the same "
+                f"for all of them. Make it so, {hold}{planets.shaft}."
+            )
+
+
+def _on_rigid_train(local: LocalSystem, rigid: np.ndarray) -> np.ndarray:
+    """The load (n,) with the work on free motions that it does on the rigid motions (n, r) next to them.
+
+    Planets that the centrifugal load has moved outwards go round on a larger circle, so that the free motions of the linear
+    matrices are not quite those of the train's ratios: torques that balance would drive them on.
+    """
+    R = free_motions(local.M, local.stiffness_about)
+    if not R.shape[1]:
+        return local.load
+    weighted = rigid.T @ local.M
+    next_to = rigid @ np.linalg.solve(weighted @ rigid, weighted @ R)
+    return np.asarray(local.load + local.M @ (R @ ((next_to - R).T @ local.load)))
 
 
 def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart]:

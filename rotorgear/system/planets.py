@@ -23,6 +23,7 @@ alone pulls it on.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -33,11 +34,14 @@ from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.carriers import PlanetSet
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.carrier import MARK, written_name
+from rotorgear.model.parts.carrier import MARK, Carrier, written_name
 from rotorgear.system.dofs import DofMap
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.nodes import Nodes
 
+# Number of a sister behind the name of its part, and the address that it ends.
+_NUMBER = re.compile(rf"{MARK}\d+")
+_SISTER = re.compile(rf".*?{MARK}\d+")
 # Quarter turn about z of a displacement and a rotation: x goes to y, y to -x.
 _TURN = np.zeros((6, 6))
 _TURN[[1, 4], [0, 3]] = 1.0
@@ -84,6 +88,27 @@ def sister_turn(angles: np.ndarray) -> np.ndarray:
     return np.asarray(2.0 / len(angles) * np.sin(angles[:, None] - angles[None, :]))
 
 
+def sister_places(layout: Layout, names: Iterable[str]) -> list[tuple[float, np.ndarray, np.ndarray]]:
+    """Where planets that go round stand in a list: sets as `sisters_of` takes them, with one row of places (1, N) each.
+
+    Args:
+        layout: of the model.
+        names: of the items; each begins with the address of its part, such as "bearings.pin#2 force x".
+    """
+    found: dict[str, list[int]] = {}
+    carriers: dict[str, Carrier] = {}
+    for number, name in enumerate(names):
+        if address := _SISTER.match(name):
+            written = _NUMBER.sub("", name)
+            found.setdefault(written, []).append(number)
+            carriers[written] = layout.model.carriers[_carrier_of(layout, address[0])]
+    return [
+        (layout.train.ratio(carrier.shaft), np.array(carrier.directions), np.array([found[written]]))
+        for written, carrier in carriers.items()
+        if layout.train.ratios[carrier.shaft] != 0
+    ]
+
+
 def planet_groups(layout: Layout, groups: Iterable[ElementGroup]) -> list[ElementGroup]:
     """What carriers that turn add to some groups of planets, of all sisters together, as groups with the carrier's spin.
 
@@ -120,6 +145,8 @@ def _carrier_of(layout: Layout, address: str) -> str:
         shafts = [gear.shaft for gear in layout.mesh(name).gears]
     elif table == "couplings":
         shafts = [model.couplings[name].from_shaft]
+    elif table == "points":
+        shafts = [layout.place(address).shaft]
     else:
         shafts = [name if table == "shafts" else getattr(model, table)[name].shaft]
     return next(carrier for shaft in shafts if (carrier := model.shafts[shaft].carrier) is not None)

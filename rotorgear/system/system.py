@@ -205,6 +205,15 @@ class System:
             return tables
         return tables + planet_groups(self.layout, tables) + self._pin_groups(speed, tables)
 
+    def of_carriers(self, speed: float) -> list[ElementGroup]:
+        """What planets that go round bring at a reference speed in rad/s, beside contacts and elements that are laws."""
+        if not turning_carriers(self.layout):
+            return []
+        linear = [group for group in self._constant if not group.part.startswith(("meshes.", "nonlinear_elements."))]
+        loads = [load.group_per_square(self.train.ratio(load.planets.shaft)) for load in self._pins]
+        of_speed = [group for group in self.groups_of(speed) if group.part.startswith("carriers.")]
+        return [group.at(speed) for group in (*planet_groups(self.layout, linear), *loads)] + of_speed
+
     @cached_property
     def has_varying_springs(self) -> bool:
         """Whether some bearing, support, coupling or element has a table over speed."""

@@ -33,6 +33,7 @@ from rotorgear.solvers.time.contact_equilibrium import (
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.local import local_model
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import flow_system
 
 if TYPE_CHECKING:
@@ -216,6 +217,11 @@ class PointMaker:
     def _made(self, model: Model, speed: float) -> AtRest | Large:
         system = flow_system(model, plan_in_time(self._elements)).with_state(state_in_time(model, speed))
         system.require_freedom()
+        for planets in turning_carriers(system.layout):
+            raise AnalysisError(
+                f"carriers.{planets.carrier}: sweeps and orbits of planets that go round are not built: their meshes turn with "
+                f"the carrier. Hold it, speed_ratio = 0 of shafts.{planets.shaft}, as in a star gear, or ask for a transient."
+            )
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
         # Watched is the approach of each contact in the transverse plane, too, behind the transmission errors.
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse

@@ -6,16 +6,19 @@ They are rows on q, v and a.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rotorgear.analysis.common.points import motion_points, point_rows
 from rotorgear.errors import AnalysisError
+from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.solvers.time.local_system import Observed, Records
+from rotorgear.solvers.time.arguments import Sisters
+from rotorgear.solvers.time.local_system import Observed, Records, Rotation, sisters_of, turned, turning_of
 from rotorgear.system.internal_loads import load_rows, read_loads
 from rotorgear.system.local import LocalModel
+from rotorgear.system.planets import sister_places, turning_carriers
 
 _AXES = ("x", "y", "z")
 
@@ -31,13 +34,14 @@ class Channels:
     units: tuple[str, ...]
     rows: dict[str, tuple[np.ndarray, np.ndarray]]
     constant: np.ndarray
+    sisters: Sisters = field(default_factory=sisters_of)
 
-    def values(self, records: Records) -> np.ndarray:
-        """Values (r, p) at the recorded steps."""
+    def values(self, records: Records, rotation: Rotation) -> np.ndarray:
+        """Values (r, p) at the recorded steps; `rotation` of the reference tells where planets that go round are."""
         values = np.tile(self.constant, (len(records.t), 1))
         for kind, (which, Y) in self.rows.items():
             values[:, which] += records.F @ Y.T if kind == "F" else records.rows(kind, Y)
-        return values
+        return turned(self.sisters, rotation.angle(records.t), values) if self.sisters.planets.size else values
 
     def observed(self, n: int, m: int) -> Observed:
         """The channels as rows that integrators gather statistics of at every step, for n dofs and m local forces."""
@@ -75,20 +79,23 @@ def channels(local: LocalModel) -> Channels:
         row = np.asarray(system.dofs.transform[[dof], :].toarray()[0])
         if row.any():  # the dof is free
             every.append((label, unit, {kind: row}))
+    sisters = sisters_of(sister_places(system.layout, [name for name, *_ in every]))
+    if sisters.planets.size:
+        _see_where_planets_are([item[2] for item in every], float(local.local.rotation.speeds[0]), sisters)
     rows = {}
     for kind in "qvaF":
         which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)
         if which.size:
             rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
     names, units, _ = zip(*every, strict=True) if every else ((), (), ())
-    return Channels(names, units, rows, np.array([constant.get(name, 0.0) for name in names]))
+    return Channels(names, units, rows, np.array([constant.get(name, 0.0) for name in names]), sisters)
 
 
 def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray], float]]:
     """The load of each point that reads one, by kind of row, and the weight along its element.
 
     Raises:
-        AnalysisError: a load that the speed of the shaft takes part in, where that changes.
+        AnalysisError: a load that the speed of the shaft takes part in, where that changes, or inside a planet that goes round.
     """
     system = local.system
     units = read_loads(system.model)
@@ -96,7 +103,13 @@ def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.
         return
     rotation = local.local.rotation
     rows = load_rows(system, float(rotation.speeds[0]))
+    planets = {planet for planets in turning_carriers(system.layout) for planet in planets.planets}
     for k, (name, unit) in enumerate(units.items()):
+        if system.layout.place(f"points.{name}").shaft in planets:
+            raise AnalysisError(
+                f"points.{written_name(name)}: loads inside planets that go round are not built in time: leave the point out, or "
+                "hold the carrier"
+            )
         if not rotation.is_constant and any(part[k].any() for part in rows.per_speed):
             raise AnalysisError(
                 f"points.{name}: gyroscopic moments take part in this load, which is known at a constant speed only: leave the "
@@ -105,6 +118,18 @@ def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.
         quantity = system.model.points[name].quantity
         by_kind = {kind: row for kind, row in (("q", rows.q[k]), ("v", rows.v[k]), ("a", rows.a[k])) if row.any()}
         yield f"points.{name} {quantity}", unit, by_kind, float(rows.weight[k])
+
+
+def _see_where_planets_are(rows: list[dict[str, np.ndarray]], speed: float, sisters: Sisters) -> None:
+    """Make the rates in the rows of planets those that they see as they go round: v - W T q, a - 2 W T v + (W T)^2 q."""
+    turning = speed * turning_of(sisters, len(rows))
+    for places, N in zip(sisters.place, sisters.planets, strict=True):
+        own = places[:N]
+        T = turning[np.ix_(own, own)]
+        none = np.zeros_like(next(iter(rows[own[0]].values())))
+        q, v, a = (np.array([rows[i].get(kind, none) for i in own]) for kind in "qva")
+        for i, of_q, of_v in zip(own, q - T @ v + T @ T @ a, v - 2.0 * T @ a, strict=True):
+            rows[i] |= {"q": of_q, "v": of_v}
 
 
 def _bearing_forces(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray]]]:

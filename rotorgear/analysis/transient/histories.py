@@ -26,9 +26,12 @@ from rotorgear.solvers.time.local_system import (
     MotionState,
     Records,
     local_values,
+    sisters_of,
     state_at_rest,
+    turned,
 )
 from rotorgear.solvers.time.run import Schedule, run
+from rotorgear.system.planets import sister_places
 
 # Records of a chunk at which stored energies are evaluated.
 _SAMPLES = 4
@@ -163,6 +166,7 @@ def run_task(
         for chunk in stream.begin(settings):
             _take_over(chunk, found, book)
     watched = np.ascontiguousarray(local.watched_vectors.T)
+    of_meshes = sisters_of(sister_places(task.local.system.layout, task.local.watched_names))
 
     def told(fraction: float, step: str) -> None:
         progress(fraction, f"{text}: {step}" if text else step)
@@ -171,9 +175,9 @@ def run_task(
         part = {
             "t": records.t,
             "d": records.d,
-            "watched": records.rows("q", watched),
+            "watched": turned(of_meshes, local.rotation.angle(records.t), records.rows("q", watched)),
             "F": records.F,
-            "values": task.channels.values(records),
+            "values": task.channels.values(records, local.rotation),
         }
         if text and found.parts and found.state.step <= boundary:
             # Of what does not count nobody asks.

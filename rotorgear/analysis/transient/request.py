@@ -21,9 +21,10 @@ from rotorgear.memory import free_memory
 from rotorgear.model.model import Model
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates, sisters_of
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
 from rotorgear.system.local import LocalModel, local_model
+from rotorgear.system.planets import sister_places
 from rotorgear.system.system import System, flow_system
 
 # What the forces that hold a model where a run starts are: those at t = 0, their means, none.
@@ -224,6 +225,8 @@ def integrator_of(
     if method == "exponential":
         return Exponential(modes, modal_ratio), reason
     if method == "explicit":
+        if local.sisters.planets.size:
+            raise AnalysisError("method explicit: it does not take planets that go round; use newmark or exponential")
         from rotorgear.solvers.time.explicit import Explicit
 
         return Explicit(), reason
@@ -305,7 +308,8 @@ def prepare(
     begin = {"equilibrium": rest.q, "mean": mean.q, "rest": np.zeros(local.local.n)}[start]
     seen = channels(local)
     observed = seen.observed(local.local.n, local.local.m)
-    local = replace(local, local=replace(local.local, observed=observed))
+    seen_sisters = sisters_of(sister_places(given.layout, [*local.watched_names, *seen.names]))
+    local = replace(local, local=replace(local.local, observed=observed, seen_sisters=seen_sisters))
     meshes = {name: given.layout.mesh_frequency(name, largest) for name in given.model.meshes}
     return Task(local, seen, rest, force, {name: f for name, f in meshes.items() if f}, largest, start, begin)
 

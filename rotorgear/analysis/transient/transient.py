@@ -55,6 +55,7 @@ from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.explicit import Explicit, check_length
 from rotorgear.solvers.time.local_system import Integrator
 from rotorgear.solvers.time.statistics import STATISTICS, Statistics
+from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
 DEFAULT_ACCURACY = 0.01
@@ -136,6 +137,10 @@ def transient(
     task = prepare(damped(model, modal_damping), speed, elements, start)
     grid, fastest = grid_of(task, duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(task, grid, method, modes, rho_inf, beta, gamma)
+    if frames and task.local.local.sisters.planets.size:
+        raise AnalysisError(
+            "frames: an animation of planets that go round is not built for motions in time; modes have one (modal --vtk)"
+        )
     clock.lap("model")
     wanted = accuracy or DEFAULT_ACCURACY
     left = 1.0
@@ -270,7 +275,12 @@ def off_statics(found: Histories, task: Task, error: np.ndarray) -> Iterator[Not
     fastest = float(np.max(stiffness / np.where(mass > 0.0, mass, np.inf)))
     light = np.where(mass > 0.0, 0.0, stiffness / (fastest or 1.0))
     try:
-        A = free_motions(sp.csc_array(local.M + sp.diags_array(light)), local.K).T @ local.B.toarray()
+        if local.sisters.planets.size:
+            # What planets that go round bring beside their springs is no strain.
+            free = rigid_motions(task.local.system, task.local.groups)
+        else:
+            free = free_motions(sp.csc_array(local.M + sp.diags_array(light)), local.K)
+        A = free.T @ local.B.toarray()
     except RotorgearError as refusal:
         yield Note("", "mean contact forces are not compared with statics", str(refusal))
         return

@@ -112,6 +112,10 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     lam = 1.0 / mu - sigma
     if np.any(np.abs(lam[rigid]) > sigma):
         raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method")
+    if np.any(strain[~rigid] < 0.0):
+        raise ConvergenceError(
+            "a motion has negative stiffness, so that there are no modes to begin with; use the newmark method"
+        )
     R = V[:, rigid]
     V = V[:, ~rigid]
     V, lam = _freed_of_slower(dense, stiff, R, V)

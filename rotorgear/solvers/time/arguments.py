@@ -124,6 +124,21 @@ class Triangles(NamedTuple):
     column_place: np.ndarray
 
 
+class Sisters(NamedTuple):
+    """s sets of what equal planets have alike, N in each at most, in axes that go round with their carrier.
+
+    Attributes:
+        place: (s, N) where they stand in an array; planets: (s,) how many. ratio: (s,) of the carrier's speed to the reference.
+        cosine, sine: (s, N) of the directions of the pins at the start.
+    """
+
+    place: np.ndarray
+    planets: np.ndarray
+    ratio: np.ndarray
+    cosine: np.ndarray
+    sine: np.ndarray
+
+
 class NewmarkStep(NamedTuple):
     """A method of the generalised-alpha family, ready for steps of h seconds.
 
@@ -133,6 +148,8 @@ class NewmarkStep(NamedTuple):
         first, column: pattern by rows of K, D and M. load: (n,), constant. S: factored.
         Bt, Wt: B^T and W^T. P: (1 - af) S^-1 B, (n, m). channels: rows (p, n) on q, v and a, and (p, m) on the local forces.
         Ad, Av: (m, m), what a force of the step takes from d and v at its end, d = d_free - Ad F, v = v_free - Av F.
+        sisters, seen_sisters: of planets that go round, among the local displacements and all that is gathered. P, Ad and Av are
+        those of the structure, where planets stand as at the start; Av is that of the rates that they see.
     """
 
     h: float
@@ -156,6 +173,8 @@ class NewmarkStep(NamedTuple):
     channels: tuple[SparseRows, ...]
     Ad: np.ndarray
     Av: np.ndarray
+    sisters: Sisters
+    seen_sisters: Sisters
 
 
 class ExponentialStep(NamedTuple):
@@ -173,6 +192,7 @@ class ExponentialStep(NamedTuple):
         watched: (p, m) what the rest of the step adds to watched displacements and channels by the modes; late: (p, m) what the
         rest at the step's end adds to channels that hold accelerations; forced: (p, m) what local forces there add.
         constant: (p,) of channels, by the load.
+        sisters, seen_sisters: as in `NewmarkStep`; k and c are those of the structure, too.
     """
 
     h: float
@@ -199,3 +219,5 @@ class ExponentialStep(NamedTuple):
     late: np.ndarray
     forced: np.ndarray
     constant: np.ndarray
+    sisters: Sisters
+    seen_sisters: Sisters

@@ -15,7 +15,15 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.eigen.complex_modes import ComplexModes, complex_modes
 from rotorgear.solvers.time.arguments import ExponentialStep, Kept
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Records, Stepper, contact_rates
+from rotorgear.solvers.time.local_system import (
+    Integrator,
+    LocalSystem,
+    MotionState,
+    Records,
+    Stepper,
+    contact_rates,
+    turned,
+)
 
 # Modal coordinates y by their parts, motions without stiffness and their rates, and the rest of the local forces, as states
 # name them.
@@ -54,7 +62,8 @@ class Exponential(Integrator):
         """
         if not system.rotation.is_constant and system.G is not None and system.G.nnz:
             raise AnalysisError("the exponential integrator needs a constant speed; use newmark for a run-up")
-        if not (self.modal_ratio or self.modes):
+        # Planets that go round free of their teeth have no modes: their inertia is a negative stiffness in axes at rest.
+        if not (self.modal_ratio or self.modes or system.sisters.planets.size):
             system = self._resolved(system, h)
         return ExponentialStepper(self._modes(system, speed), system, h, tolerance)
 
@@ -139,6 +148,8 @@ class ExponentialStepper(Stepper):
             late=np.vstack([none, seen.a @ self._mobile]),
             forced=np.vstack([none, seen.F]),
             constant=np.concatenate([np.zeros(len(W)), seen.a @ self._pushed]),
+            sisters=system.sisters,
+            seen_sisters=system.seen_sisters,
         )
         self._laws = system.forces.arguments()
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
@@ -156,12 +167,18 @@ class ExponentialStepper(Stepper):
         u = (
             laws.reference_stiffness @ (system.B.T @ state.q)
             + laws.reference_damping @ (system.B.T @ state.v)
-            - state.F
+            - self._acting(state)
         )
         y = self._on_modes(modes.basis.T @ weighted) - self._Q @ u
         rigid = modes.rigid.T @ weighted
         motion = (y.real.copy(), y.imag.copy(), rigid[:, 0].copy(), rigid[:, 1].copy(), u)
         state.inner = dict(zip(_MOTION, motion, strict=True))
+
+    def _acting(self, state: MotionState) -> np.ndarray:
+        """Local forces (m,) as they act on the structure."""
+        system = self.system
+        angle = system.rotation.angle(np.array([state.step * self.h]))
+        return turned(system.sisters, -angle, state.F[None])[0] if system.sisters.planets.size else state.F
 
     def _on_modes(self, coordinates: np.ndarray) -> np.ndarray:
         """z (nz,) with the given basis coordinates and velocities (b, 2), by least squares on the modes themselves."""

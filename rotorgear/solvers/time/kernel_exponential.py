@@ -5,6 +5,8 @@ z1 = e z0 + Q u + g is exact. In y = z - Q u it reads y1 = e y + e Q u0 + g, so 
 d at its end is C y1 + A u1. Motions without stiffness and damping follow r1 = r + h r' + h^2/2 u, r1' = r' + h u.
 F does the work by which its potential changes (kernel_contact.py), and so the step keeps the energy of a system without damping,
 and loses energy with it, whatever its length: Li and Wu, SIAM J. Sci. Comput. 38 (2016) A1876.
+Laws of planets that go round act where these are, d = R(a) B^T q with forces B R^T F (kernel_sisters.py), while modes and the
+rest u are those of the structure, where planets stand as at the start.
 Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """
 
@@ -15,6 +17,7 @@ import numpy as np
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import blank_answer, contact_step, contact_work, force_all, schedule_all
 from rotorgear.solvers.time.kernel_events import take_account
+from rotorgear.solvers.time.kernel_sisters import add_going_round, take_power_of_turning, turn, turn_both
 from rotorgear.solvers.time.kernel_time import gather, record_forces, rotation_at
 
 _BLOCK = 256
@@ -142,6 +145,20 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
     free = np.zeros(m)
     u_before = np.empty(m)
     seen = np.zeros(gathered.level.size)
+    # Forces on the structure, and displacements of it at both ends of a step, where planets stand as at the start.
+    sisters = step.sisters
+    going_round = sisters.planets.size > 0
+    acting = np.empty(m)
+    place = begin.copy()
+    before_step = begin.copy()
+    Ad = step.Ad
+    end = 0.0
+    column = np.empty(m)
+    rate = np.empty(m)
+    if going_round:
+        Ad = np.empty((m, m))
+        end, speed = rotation_at(begun * h, step.rotation)
+        turn(sisters, -end, place, 0)
     solutions = 0
     for number in range(1, steps + 1):
         t = (begun + number) * h
@@ -156,11 +173,13 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
             for j in range(m):
                 free[j] += B[k, j] * r0[k]
         for i in range(m):
+            before_step[i] = place[i]
+        for i in range(m):
             # u has its reference half from the step's begin, half from its end; Z takes the latter to the left-hand side.
             for j in range(m):
                 held = 0.0
                 for k in range(m):
-                    held += (0.5 * k_ref[j, k] - c_ref[j, k] / h) * begin[k]
+                    held += (0.5 * k_ref[j, k] - c_ref[j, k] / h) * before_step[k]
                 free[i] += Ud[i, j] * held
         for i in range(m):
             x = 0.0
@@ -171,15 +190,29 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
             work.begin[i] = begin[i]
             u_before[i] = u[i]
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
+        if going_round:
+            end, speed = rotation_at(t, step.rotation)
+            turn(sisters, end, work.d_free, 0)
+            turn_both(sisters, end, angle, step.Ad, column, Ad)
         force_all(laws, work.state, work.begin, work.zeros, work.begun, True)
-        code = contact_step(laws, step.Ad, step.Av, work, F, step.tolerance, h)
+        code = contact_step(laws, Ad, step.Av, work, F, step.tolerance, h)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
         for i in range(m):
-            total = -F[i]
+            acting[i] = F[i]
+            place[i] = d[i]
+            rate[i] = work.v[i]
+        if going_round:
+            turn(sisters, -angle, acting, 0)
+            turn(sisters, -end, place, 0)
+            for i in range(m):
+                rate[i] = (place[i] - before_step[i]) / h
+            take_power_of_turning(laws, work.answer.energy, F, work.v, acting, rate)
+        for i in range(m):
+            total = -acting[i]
             for j in range(m):
-                total += 0.5 * k_ref[i, j] * (d[j] + begin[j]) + c_ref[i, j] * work.v[j]
+                total += 0.5 * k_ref[i, j] * (place[j] + before_step[j]) + c_ref[i, j] * rate[j]
             u[i] = total
         for k in range(nr):
             total = 0.0
@@ -200,6 +233,8 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
             for k in range(nr):
                 x += step.W[k, i] * r0[k] + step.Wv[k, i] * r1[k]
             seen[2 * m + i] = x
+        if going_round:
+            turn(step.seen_sisters, end, seen, 2 * m)
         gather(gathered, seen, m, True)
         if number % every == 0:
             r = number // every - 1
@@ -223,13 +258,21 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
                 for k in range(nr):
                     total += B[k, i] * r1[k]
                 work.v[i] = total
+                rate[i] = total
             angle, speed = rotation_at(t, step.rotation)
             schedule_all(laws, angle, speed, t, work.state)
+            if going_round:
+                add_going_round(sisters, speed, place, work.v)
+                turn(sisters, end, work.v, 0)
             force_all(laws, work.state, d, work.v, at_end)
             for i in range(m):
-                total = -at_end.F[i]
+                acting[i] = at_end.F[i]
+            if going_round:
+                turn(sisters, -end, acting, 0)
+            for i in range(m):
+                total = -acting[i]
                 for j in range(m):
-                    total += k_ref[i, j] * d[j] + c_ref[i, j] * work.v[j]
+                    total += k_ref[i, j] * place[j] + c_ref[i, j] * rate[j]
                 rest[r, i] = total
             record_forces(r, at_end.F, at_end.energy, 0.0, carried, kept)
     return steps, 0, solutions

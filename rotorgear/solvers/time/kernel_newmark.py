@@ -12,6 +12,8 @@ Average acceleration (beta 1/4, gamma 1/2) holds in the mean over a step, with l
     q1 = q + h v + h^2/2 a         v1 = v + h a         (beta 1/2, gamma 1 on the mean a)
     M a + D (v + v1)/2 + K (q + q1)/2 + B F = f         S a = rhs - B F,   S = M + h/2 D + h^2/4 K
 
+Laws of planets that go round act where these are: d = R(a) B^T q, with forces B R^T F (kernel_sisters.py).
+
 F is the force of the whole step (kernel_contact.py). For linear systems this is Newmark's method. Without damping and prescribed
 motion, v M v/2 + q K q/2 + V stays what it was: the equations times (q1 - q) = h (v + v1)/2. Simo and Tarnow, ZAMP 43 (1992) 757.
 """
@@ -23,6 +25,7 @@ import numpy as np
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import blank_answer, contact_step, contact_work, force_all, schedule_all
 from rotorgear.solvers.time.kernel_events import take_account
+from rotorgear.solvers.time.kernel_sisters import add_going_round, take_power_of_turning, turn, turn_both
 from rotorgear.solvers.time.kernel_time import (
     add_rows,
     gather,
@@ -101,6 +104,23 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
     length = h if whole else 0.0
     old = h * h * (0.5 - beta)
     new = h * (1.0 - gamma)
+    # Forces on the structure, and displacements of it, where planets stand as at the start.
+    sisters = step.sisters
+    going_round = sisters.planets.size > 0
+    acting = F.copy()
+    Ad = step.Ad
+    Av = step.Av
+    end = 0.0
+    column = np.empty(m)
+    followed = np.zeros(m)
+    moved = np.zeros(m)
+    place = begin.copy()
+    if going_round:
+        Ad = np.empty((m, m))
+        Av = np.empty((m, m))
+        end, speed = rotation_at(begun * h, step.rotation)
+        turn(sisters, -end, acting, 0)
+        turn(sisters, -end, place, 0)
     solutions = 0
     for number in range(1, steps + 1):
         t = (begun + number) * h
@@ -126,7 +146,7 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
         if af != 0.0:
             for j in range(m):
                 for p in range(Bt_first[j], Bt_first[j + 1]):
-                    rhs[Bt_column[p]] -= af * Bt_value[p] * F[j]
+                    rhs[Bt_column[p]] -= af * Bt_value[p] * acting[j]
         lu_solve(factors, rhs, permuted, a_free)
         for j in range(m):
             x = 0.0
@@ -139,16 +159,27 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
             v_free[j] = y
             work.begin[j] = begin[j]
             F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
+        if going_round:
+            end, speed = rotation_at(t, step.rotation)
+            add_going_round(sisters, speed, d_free, v_free)
+            turn(sisters, end, d_free, 0)
+            turn(sisters, end, v_free, 0)
+            turn_both(sisters, end, angle, step.Ad, column, Ad)
+            turn_both(sisters, end, angle, step.Av, column, Av)
         if whole:
             force_all(laws, work.state, work.begin, work.zeros, work.begun, True)
-        code = contact_step(laws, step.Ad, step.Av, work, F, step.tolerance, length)
+        code = contact_step(laws, Ad, Av, work, F, step.tolerance, length)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
+        for j in range(m):
+            acting[j] = F[j]
+        if going_round:
+            turn(sisters, -angle, acting, 0)
         for i in range(n):
             total = a_free[i]
             for j in range(m):
-                total -= P[i, j] * F[j]
+                total -= P[i, j] * acting[j]
             if whole:
                 q[i] += h * v[i] + beta * h * h * total
                 v[i] += gamma * h * total
@@ -158,11 +189,26 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
                 v[i] = vp[i] + gamma * h * total
                 a_end[i] = total
             a[i] = total
+        if going_round:
+            for j in range(m):
+                followed[j] = place[j]
+                place[j] = work.d[j]
+                moved[j] = work.v[j] if whole else 0.0
+            turn(sisters, -end, place, 0)
+            if whole:
+                for j in range(m):
+                    followed[j] = (place[j] - followed[j]) / h
+            else:
+                add_going_round(sisters, speed, work.d, moved)
+                followed[:] = 0.0
+            take_power_of_turning(laws, work.answer.energy, F, moved, acting, followed)
         take_account(laws, step.rotation, t, h, work.answer.energy, work.d, carried)
         for j in range(m):
             begin[j] = work.d[j]
             F_end[j] = 1.5 * F[j] - 0.5 * before[j] if whole else F[j]
         observe(step, carried, a_end, F_end, seen)
+        if going_round:
+            turn(step.seen_sisters, end, seen, 2 * m)
         gather(gathered, seen, m, whole)
         if number % every == 0:
             r = number // every - 1
@@ -174,6 +220,9 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
                 schedule_all(laws, angle, speed, t, work.state)
                 work.v[:] = 0.0
                 add_rows(step.Bt, v, work.v, 0)
+                if going_round:
+                    add_going_round(sisters, speed, place, work.v)
+                    turn(sisters, end, work.v, 0)
                 force_all(laws, work.state, work.d, work.v, at_end)
                 record_forces(r, at_end.F, at_end.energy, 0.0, carried, kept)
             else:

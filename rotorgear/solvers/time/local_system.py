@@ -1,11 +1,15 @@
 """A linear structure with local forces, the rotation that is prescribed to it, its state in time, and what integrators record.
 
 M q'' + D q' + K q + B F(B^T q, B^T q', t) = f
+
+Where planets go round with a carrier, their dofs are told at the directions of the pins at the start (system/planets.py), and
+laws act where planets are: with the carrier at the angle a and the speed W, d = R(a) B^T q, d' = R(a) (B^T q' - W T B^T q), and
+forces act as B R(a)^T F (kernel_sisters.py).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,7 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.time.arguments import Carried, Gathered, Kept
+from rotorgear.solvers.time.arguments import Carried, Gathered, Kept, Sisters
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.statistics import blank_gathered
 
@@ -87,6 +91,52 @@ class Observed:
         return np.asarray(self.q @ q + self.v @ v + self.a @ a + self.F @ F)
 
 
+def sisters_of(sets: Iterable[tuple[float, np.ndarray, np.ndarray]] = ()) -> Sisters:
+    """Sets of sisters as compiled loops read them.
+
+    Args:
+        sets: speed of a carrier over that of the reference, directions (N,) of its pins at the start in rad, and places (k, N) in
+            an array, each row the same of all planets.
+    """
+    rows = [(ratio, angles, row) for ratio, angles, places in sets for row in np.reshape(places, (-1, len(angles)))]
+    most = max((len(angles) for _, angles, _ in rows), default=1)
+    place = np.zeros((len(rows), most), dtype=np.int64)
+    cosine = np.zeros((len(rows), most))
+    sine = np.zeros((len(rows), most))
+    for k, (_, angles, row) in enumerate(rows):
+        N = len(angles)
+        place[k, :N] = row
+        cosine[k, :N] = np.cos(angles)
+        sine[k, :N] = np.sin(angles)
+    planets = np.array([len(angles) for _, angles, _ in rows], dtype=np.int64)
+    return Sisters(place, planets, np.array([ratio for ratio, _, _ in rows], dtype=float), cosine, sine)
+
+
+def turned(sisters: Sisters, angle: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """R(a) x of rows x (r, p) at angles (r,) of the reference in rad."""
+    found = np.array(x, dtype=float)
+    for k, N in enumerate(sisters.planets):
+        place = sisters.place[k, :N]
+        cosine = sisters.cosine[k, :N]
+        sine = sisters.sine[k, :N]
+        C, S = (2.0 / N * (x[:, place] @ wave)[:, None] for wave in (cosine, sine))
+        a = sisters.ratio[k] * np.asarray(angle)[:, None]
+        less = np.cos(a) - 1.0
+        found[:, place] += (less * C + np.sin(a) * S) * cosine + (less * S - np.sin(a) * C) * sine
+    return found
+
+
+def turning_of(sisters: Sisters, size: int) -> np.ndarray:
+    """W T (size, size) for unit speed of the reference: what planets see as a rate beside x' is -W T x."""
+    found = np.zeros((size, size))
+    for k, N in enumerate(sisters.planets):
+        place = sisters.place[k, :N]
+        cosine = sisters.cosine[k, :N]
+        sine = sisters.sine[k, :N]
+        found[np.ix_(place, place)] = 2.0 * sisters.ratio[k] / N * (np.outer(sine, cosine) - np.outer(cosine, sine))
+    return found
+
+
 @dataclass(frozen=True)
 class LocalSystem:
     """n degrees of freedom with m local displacements d = B^T q, and p watched ones W^T q that no force acts on.
@@ -100,6 +150,8 @@ class LocalSystem:
         G: gyroscopic matrix for unit speed of the reference; None where nothing gyrates.
         watched: W (n, p): displacements whose statistics at all steps are kept; none where it is None.
         observed: channels, the same; none where it is None.
+        sisters: of planets that go round, among the local displacements, at a constant speed; seen_sisters: the same, among
+        watched displacements and channels in a row.
     """
 
     M: sp.csc_array
@@ -112,6 +164,8 @@ class LocalSystem:
     G: sp.csc_array | None = None
     watched: np.ndarray | None = None
     observed: Observed | None = None
+    sisters: Sisters = field(default_factory=sisters_of)
+    seen_sisters: Sisters = field(default_factory=sisters_of)
 
     @property
     def n(self) -> int:
@@ -137,6 +191,16 @@ class LocalSystem:
     def gathered_values(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, d: np.ndarray, F: np.ndarray) -> np.ndarray:
         """What statistics are gathered of: local forces and displacements, watched displacements, channels, (2 m + p,)."""
         return np.concatenate([F, d, self.watched_vectors.T @ q, self.observed_rows.values(q, v, a, F)])
+
+    def local_motion(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Local displacements and their rates, (m,) each, of a motion at a time."""
+        d = np.asarray(self.B.T @ q, dtype=float)
+        rate = np.asarray(self.B.T @ v, dtype=float)
+        if not self.sisters.planets.size:
+            return d, rate
+        rate = rate - float(self.rotation.speeds[0]) * turning_of(self.sisters, self.m) @ d
+        d, rate = turned(self.sisters, np.full(2, self.rotation.angle(np.array(t))), np.array([d, rate]))
+        return d, rate
 
     def velocity_terms(self, speed: float) -> sp.csc_array:
         """D + W G at a speed of the reference, sparse (n, n)."""
@@ -292,7 +356,7 @@ def evaluated(
 
 def local_values(system: LocalSystem, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Local forces (m,) and energies (4 l,) of a motion at a time."""
-    F, _, _, energy = evaluated(system, system.B.T @ q, system.B.T @ v, t)
+    F, _, _, energy = evaluated(system, *system.local_motion(q, v, t), t)
     return F, energy
 
 

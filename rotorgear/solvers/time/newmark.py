@@ -20,7 +20,7 @@ from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.solvers.time.arguments import Kept, NewmarkStep, SparseRows, Triangles
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper, turning_of
 
 # Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
 _FELT = 1e-5
@@ -110,6 +110,10 @@ class NewmarkStepper(Stepper):
         whole = method.keeps_energy
         by_q = 0.5 if whole else beta
         by_v = 1.0 if whole else gamma
+        Ad = by_q * h**2 * condensed
+        Av = by_v * h * condensed
+        if system.sisters.planets.size:
+            Av = Av - speed * turning_of(system.sisters, system.m) @ Ad
         first, column, (K, D_nz, M) = on_one_pattern(system.K, D, system.M)
         lu = factor._lu
         observed = system.observed_rows
@@ -139,8 +143,10 @@ class NewmarkStepper(Stepper):
             Wt=_rows(system.watched_vectors.T),
             P=np.ascontiguousarray((1.0 - af) * P),
             channels=tuple(_rows(Y) for Y in (observed.q, observed.v, observed.a, observed.F)),
-            Ad=np.ascontiguousarray(by_q * h**2 * condensed),
-            Av=np.ascontiguousarray(by_v * h * condensed),
+            Ad=np.ascontiguousarray(Ad),
+            Av=np.ascontiguousarray(Av),
+            sisters=system.sisters,
+            seen_sisters=system.seen_sisters,
         )
         self._laws = system.forces.arguments()
 

@@ -1,0 +1,447 @@
+"""Motions in time of planets that go round, against an integration whose planets leave their places on true paths.
+
+Its planets are told in their own axes, which turn with the carrier, and the sun, the ring and the carrier in axes at rest, so
+that all its coefficients change with time; contacts and excitations are written out here.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+from scipy.integrate import solve_ivp
+
+import rotorgear as rg
+from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.system.assembly import assemble
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.planets import pin_loads
+from rotorgear.system.system import System
+from tests.planetary import BODIES, GROUND, PIN, helical_stage
+
+# Teeth of sun, planet and ring by the number of planets: excitations of translational and of planet modes.
+TEETH = {3: (28, 35, 98), 4: (26, 36, 98)}
+SPEED = 2500.0 * np.pi / 30.0
+# Unequal springs to the ground, so that the planets see other surroundings as they go round.
+UNEQUAL = {name: {**values, "y": 1.7 * values["y"]} for name, values in GROUND.items()}
+ERROR = 4e-6
+BACKLASH = 30e-6
+LOADS = """
+[loads.drive]
+shaft = "sun"
+kind = "input"
+torque = {torque}
+[loads.rest]
+shaft = "carrier"
+kind = "output"
+"""
+
+
+def stage(
+    torque: float,
+    planets: int = 4,
+    *,
+    loss: float = 0.0,
+    speed: float = SPEED,
+    backlash: bool = True,
+    error: float = ERROR,
+    more: str = "",
+) -> str:
+    """A helical stage with transmission errors, and backlash if wished; its pins are damped by loss, its meshes are not."""
+    text = helical_stage(
+        planets,
+        teeth=TEETH[planets],
+        ground=UNEQUAL,
+        loss=loss,
+        speed=f"{speed!r} rad/s",
+        more=LOADS.format(torque=torque) + more,
+    )
+    gap = f"backlash = {BACKLASH}\n" if backlash else ""
+    mesh = f"damping = 0\n{gap}transmission_error = [{{harmonic = 1, amplitude = {error!r}}}]\n"
+    text = re.sub(r"(stiffness = [0-9.]+\n)damping = [0-9.]+(?=\n\[meshes|\n\[bearings)", r"\1" + mesh, text)
+    assert text.count("transmission_error") == 2
+    return text
+
+
+@dataclass(frozen=True)
+class OnTruePaths:
+    """The stage in axes that go round for its planets.
+
+    Attributes:
+        text: its file; planets: how many. speed: of the sun in rad/s; torque: on it in N m; loss: of the pins in s.
+        error: amplitude of the transmission errors in m; late: what must close at the sun of each planet before it carries, in m.
+    """
+
+    text: str
+    planets: int
+    speed: float
+    torque: float
+    loss: float
+    error: float = ERROR
+    late: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+
+    def _at(self, offset: float) -> System:
+        N = self.planets
+        angles = ", ".join(f'"{360.0 * k / N + np.degrees(offset):.15g} deg"' for k in range(N))
+        return System(rg.loads(self.text.replace(f"planets = {N}", f"angles = [{angles}]")))
+
+    @cached_property
+    def system(self) -> System:
+        return self._at(0.0)
+
+    @cached_property
+    def planet_dofs(self) -> np.ndarray:
+        """Free dofs (N, 6) of the planets."""
+        system = self.system
+        nodes = [system.nodes.on_shaft(f"planet#{k + 1}")[0] for k in range(self.planets)]
+        column = np.full(system.dofs.transform.shape[0], -1)
+        T = system.dofs.transform.tocoo()
+        column[T.row] = T.col
+        return np.array([column[6 * node + np.arange(6)] for node in nodes])
+
+    @cached_property
+    def carrier_dofs(self) -> np.ndarray:
+        T = self.system.dofs.transform.tocoo()
+        column = dict(zip(T.row.tolist(), T.col.tolist(), strict=True))
+        node = self.system.nodes.on_shaft("carrier")[0]
+        return np.array([column[6 * node + k] for k in range(6)])
+
+    def waves(self, of) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What does not turn of a matrix that has one wave over the angle of the carrier, and its cosine and sine."""
+        first, second, third = (of(self._at(angle)) for angle in (0.0, 0.5 * np.pi, np.pi))
+        still = 0.5 * (first + third)
+        return still, first - still, second - still
+
+    @cached_property
+    def contacts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return self.waves(lambda system: contact_lines(system).vectors)
+
+    @cached_property
+    def pins(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Strains (n, 5 N) of the pins."""
+
+        def strains(system: System) -> np.ndarray:
+            T = system.dofs.transform.toarray()
+            of_pins = [group for group in system.groups if group.part.startswith("bearings.pin")]
+            return np.hstack([(group.matrices.strain[0] @ T[group.dofs[0]]).T for group in of_pins])
+
+        return self.waves(strains)
+
+    @cached_property
+    def turns(self) -> float:
+        """Speed of the carrier in rad/s."""
+        return float(self.system.train.ratio("carrier")) * self.speed
+
+    def at(self, waves: tuple[np.ndarray, np.ndarray, np.ndarray], t: float) -> np.ndarray:
+        return waves[0] + waves[1] * np.cos(self.turns * t) + waves[2] * np.sin(self.turns * t)
+
+    def rate(self, waves: tuple[np.ndarray, np.ndarray, np.ndarray], t: float) -> np.ndarray:
+        return self.turns * (waves[2] * np.cos(self.turns * t) - waves[1] * np.sin(self.turns * t))
+
+    @cached_property
+    def pin_springs(self) -> np.ndarray:
+        return np.tile([PIN["radial"], PIN["radial"], PIN["axial"], PIN["tilt"], PIN["tilt"]], self.planets)
+
+    @cached_property
+    def mesh_stiffness(self) -> np.ndarray:
+        meshes = [group for group in self.system.groups if group.part.startswith("meshes.")]
+        return np.array([group.matrices.modulus[0, 0, 0] for group in meshes])
+
+    def errors(self, t: float) -> np.ndarray:
+        """Errors in m: sun meshes follow each other by -z_s psi, ring meshes by +z_r psi, both reversed with the sense."""
+        sun, _, ring = TEETH[self.planets]
+        found = []
+        for force in self.system.state.forces:
+            mesh, number = force.contact.mesh.split("#")
+            psi = 2.0 * np.pi * (int(number) - 1) / self.planets
+            phase = np.sign(self.speed) * (-sun if mesh == "sun_planet" else ring) * psi
+            wave = np.cos(ring * abs(self.turns) * t + self.system.state.phases[f"{mesh}#1"] + phase)
+            found.append(self.error * wave + (self.late[int(number) - 1] if mesh == "sun_planet" else 0.0))
+        return np.array(found)
+
+    def contact_forces(self, t: float, q: np.ndarray) -> np.ndarray:
+        x = self.at(self.contacts, t).T @ q - self.errors(t)
+        return self.mesh_stiffness * (np.maximum(x, 0.0) - np.maximum(-x - BACKLASH, 0.0))
+
+    def pin_forces(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        strain = self.at(self.pins, t).T @ q
+        return self.pin_springs * (strain + self.loss * (self.at(self.pins, t).T @ v + self.rate(self.pins, t).T @ q))
+
+    @cached_property
+    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """M, D and K without contacts and pins, and the load, in axes that go round for the planets."""
+        system = self.system
+        n = system.n
+        W = self.turns
+        M = system.mass.toarray()
+        own = [group for group in system.groups if not group.part.startswith("carriers.")]
+        G = assemble(
+            own, system.dofs, lambda g: None if g.matrices.gyroscopic is None else g.spin * g.matrices.gyroscopic
+        ).toarray()
+        held = [group for group in own if group.part.startswith("supports.")]
+        K = assemble(held, system.dofs, lambda g: g.matrices.stiffness).toarray()
+        S = np.zeros((n, n))
+        for x, y, _, tilt_x, tilt_y, _ in self.planet_dofs:
+            S[y, x], S[x, y], S[tilt_y, tilt_x], S[tilt_x, tilt_y] = 1.0, -1.0, 1.0, -1.0
+        planets = np.zeros((n, n))
+        planets[self.planet_dofs.ravel(), self.planet_dofs.ravel()] = 1.0
+        D = self.speed * G + 2.0 * W * M @ S
+        K = K + W**2 * M @ S @ S + W * self.speed * planets @ G @ S
+        # The planets pull outwards, with the give of their pins, on a carrier that turns under them.
+        mass = BODIES["planet"][0]
+        radius = system.layout.planets[0].radius
+        pull = W**2 * mass * radius / (1.0 - W**2 * mass / PIN["radial"])
+        rotations = self.carrier_dofs[3:]
+        K[rotations, rotations] += self.planets * pull * radius * np.array([0.5, 0.5, 1.0])
+        load = np.zeros(n)
+        for name, moment in (("sun", self.torque), ("carrier", -self.torque * self.speed / W)):
+            node = system.nodes.on_shaft(name)[0]
+            load += np.sign(self.speed) * moment * system.dofs.transform.toarray()[6 * node + 5]
+        load[self.planet_dofs[:, 0]] += W**2 * mass * radius
+        # The torques balance on the train, whose free motion the give of the planets has changed in the linear terms.
+        values, vectors = la.eig(K + self.springs(0.0), M)
+        R = vectors[:, np.abs(values).argmin()].real
+        return M, D, K, load - M @ R * (R @ load) / (R @ M @ R)
+
+    def springs(self, t: float) -> np.ndarray:
+        """Stiffness of the pins and of contacts that all carry."""
+        V = self.at(self.contacts, t)
+        P = self.at(self.pins, t)
+        return V * self.mesh_stiffness @ V.T + P * self.pin_springs @ P.T
+
+    def motion(self, end: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (count, 2 N) of the contacts, and of the pins outwards and onwards (count, N, 2), from rest."""
+        M, D, K, load = self.matrices
+        n = len(load)
+        inverse = np.linalg.inv(M)
+
+        def slope(t: float, y: np.ndarray) -> np.ndarray:
+            q, v = y[:n], y[n:]
+            F = self.at(self.contacts, t) @ self.contact_forces(t, q) + self.at(self.pins, t) @ self.pin_forces(t, q, v)
+            return np.concatenate([v, inverse @ (load - K @ q - D @ v - F)])
+
+        times = end / count * np.arange(1, count + 1)
+        found = solve_ivp(slope, (0.0, end), np.zeros(2 * n), "DOP853", times, rtol=1e-10, atol=1e-15)
+        q, v = found.y[:n].T, found.y[n:].T
+        return (
+            np.array([self.contact_forces(t, x) for t, x in zip(times, q, strict=True)]),
+            np.array(
+                [self.pin_forces(t, x, y).reshape(self.planets, 5)[:, :2] for t, x, y in zip(times, q, v, strict=True)]
+            ),
+        )
+
+    def at_a_crawl(self, t: float) -> np.ndarray:
+        """Forces (2 N,) of the contacts, all of which carry, without any inertia but that of the free motion."""
+        M, _, K, load = self.matrices
+        values, vectors = la.eigh(0.5 * (K + K.T) + self.springs(t), M)
+        R = vectors[:, :1]
+        assert abs(values[0]) < 1e-6 * values[1]
+        V = self.at(self.contacts, t)
+        pushed = load + V @ (self.mesh_stiffness * self.errors(t))
+        A = np.block([[K + self.springs(t), M @ R], [(M @ R).T, np.zeros((1, 1))]])
+        q = np.linalg.solve(A, np.append(pushed - M @ R @ (R.T @ pushed), 0.0))[:-1]
+        forces = self.mesh_stiffness * (V.T @ q - self.errors(t))
+        assert np.all(forces > 0.0)
+        return np.asarray(forces)
+
+
+def periods(own: OnTruePaths, count: float) -> float:
+    """Time in s of some mesh periods."""
+    return count * 2.0 * np.pi / (TEETH[own.planets][2] * abs(own.turns))
+
+
+def pin_histories(found: rg.TransientResult, planets: int) -> np.ndarray:
+    """Forces (r, N, 2) of the pins outwards and onwards."""
+    return np.stack(
+        [[found.history(f"bearings.pin#{k + 1} force {axis}") for axis in "xy"] for k in range(planets)]
+    ).transpose(2, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("planets", "speed", "torque", "method", "steps", "bound"),
+    [
+        (3, -0.8 * SPEED, 500.0, "exponential", 800, 2e-2),
+        (4, SPEED, 900.0, "newmark", 1600, 8e-3),
+        (4, SPEED, 900.0, "generalised-alpha", 1600, 8e-3),
+    ],
+)
+def test_motions_with_teeth_that_part_are_those_of_true_paths(
+    planets: int, speed: float, torque: float, method: str, steps: int, bound: float
+) -> None:
+    """Second order in the step, for either sense, in all methods, for forces of contacts and pins."""
+    text = stage(torque, planets, loss=3e-7, speed=speed)
+    own = OnTruePaths(text, planets, speed, torque, 3e-7)
+    F, pins = own.motion(periods(own, 6), 60)
+    assert np.any(F == 0.0), "teeth part"
+    off = []
+    for now in (steps // 2, steps):
+        found = rg.transient(
+            rg.loads(text),
+            time=periods(own, 6),
+            discard=0.0,
+            steps=now,
+            method=method,
+            start="rest",
+            error_estimate=False,
+            **({"rho_inf": 1.0} if method == "generalised-alpha" else {}),
+        )
+        assert len(found.time) == 240
+        of_contacts = np.abs(found.mesh_force[3::4] - F).max() / np.abs(F).max()
+        of_pins = np.abs(pin_histories(found, planets)[3::4] - pins).max() / np.abs(pins).max()
+        assert found.energy.share < 1e-4
+        off.append((of_contacts, of_pins))
+    coarse, fine = np.array(off)
+    assert np.all(fine < bound * np.array([1.0, 0.2]))
+    assert np.all(np.log2(coarse / fine) == pytest.approx(2.0, abs=0.35))
+
+
+def test_at_a_crawl_forces_are_those_of_statics_at_each_instant() -> None:
+    """A tooth that sits late on one planet takes its load round through unequal surroundings."""
+    speed, torque, loss = 0.5, 2400.0, 2e-4
+    late = (0.0, 9e-6, 0.0, 0.0)
+    text = stage(
+        torque, loss=loss, speed=speed, error=0.0, more=f'[meshes."sun_planet#2"]\nindex_error = {late[1]!r}\n'
+    )
+    own = OnTruePaths(text, 4, speed, torque, loss, 0.0, late)
+    found = rg.transient(
+        rg.loads(text),
+        time=2.0 * np.pi / own.turns,
+        discard=0.0,
+        steps=400,
+        records=40,
+        method="exponential",
+        error_estimate=False,
+    )
+    F = found.mesh_force[::197]
+    still = np.array([own.at_a_crawl(t) for t in found.time[::197]])
+    # A force that goes round is that of the middle of a step: half a step late where the structure only follows.
+    assert np.abs(F - still).max() < 2e-5 * still.max()
+    assert np.ptp(still, axis=0).max() > 5e-4 * still.max()
+
+
+def test_a_settled_motion_is_the_linear_response_with_its_sideband() -> None:
+    """Amplitudes over a turn of the carrier at the orders of the mesh and beside them, at a gear that stands still."""
+    point = '[points.ring]\nshaft = "ring"\nat = 0\ndirection = "x"\n'
+    text = stage(900.0, 3, loss=2e-5, backlash=False, more=point)
+    model = rg.loads(text)
+    linear = rg.response(model, speeds=[SPEED])
+    W = float(model.layout.train.ratio("carrier")) * SPEED
+    found = rg.transient(
+        model, time=2.0 * np.pi / W, discard=4.0 * np.pi / W, steps=80, method="exponential", error_estimate=False
+    )
+    x = found.history("points.ring displacement")[found.counted]
+    told = np.abs(np.fft.rfft(x)) / len(x) * 2.0
+    place = linear.places.index("gears.ring")
+    assert linear.orders == ("mesh sun_planet, planet_ring 1x + stage",)
+    turns = float(linear.ratio[0]) * SPEED / W
+    assert turns == pytest.approx(TEETH[3][2] + 1, abs=1e-9)
+    assert told[1:].argmax() == TEETH[3][2]
+    assert told[1:].max() == pytest.approx(abs(linear.displacement[0, 0, place, 0]), rel=3e-4)
+
+
+def test_statistics_at_steps_are_those_of_records_where_all_are_kept() -> None:
+    """Forces, errors and channels of planets are told where the planets are, in statistics as in histories."""
+    more = '[points.pin]\nshaft = "planet"\nat = 0\ndirection = "y"\n'
+    found = rg.transient(
+        rg.loads(stage(900.0, 3, loss=3e-6, more=more)),
+        time=0.01,
+        discard=0.002,
+        steps=100,
+        records=100,
+        method="exponential",
+        error_estimate=False,
+    )
+    counted = found.values[found.counted]
+    assert "points.pin#2 acceleration" in found.channel
+    size = np.abs(counted).max(axis=0) + 1e-6
+    assert np.all(np.abs(counted.mean(axis=0) - found.value_mean) < 2e-2 * size)
+    assert np.all(np.abs(counted.std(axis=0) - found.value_rms) < 2e-2 * size)
+    assert np.all(found.value_range[:, 0] < counted.min(axis=0) + 2e-2 * size)
+    assert np.all(found.value_range[:, 1] > counted.max(axis=0) - 2e-2 * size)
+    te = found.transmission_error[found.counted]
+    ends = np.column_stack([te.min(axis=0), te.max(axis=0)])
+    assert np.abs(found.transmission_error_range - ends).max() < 1e-2 * np.ptp(te)
+    # Rates are those of what planets see.
+    of = {what: found.history(f"points.pin#2 {what}") for what in ("displacement", "velocity", "acceleration")}
+    for of_this, of_rate in (("displacement", "velocity"), ("velocity", "acceleration")):
+        slope = np.gradient(of[of_this], found.time)[5:-5]
+        assert np.abs(slope - of[of_rate][5:-5]).max() < 0.03 * np.ptp(of[of_rate])
+
+
+def test_friction_and_energy() -> None:
+    """What friction of planets takes, and what the carrier's turn exchanges, is in the ledger."""
+    text = stage(900.0, 3, loss=3e-6).replace("damping = 0\n", "damping = 0\nfriction_coefficient = 0.06\n")
+    for method, steps in (("exponential", 200), ("newmark", 400)):
+        found = rg.transient(
+            rg.loads(text), time=0.006, discard=0.0, steps=steps, method=method, error_estimate=False, start="rest"
+        )
+        assert found.energy.share < 2e-4
+        assert found.energy.dissipated[-1] > 0.0
+
+
+def test_two_stages_carry_what_statics_says() -> None:
+    """Planets of two carriers that turn at different speeds, in one train."""
+    model = rg.load("models/wind_turbine.toml")
+    found = rg.transient(model, time="0.05 s", discard="0.3 s", steps=60, error_estimate=False)
+    assert not any("by statics" in text for text in found.warnings)
+    # Over the planets, the weight of which turns in their axes, the mean forces are those of statics.
+    of_stage = {name.partition("#")[0] for name in found.contact if "#" in name}
+    assert len(of_stage) == 4
+    for mesh in of_stage:
+        own = [k for k, name in enumerate(found.contact) if name.startswith(f"{mesh}#")]
+        assert found.force_mean[own].mean() == pytest.approx(found.mean_force[own].mean(), rel=1e-3)
+
+
+UNBALANCE = '[unbalances.one]\nshaft = "planet"\nat = 0\nmagnitude = 1e-4\n'
+VARYING = '[loads.pull]\nshaft = "planet"\nat = 0\nforce = [10.0, 0.0, 0.0]\norder = 1\n'
+ONE = '[loads.pull]\nshaft = "planet"\nat = 0\nforce = [10.0, 0.0, 0.0]\n[loads."pull#2"]\nforce = [20.0, 0.0, 0.0]\n'
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (UNBALANCE, "unbalances.one: an unbalance on planets that go round is not built in time"),
+        (VARYING, "loads.pull: a load on planets that go round is built in time where it is constant"),
+        (ONE, "loads.pull: a load on planets that go round is built in time where it is constant"),
+    ],
+)
+def test_what_turns_in_axes_of_planets_is_refused_by_name(more: str, words: str) -> None:
+    with pytest.raises(AnalysisError, match=re.escape(words)):
+        rg.transient(rg.loads(stage(900.0, more=more)), time=0.001)
+
+
+def test_run_ups_methods_animations_and_sweeps_are_refused_by_name() -> None:
+    model = rg.loads(stage(900.0))
+    for words, asked in (
+        (
+            "carriers.stage: motions in time of planets that go round are built for a constant speed",
+            {"speed_to": 300.0},
+        ),
+        ("method explicit: it does not take planets that go round", {"method": "explicit"}),
+        ("frames: an animation of planets that go round is not built", {"frames": 3}),
+    ):
+        with pytest.raises(AnalysisError, match=re.escape(words)):
+            rg.transient(model, time=0.001, **asked)
+    with pytest.raises(
+        RotorgearError, match=r"carriers\.stage: sweeps and orbits of planets that go round are not built"
+    ):
+        rg.sweep(model, over={"operation.speed": [200.0, 300.0]})
+    uneven = rg.loads(
+        helical_stage(3, teeth=TEETH[3]).replace("planets = 3", 'angles = ["0 deg", "120 deg", "240.001 deg"]')
+    )
+    with pytest.raises(AnalysisError, match="planets at unequal angles"):
+        rg.transient(uneven, time=0.001)
+
+
+def test_own_is_a_planetary() -> None:
+    """The pins of the own integration have the give that the package's loads of pins have."""
+    system = System(rg.loads(stage(900.0)))
+    W = float(system.train.ratio("carrier")) * SPEED
+    mass = BODIES["planet"][0]
+    radius = system.layout.planets[0].radius
+    pull = pin_loads(system.layout, system.nodes, system.dofs, system.groups)[0].force(W)
+    assert pull == pytest.approx(W**2 * mass * radius / (1.0 - W**2 * mass / PIN["radial"]), rel=1e-12)
