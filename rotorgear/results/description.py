@@ -83,7 +83,9 @@ class MeshRow(Record):
     normal_force_n: tuple[float, ...] = of("mean force along the flank normal", "N", "helix", note=", of each helix")
     driver: str = of("gear that drives")
     flank_assumed: bool = of("whether the working flank is an assumption", note=": no torque flows")
-    stiffness_n_per_m: float = of("stiffness along the flank normal", "N/m", note=", of all helices")
+    stiffness_n_per_m: float | None = of(
+        "stiffness along the flank normal", "N/m", note=", of all helices; `null` of a rigid mesh"
+    )
     damping_n_s_per_m: float = of("damping coefficient along the flank normal", "N s/m", note=", of all helices")
     bevel_radial_force_n: float | None = of(
         "force on the pinion towards its axis", "N", note=", of bevel gears", default=None
@@ -167,7 +169,7 @@ class ModelDescription(Result, kind="check"):
                         f"{mesh.driver} (assumed)" if mesh.flank_assumed else mesh.driver,
                         written(mesh.phase_pitches[k], ".3f"),
                         *(f"{share:.5g}" for share in shares),
-                        f"{mesh.stiffness_n_per_m / helices:.4g}",
+                        "rigid" if mesh.stiffness_n_per_m is None else f"{mesh.stiffness_n_per_m / helices:.4g}",
                         f"{mesh.damping_n_s_per_m / helices:.4g}",
                     )
                 )

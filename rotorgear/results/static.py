@@ -113,6 +113,17 @@ class StaticResult(AboutEquilibrium, kind="static"):
         "stiffness along the flank normal", "N/m", "contact", note="; of loaded teeth the mean tangent of a mesh cycle"
     )
     mesh_deflection: np.ndarray = of("deflection of the teeth along the flank normal", "m", "contact")
+    rigid_mesh: tuple[str, ...] = of(
+        "mesh of each contact of rigid meshes", "", "rigid", json="rigid_mesh", default=(), kw_only=True
+    )
+    rigid_mesh_force: np.ndarray = of(
+        "force along the flank normal of a rigid mesh",
+        "N",
+        "rigid",
+        note=", of each contact of it",
+        default_factory=lambda: np.zeros(0),
+        kw_only=True,
+    )
     carries: np.ndarray = of("whether the contact is closed", "", "contact", json="mesh_carries")
     driver: tuple[str, ...] = of(
         "gear that drives",
@@ -248,6 +259,9 @@ class StaticResult(AboutEquilibrium, kind="static"):
                 yield f"{name}: {_triple(load[:3])} N, {_triple(load[3:])} N m"
         if self.contact_mesh:
             yield from ("", self._meshes())
+        if self.rigid_mesh:
+            forces = zip(self.rigid_mesh, self.rigid_mesh_force, strict=True)
+            yield f"rigid meshes: {'; '.join(f'{mesh} {force:.1f} N' for mesh, force in forces)} along the flank normal"
         if self.faces:
             given = Column("", "given_misalignment_m", where=lambda face: bool(face.given_misalignment_m))
             where = ("face_load_factor", "load_place_m", "peak_place_m", "peak_pressure_pa")

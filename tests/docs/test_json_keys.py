@@ -220,6 +220,7 @@ def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
         data[f"{part}_force_n"] = data[f"{part}_moment_n_m"] = {"box": {place: [0.0, 0.0, 0.0]}}
     bearing = rotor('kind = "ball", elements = 7, element_diameter = 0.01, pitch_diameter = 0.04', "[9.0, 0.0, 0.0]")
     read = load(MODEL).with_("points.torque", {"on": "gears.bull", "quantity": "torque"})
+    data |= {"rigid_mesh": ["stage_1a"], "rigid_mesh_force_n": [1.0]}  # nor a rigid mesh
     data["internal_loads"] = static(read).to_dict()["internal_loads"]
     data |= {key: static(bearing).to_dict()[key] for key in ("laws", "load_force_n", "load_moment_n_m")}  # nor these
     assert differences(data, documented("static")) == NONE

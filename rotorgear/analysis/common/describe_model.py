@@ -135,7 +135,7 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         normal_force_n=tuple(force.normal_force for force in forces),
         driver=(mesh.pinion if forces[0].pinion_drives else mesh.gear).name,
         flank_assumed=any(force.assumed for force in forces),
-        stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
+        stiffness_n_per_m=None if mesh.is_rigid else sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum((float(C[0, 0, 0]) for C in viscosities if C is not None), 0.0),
         bevel_radial_force_n=radial,
         bevel_axial_force_n=axial,

@@ -200,6 +200,7 @@ def _dofs(system: System) -> Iterator[Note]:
     for how, count in (
         ("held fixed by supports", held["supports"]),
         ("tied by rigid sections", held["rigid sections"]),
+        ("taken away by rigid meshes", held.get("rigid meshes", 0)),
     ):
         if count:
             yield Note("", f"{count} dofs {how}")
@@ -343,7 +344,9 @@ def _bearing_loads(system: System) -> Iterator[Note]:
 
 def _is_determinate(system: System) -> bool:
     """Whether the torques alone give the forces of all contacts."""
-    return not system.layout.assembly.loops and len(system.state.forces) == len(system.model.meshes)
+    return not system.layout.assembly.loops and len(system.state.forces) + len(system.state.rigid) == len(
+        system.model.meshes
+    )
 
 
 def _says_speed(system: System, analysis: Analysis, speed: float | None) -> bool:

@@ -21,6 +21,7 @@ from rotorgear.analysis.static.forces import (
     forces_on_gears,
     ground_forces,
     imbalance,
+    rigid_forces,
     seat_forces,
     support_forces,
 )
@@ -170,6 +171,8 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
         carries=equilibrium.presses,
         mesh_force=equilibrium.force,
         mesh_force_on_gear=forces_on_gears(equilibrium),
+        rigid_mesh=system.rigid_contacts.names,
+        rigid_mesh_force=rigid_forces(equilibrium),
         mesh_stiffness=equilibrium.lines.stiffness,
         mesh_deflection=np.where(equilibrium.closed, approach, 0.0),
         bearing_force=bearing_forces(equilibrium),
@@ -260,6 +263,10 @@ def _warnings(equilibrium: Equilibrated, faces: tuple[MeshFace, ...]) -> list[No
             notes.append(Note(which, "carries nothing", "its flanks touch, but no load reaches them"))
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
             notes.append(Note(which, "carries on the other flank than the torque flow in torsion says"))
+    what = "carries on the other flank than the torque flow in torsion says, on which a rigid mesh stays"
+    contacts = equilibrium.system.rigid_contacts
+    rigid = zip(contacts.names, rigid_forces(equilibrium), strict=True)
+    notes += [Note(f"meshes.{mesh}", what, "give it a stiffness") for mesh, force in rigid if force < 0.0]
     what = "closes a loop that can't be put together with the clockings given"
     why = "leave out the clocking of one of its gears and it closes the loop"
     notes += [

@@ -202,7 +202,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         force = sum(force.normal_force for force in forces) / len(forces)
         sense = forces[0].torque_sense
     given = mesh.part.stiffness
-    known = bool(force) or given not in NEEDS_LOAD
+    known = not mesh.is_rigid and (bool(force) or given not in NEEDS_LOAD)
     curve = mesh.stiffness(force or None, sense=sense).about_load if known else None
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, mesh.name, force * base or None)

@@ -166,12 +166,14 @@ def mesh_request(
         raise AnalysisError(
             f"meshes.{mesh.name}: bevel gears have no teeth here that could be loaded, only a mesh stiffness."
         )
-    given = mesh.part.stiffness
+    given = None if mesh.is_rigid else mesh.part.stiffness
     chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
     known = (*MODELS, "given")
     if chosen not in known:
         hint = did_you_mean(chosen, known, f"there are {', '.join(known)}")
         raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
+    if chosen == "given" and mesh.is_rigid:
+        raise AnalysisError(f"--stiffness given: meshes.{mesh.name} is rigid and gives no numbers.")
     if chosen == "given" and isinstance(given, str):
         raise AnalysisError(f"--stiffness given: meshes.{mesh.name} names the model '{given}' and gives no numbers.")
     load, sense = _load(model, mesh, torque)

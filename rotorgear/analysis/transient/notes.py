@@ -59,6 +59,8 @@ def transient_left_out(local: LocalModel) -> tuple[Note, ...]:
     notes = [Note(part, text) for part, law in law_of.items() for text in law.left_out()]
     for name, mesh in system.model.meshes.items():
         address = f"meshes.{name}"
+        if address not in law_of:  # rigid teeth have no law
+            continue
         law = law_of[address]
         if mesh.backlash is None:
             what, then = (

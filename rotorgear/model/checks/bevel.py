@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem
 from rotorgear.model.checks.gears import degrees
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.mesh import RIGID, Mesh
 from rotorgear.model.parts.problems import not_default, told
 from rotorgear.quantity import millimetres
 
@@ -45,7 +45,7 @@ def bevel_problems(address: str, both: MeshLayout) -> Iterator[Problem]:
 def _settings(address: str, mesh: Mesh) -> Iterator[Problem]:
     for key in not_default(mesh, _OF_CYLINDERS):
         yield Problem(f"{address}.{key}", "a value", "nothing here", "it is not known of bevel gears")
-    if isinstance(mesh.stiffness, str) and mesh.stiffness != "iso":
+    if isinstance(mesh.stiffness, str) and mesh.stiffness not in ("iso", RIGID):
         wanted = "a stiffness such as '5e8 N/m', or 'iso', the estimate of ISO 10300-1"
         yield Problem(
             f"{address}.stiffness", f"'{mesh.stiffness}' of bevel gears", wanted, "their teeth are not modelled"

@@ -15,8 +15,8 @@ from rotorgear.model.checks.gears import degrees, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.gear import Gear
-from rotorgear.model.parts.mesh import Mesh
-from rotorgear.model.parts.problems import missing, told
+from rotorgear.model.parts.mesh import RIGID, Mesh
+from rotorgear.model.parts.problems import missing, not_default, told
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -25,6 +25,20 @@ CENTRE_DISTANCE_TOLERANCE = 0.05
 # Lumped gears come with rounded radii and angles.
 LUMPED_TOLERANCE = 5e-3
 _AXES = "parallel axes of cylindrical gears"
+# What teeth have that give, part or move beside their gears.
+_GIVING = (
+    *(
+        "damping_ratio",
+        "damping",
+        "tilt",
+        "index_error",
+        "helix_index_error",
+        "transmission_error",
+        "stiffness_variation",
+    ),
+    *("corner_impact", "friction_coefficient", "lubricant_viscosity", "backlash"),
+)
+_OF_RIGID = "the flanks of a rigid mesh stay in touch exactly; or give it a stiffness"
 # Fewer pitches than these are no body for a tooth and its neighbours.
 _LEAST_PITCHES = 3
 # Teeth that jam by less, in m along the normal, do so by the digits of a drawing: positions are rounded to a micrometre.
@@ -103,7 +117,8 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
     """Harmonics of a mesh need its frequency; what tells two helices apart needs two."""
     unknown = not (pinion.teeth and gear.teeth)
     keys = [key for key in ("transmission_error", "stiffness_variation", "corner_impact") if getattr(mesh, key)]
-    varies = mesh.stiffness_variation and not isinstance(mesh.stiffness, int | float)
+    rigid = mesh.stiffness == RIGID
+    varies = mesh.stiffness_variation and not (rigid or isinstance(mesh.stiffness, int | float))
     duration = mesh.corner_impact.duration if mesh.corner_impact else 0.5
     both = mesh.friction_coefficient and mesh.lubricant_viscosity
     toothless = not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width))
@@ -118,6 +133,7 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
         ("", both, "friction_coefficient and lubricant_viscosity", "one of the two"),
         ("", mesh.rubs and toothless, "friction between gears without teeth", place),
         ("helix_index_error", helix, "a value", "nothing here", "only a herringbone pair has two helices"),
+        *((key, rigid, "a value", "nothing here", _OF_RIGID) for key in not_default(mesh, _GIVING)),
     )
 
 
@@ -126,7 +142,7 @@ def _teeth(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Probl
     narrow = mesh.tilt and not (pinion.width and gear.width)
     face = "the flanks resist a tilt over the width of their face"
     one = mesh.stagger and pinion.kind != "herringbone"
-    named = isinstance(mesh.stiffness, str) and pinion.lumped
+    named = isinstance(mesh.stiffness, str) and mesh.stiffness != RIGID and pinion.lumped
     wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
     energy = mesh.stiffness == "potential_energy" and gear.internal and not gear.lumped
     others = "'iso', 'contact_line', 'tooth_fe' or a number"

@@ -10,6 +10,7 @@ from rotorgear.errors import Problem
 from rotorgear.model.layout.carriers import PlanetSet, carried
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.carrier import MARK, written_name
+from rotorgear.model.parts.mesh import RIGID
 from rotorgear.model.parts.problems import told
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
@@ -65,6 +66,10 @@ def on_carriers(model: Tables) -> Iterator[Problem]:
         if table == "meshes":
             gears = [model.gears.get(gear) for gear in (model.meshes[name].pinion, model.meshes[name].gear)]
             carriers = {model.shafts[gear.shaft].carrier for gear in gears if gear and gear.shaft in model.shafts}
+            if model.meshes[name].stiffness == RIGID and carriers - {None}:
+                yield Problem(
+                    f"{address}.stiffness", "'rigid' of a mesh on a carrier", "a stiffness, or a stiffness model"
+                )
             if len(carriers - {None}) > 1:
                 yield Problem(address, "planets of two carriers", "planets of one carrier")
         elif table == "couplings":

@@ -154,7 +154,7 @@ def _gears(layout: Layout) -> Iterator[Judged]:
 def _mesh(address: str, mesh: MeshLayout) -> Iterator[Judged]:
     part = mesh.part
     given = mesh.given_mean
-    if given is not None:
+    if given is not None and not mesh.is_rigid:
         # Over the width in N/m^2 (ISO 6336-1: 1.4e10 to 2.5e10 for steel), or alone in N/m.
         width = mesh.width * mesh.helices
         usual = (5e8 * width, 3e11 * width) if width else (1e5, 1e12)

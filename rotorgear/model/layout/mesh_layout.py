@@ -31,7 +31,7 @@ from rotorgear.model.layout.bevel import Meeting, meeting, pair_of
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.frame import Frame
-from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.mesh import RIGID, Mesh
 from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import millimetres
 
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 # Positions in a mesh period at which a stiffness model is asked.
 POSITIONS = 64
+# Of rigid teeth in the torque flow, N/m: far above those of steel, and far below what numbers can hold beside a soft shaft.
+STIFF = 1e11
 # How far the circle that the teeth are held on may be off the rim of the mesh, in normal modules. A ring of this height under
 # the mean force of the teeth gives some thousandths of what the teeth give.
 _BETWEEN = 0.5
@@ -479,17 +481,25 @@ class MeshLayout:
     @property
     def is_modelled(self) -> bool:
         """Whether the file names a stiffness model."""
-        return isinstance(self.part.stiffness, str)
+        return isinstance(self.part.stiffness, str) and not self.is_rigid
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether its teeth do not give."""
+        return self.part.stiffness == RIGID
 
     @property
     def varies(self) -> bool:
         """Whether the stiffness changes over the mesh period by itself: a list, a series or a model."""
-        return not isinstance(self.part.stiffness, int | float)
+        return not (self.is_rigid or isinstance(self.part.stiffness, int | float))
 
     @property
     def given_mean(self) -> float | None:
-        """Mean stiffness along the flank normal (N/m, both helices) that the file gives; None where it names a model."""
-        given = self.part.stiffness
+        """Mean stiffness along the flank normal (N/m, both helices) that the file gives; None where it names a model.
+
+        Of rigid teeth one that is stiff beside all others, by which the torque flow finds their flanks.
+        """
+        given = STIFF if self.is_rigid else self.part.stiffness
         if isinstance(given, str):
             return None
         return sum(given) / len(given) if isinstance(given, tuple) else given

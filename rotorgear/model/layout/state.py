@@ -229,6 +229,7 @@ class State:
             as long as they lie among these.
         operating: where the laws stand that `tangents` are of, at the lowest and the highest speed.
         notes: what of the model is not in it.
+        rigid: the same as `forces`, of the meshes whose teeth do not give: as the torque flow has them.
     """
 
     layout: Layout
@@ -245,6 +246,7 @@ class State:
     mapped_at: Misalignments = field(default_factory=dict)
     operating: tuple[OperatingPoint, ...] = ()
     notes: tuple[Note, ...] = ()
+    rigid: tuple[MeshForce, ...] = ()
 
     @property
     def is_flow(self) -> bool:
@@ -341,7 +343,7 @@ class State:
 
     def of_mesh(self, mesh: str) -> tuple[MeshForce, ...]:
         """The contacts of one mesh."""
-        return tuple(force for force in self.forces if force.contact.mesh == mesh)
+        return tuple(force for force in (*self.forces, *self.rigid) if force.contact.mesh == mesh)
 
     def is_nominal(self, force: MeshForce) -> bool:
         """Whether the mean load presses the flanks that the file calls the driving ones (nominal_driver)."""

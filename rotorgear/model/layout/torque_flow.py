@@ -93,7 +93,9 @@ def torque_flow(layout: Layout, direction: int = 1, faces: Faces | None = None) 
     if direction != layout.direction and any(m.part.index_error or m.part.helix_index_error for m in layout.meshes):
         own = torque_flow(layout, layout.direction, faces).forces
         states = [replace(a, turned=a.torque_sense != b.torque_sense) for a, b in zip(states, own, strict=True)]
-    return State(layout, direction, tuple(applied), tuple(states), curves, faces=faces).of_kind("dynamic")
+    rigid = tuple(state for state in states if layout.mesh(state.contact.mesh).is_rigid)
+    elastic = tuple(state for state in states if state not in rigid)
+    return State(layout, direction, tuple(applied), elastic, curves, faces=faces, rigid=rigid).of_kind("dynamic")
 
 
 def _solved(layout: Layout, applied: Sequence[AppliedTorque], curves: Curves) -> tuple[list[Contact], list[float]]:

@@ -23,6 +23,8 @@ _MOST_HARMONICS = 100
 _VALUES_A_HARMONIC = 8
 _VALUES = 64
 _UNIT = Unit("stiffness", "positive")
+# The name of teeth that do not give: their flanks stay in touch exactly.
+RIGID = "rigid"
 _SHARE = Unit("ratio")
 _ANGLE = Unit("angle")
 _EXAMPLE = DIMENSIONS["stiffness"].example
@@ -37,10 +39,11 @@ def _parse(value: Any) -> Any:
             raise refuse(f"at least {_LEAST_VALUES} stiffnesses, evenly spaced over one mesh period")
         return tuple(_UNIT.parse(item) for item in value)
     if isinstance(value, str) and value.strip()[:1].isalpha():
-        if value in MODELS:
+        named = (*MODELS, RIGID)
+        if value in named:
             return value
-        wanted = f"a stiffness such as '{_EXAMPLE}' or one of {', '.join(MODELS)}"
-        raise refuse("; ".join(filter(None, (wanted, did_you_mean(value, MODELS)))))
+        wanted = f"a stiffness such as '{_EXAMPLE}' or one of {', '.join(named)}"
+        raise refuse("; ".join(filter(None, (wanted, did_you_mean(value, named)))))
     return _UNIT.parse(value)
 
 
@@ -74,7 +77,7 @@ def _series(table: dict[str, Any]) -> tuple[float, ...]:
 
 def _schema() -> dict[str, Any]:
     one = _UNIT.schema()
-    names = {"type": "string", "enum": list(MODELS)}
+    names = {"type": "string", "enum": [*MODELS, RIGID]}
     several = {"type": "array", "minItems": _LEAST_VALUES, "items": {"anyOf": one["anyOf"]}}
     shares = {"type": "array", "minItems": 1, "maxItems": _MOST_HARMONICS, "items": {"type": "number"}}
     angles = {"type": "array", "maxItems": _MOST_HARMONICS, "items": {"anyOf": _ANGLE.schema()["anyOf"]}}
@@ -140,8 +143,8 @@ class Mesh(Part):
     gear: str = Field(description="name of its mate")
     stiffness: StiffnessValue = Field(
         description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one mesh "
-        "period; a Fourier series { mean, amplitudes, phases }; or a stiffness model, which takes the mean load of the torque "
-        "flow"
+        "period; a Fourier series { mean, amplitudes, phases }; a stiffness model, which takes the mean load of the torque "
+        "flow; or rigid: the flanks stay in touch, and one degree of freedom follows from the others"
     )
     damping_ratio: si.Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
     damping: si.Damping | None = Field(
