@@ -58,6 +58,15 @@ from tests.extreme.forced_errors import (
 )
 from tests.extreme.models import points, rotor_model
 from tests.extreme.orbit_errors import orbit_of_pair, orbit_of_rattle, sweep_of_rattle, transient_of_rattle
+from tests.extreme.planet_errors import (
+    Stage,
+    inclined,
+    inclined_error,
+    share_error,
+    stage_error,
+    thin_ring,
+    thin_ring_mass,
+)
 from tests.extreme.references import DIGITS, Body, Rotor, Segment, Spring
 from tests.extreme.rotors import even, on
 from tests.extreme.speed_errors import (
@@ -459,6 +468,56 @@ CASES += [
 ]
 
 
+_STAGE = Stage()
+
+
+# All that vibrates is faster than the carrier, which then brings no work into it.
+_FAST = Stage(
+    planets=4,
+    planet=26,
+    pin=4e10,
+    mesh=6e9,
+    masses=(0.26, 0.9, 1.4, 0.22),
+    inertias=(3e-4, 0.03, 0.01, 5e-4),
+)
+_CARRIER = 1e5 * RPM
+
+
+CASES += [
+    Case(
+        "120 planets that go round",
+        "40 digits",
+        1e-11,
+        lambda: stage_error(Stage(planets=120, sun=1000, planet=20), 50.0),
+    ),
+    Case("static: 120 planets share alike", "closed form", 1e-7, lambda: share_error(120)),
+    Case("pins of 4e14 N/m: a million times as stiff", "40 digits", 1e-13, lambda: stage_error(_pins(4e14))),
+    Case("the same with the carrier at 300 rad/s", "40 digits", 1e-7, lambda: stage_error(_pins(4e14), 300.0)),
+    Case("five planets on such pins at 10 rad/s", "40 digits", 1e-7, lambda: stage_error(_pins(4e14, 5, 26), 10.0)),
+    Case("pins of 1e-3 N/m", "40 digits", 1e-13, lambda: stage_error(replace(_STAGE, pin=1e-3, tilt=1e-3))),
+    Case(
+        "planetary meshes of 1e13 N/m at 300 rad/s",
+        "40 digits",
+        1e-12,
+        lambda: stage_error(replace(_STAGE, mesh=1e13), 300.0),
+    ),
+    Case("a carrier at 1e5 rpm", "40 digits", 1e-11, lambda: stage_error(_FAST, _CARRIER)),
+    Case("the same backwards", "40 digits", 1e-11, lambda: stage_error(_FAST, -_CARRIER)),
+    Case("a carrier at 1e5 rpm that makes modes grow", "40 digits", 1e-12, lambda: stage_error(_STAGE, _CARRIER)),
+    Case("the mass of a ring with a rim of 1 mm", "closed form", 1e-13, lambda: thin_ring_mass(1e-3)),
+    Case("planetary axes 1e-9 rad off parallel", "similarity", 1e-9, lambda: inclined_error(1e-9)),
+]
+
+
+def _pins(stiffness: float, planets: int = 3, teeth: int = 27) -> Stage:
+    return replace(_STAGE, planets=planets, planet=teeth, pin=stiffness)
+
+
+def _speed(stage: Stage, carrier: float) -> float:
+    """Of the sun in rad/s, where the carrier has one."""
+    return carrier * (1.0 + stage.ring / stage.sun)
+
+
 def _tight(half_backlash: float) -> ImpactOscillator:
     """Flanks so near each other that the pair never feels free, under a load as much smaller."""
     return replace(_STRIKES, half_backlash=half_backlash)
@@ -470,6 +529,16 @@ def _stiff(stiffness: float) -> ImpactOscillator:
 
 
 FLAGGED: list[Flagged] = [
+    Flagged(
+        "a carrier at 1e5 rpm that makes modes grow, told",
+        "unstable",
+        lambda: rg.modal(_STAGE.model(), speed=_speed(_STAGE, _CARRIER)),
+    ),
+    Flagged(
+        "a ring with a rim of 1 mm: it is no rigid body",
+        "its rim by itself bends from about",
+        lambda: rg.modal(thin_ring("1 mm"), modes=6),
+    ),
     Flagged(
         "transient: a damping ratio of 1e-6, too short to settle",
         "not settled",
@@ -540,6 +609,22 @@ REFUSED += [
     Refused("state space: no range of frequencies", "must be positive", lambda: state_space_of_mass(1e6, 1.0, [0.0])),
     Refused("scatter: a spread below nothing", "not negative", lambda: scatter_of_spring(1e8, -0.1)),
     Refused("sweep: over nothing", "at least one value", lambda: rg.sweep(pair_of((24, 36)), {"operation.speed": []})),
+]
+
+
+REFUSED += [
+    Refused("planetary axes 1e-6 rad off parallel", "5.72957795e-05 deg apart", lambda: inclined(1e-6)),
+    Refused("120 planets that have no room", "touch", lambda: Stage(planets=120, sun=93).model()),
+    Refused(
+        "pins that give way to the load of planets at 1e5 rpm",
+        "the centrifugal load grows faster with the way out",
+        lambda: rg.modal(_pins(1e7).model(), speed=_speed(_STAGE, _CARRIER)),
+    ),
+    Refused(
+        "two planets that go round",
+        "coefficients of two planets on a carrier that turns",
+        lambda: rg.modal(Stage(planets=2).model(), speed=100.0),
+    ),
 ]
 
 

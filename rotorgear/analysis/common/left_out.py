@@ -12,6 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rotorgear.analysis.common.gear_bodies import body_notes
+from rotorgear.analysis.common.rings import ring_notes
 from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import in_words
@@ -138,6 +139,7 @@ def left_out(
         *_beta(system, analysis, speed),
         *(mesh_stiffness(system) if analysis in ("modes", "frf") else ()),
         *body_notes(system),
+        *(ring_notes(system) if analysis in ("modes", "frf", "response") else ()),
         *system.state.notes,
     )
     # Of a part that is not there as a whole, nothing else need be said.

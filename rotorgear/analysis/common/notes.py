@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_warnings
+from rotorgear.analysis.common.rings import ring_warnings
 from rotorgear.system.system import System
 
 
 def mode_warnings(system: System, asked: int | None, values: np.ndarray, fmax: float | None = None) -> tuple[str, ...]:
     """Say what is odd about a set of modes: merged nodes, fewer modes than asked for, unstable ones."""
-    notes = [*system.nodes.merged, *mesh_stiffness_warnings(system)]
+    notes = [*system.nodes.merged, *mesh_stiffness_warnings(system), *ring_warnings(system, values)]
     if not len(values) and fmax is not None:
         notes.append(f"no mode lies at or below {fmax:g} Hz")
     elif asked is not None and fmax is None and len(values) < asked:

@@ -50,11 +50,14 @@ _ZERO = 1e-9
 
 def damped_group(problem: Problem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
-    if problem.rigid is not None and problem.rigid.shape[1]:
+    if problem.rigid is not None and (problem.rigid.shape[1] or problem.strain is None):
+        # On a fast carrier the symmetric stiffness of planets alone is no spring, and gyroscopic terms hold them.
         R = problem.rigid
         more = None if count is None else count + R.shape[1]
-        found = damped_modes(problem.M, problem.D, problem.K, count=more, below=below, rigid_vectors=R)
-        return _without_drift(by_strains(problem, found), count), ""
+        found = by_strains(
+            problem, damped_modes(problem.M, problem.D, problem.K, count=more, below=below, rigid_vectors=R)
+        )
+        return (_without_drift(found, count) if R.shape[1] else found), ""
     near = _near_undamped(problem, count, below)
     if near is not None:
         return near, ""

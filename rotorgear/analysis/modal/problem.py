@@ -17,7 +17,9 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
+from rotorgear.solvers.sparse.entries import column_forms, magnitudes
 from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.sparse.pencil import rounding_noise
 from rotorgear.system.assembly import StrainForms
 from rotorgear.system.plan import Plan
 from rotorgear.system.planets import turning_carriers
@@ -27,6 +29,8 @@ from rotorgear.system.system import System
 # Shares of the usual k_ii / m_ii: how far beside zero free motions are looked for, and below what one is free.
 _BESIDE = 1e-14
 _AT_ZERO = 1e-11
+# Multiple of the rounding of the stiffness within which a motion is free.
+_ROUNDED = 4.0
 # Share of a motion beyond which a group takes part in it.
 _MOVES = 1e-9
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
@@ -203,7 +207,10 @@ def _free_motions(system: System, speed: float, K: sp.csc_array) -> np.ndarray:
     for _ in range(4):
         motions = np.linalg.qr(factor.solve(M @ motions))[0]
     values, turned = la.eig(motions.T @ (K @ motions), motions.T @ (M @ motions))
-    free = np.abs(values) < _AT_ZERO * usual
+    found = motions @ turned.real
+    found = found / np.sqrt(np.maximum(column_forms(M, found), np.finfo(float).tiny))
+    # Very stiff pins leave more of their rounding than a share of what is usual.
+    free = np.abs(values) < np.maximum(_AT_ZERO * usual, _ROUNDED * rounding_noise(magnitudes(K), found))
     return np.asarray(motions @ np.linalg.qr(turned[:, free].real)[0])
 
 
