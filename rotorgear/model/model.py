@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import warnings
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from functools import cached_property
 from html import escape
 from operator import is_not
@@ -26,6 +26,7 @@ from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.parts.carrier import MARK
 from rotorgear.model.parts.fields import MOTIONS, Name
+from rotorgear.model.parts.operation import Operation
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import counted
@@ -183,6 +184,8 @@ def _is_table(parts: Any) -> bool:
 __all__ = ["MOTIONS", "SCHEMA_VERSION", "Model"]
 
 
+# Stands for the operating point while everything else is written; no text of a model holds a null character.
+_ELSEWHERE = "\0operation"
 # Keys of a gear body that only a mesh has.
 _OF_MESHES = ("connection", "damping_ratio", "mass_tolerance")
 
@@ -209,9 +212,39 @@ def model_hash(model: Model) -> str:
     return kept[0][1]
 
 
+def hashes_over_operation(model: Model) -> Callable[[Operation], str]:
+    """What gives the `model_hash` of a model with another operating point; what else it is made of is written once.
+
+    Everything beside the operating point stays as it is in the model, whose hash is not taken from files again.
+    """
+    fields = _hashed_fields(model)
+    fields["operation"] = _ELSEWHERE
+    before, after = _canonical(fields).split(_canonical(_ELSEWHERE))
+    begun = hashlib.sha256(before.encode("utf-8"))
+    rest = after.encode("utf-8")
+
+    def of(operation: Operation) -> str:
+        digest = begun.copy()
+        own = operation.model_dump(mode="json", exclude_none=True)
+        digest.update(_canonical(own).encode("utf-8"))
+        digest.update(rest)
+        return digest.hexdigest()
+
+    return of
+
+
 def _hash(model: Model) -> str:
     """The hash of the fields and files as they are now."""
-    fields = model.model_dump(mode="json", exclude_none=True)
+    return hashlib.sha256(_canonical(_hashed_fields(model)).encode("utf-8")).hexdigest()
+
+
+def _canonical(fields: Any) -> str:
+    return json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+
+
+def _hashed_fields(model: Model) -> dict[str, Any]:
+    """The fields that a hash is taken of, with digests in place of files."""
+    fields: dict[str, Any] = model.model_dump(mode="json", exclude_none=True)
     for casing in fields["casings"].values():
         files = {**casing["mesh"], **({"matrices": casing["matrices"]} if "matrices" in casing else {})}
         casing |= {"files": {name: _digest(Path(path)) for name, path in files.items()}, "mesh": [], "matrices": ""}
@@ -231,8 +264,7 @@ def _hash(model: Model) -> str:
     for table in ("scatter", "carriers"):
         if not fields[table]:
             del fields[table]
-    text = json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+    return fields
 
 
 def _digest(path: Path) -> str:

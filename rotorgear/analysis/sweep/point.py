@@ -5,9 +5,10 @@ What repeats in a model that turns: orders of all laws, and the period that they
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from math import gcd, lcm
 from typing import TYPE_CHECKING
 
@@ -21,8 +22,8 @@ from rotorgear.analysis.transient.notes import left_out_in_time, unread_loads
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.batch.columns import OWN_LAW, TABLE_ROWS, Columns
-from rotorgear.solvers.batch.own_laws import own_laws
-from rotorgear.solvers.batch.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
+from rotorgear.solvers.batch.own_laws import OwnLaws, own_laws
+from rotorgear.solvers.batch.small_system import MOST_DOFS, Shapes, SmallSystem, Still, small_system
 from rotorgear.solvers.time.contact_equilibrium import (
     Equilibrium,
     equilibrium,
@@ -168,6 +169,37 @@ class AtRest:
     drifts: bool
     shapes: Shapes | None = None
 
+    @cached_property
+    def period(self) -> tuple[Fraction, int]:
+        """The highest order, and how many of its periods everything that varies has in common."""
+        return common_period(self.orders)
+
+    @cached_property
+    def shape(self) -> bytes:
+        """Bytes that two points share where their tables are the same."""
+        return b"".join(law.table_key() for law in self.local.forces.laws)
+
+    @cached_property
+    def rolling(self) -> bool:
+        """Whether rolling elements pass beside the meshes."""
+        return any(not each.common for law in self.local.forces.laws for each in law.repeats())
+
+    @cached_property
+    def still(self) -> Still:
+        """The system as a small one, as far as it is the same at all speeds."""
+        return Still(self.local, self.rest, self.shapes)
+
+    def own_laws(self, own: np.ndarray, turn: float) -> OwnLaws:
+        """The laws that a sweep takes by themselves, marked in `own` (m,), gathered once."""
+        key = own.tobytes()
+        if key not in self._own:
+            self._own[key] = own_laws(self.local.forces, own, turn)
+        return replace(self._own[key], turn=turn)
+
+    @cached_property
+    def _own(self) -> dict[bytes, OwnLaws]:
+        return {}
+
 
 class PointMaker:
     """Makes models ready, and keeps states at rest for models where only the speed is another.
@@ -195,21 +227,35 @@ class PointMaker:
         speed = model.operating_speed
         if not model.operation or not speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
-        slow = 1.0 if speed > 0.0 else -1.0
-        standing = model.operation.model_copy(update={"speed": slow})
-        key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
-        if (
+        if not self.is_one_over_speed(model):
+            return self._at(self._made(model, speed), speed, model.damping.modal_ratio)
+        return self.over_speed(model)(speed)
+
+    def is_one_over_speed(self, model: Model) -> bool:
+        """Whether one state at rest serves a model at all speeds of one sense."""
+        return not (
             depends_on_speed(model)
             or any(load.varies for load in model.loads.values())
             or any(bearing.has_film for bearing in model.bearings.values())
-        ):
-            return self._at(self._made(model, speed), speed, model.damping.modal_ratio)
+        )
+
+    def over_speed(self, model: Model) -> Callable[[float], Point | Large]:
+        """What makes a model ready at any speed of one sense, of which one state at rest serves all.
+
+        Raises:
+            AnalysisError: as for one speed.
+        """
+        assert model.operation is not None
+        slow = 1.0 if (model.operating_speed or 0.0) > 0.0 else -1.0
+        standing = model.operation.model_copy(update={"speed": slow})
+        key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
         if key not in self._known:
             if len(self._known) >= _KEPT:
                 self._known.clear()
             # At one speed for all: moving errors act on dampers at rest, and no point may depend on the first one.
             self._known[key] = self._made(model, slow)
-        return self._at(self._known[key], speed, model.damping.modal_ratio)
+        known = self._known[key]
+        return lambda speed: self._at(known, speed, model.damping.modal_ratio)
 
     def _at(self, known: AtRest | Large, speed: float, modal_ratio: float) -> Point | Large:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
@@ -281,29 +327,25 @@ def ready_reduced(point: Large, local: LocalSystem, shapes: Shapes) -> Point:
 
 def ready(known: AtRest, speed: float, modal_ratio: float = 0.0) -> Point:
     """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
-    local = replace(known.local, rotation=Rotation.constant(speed))
-    fastest, turns = common_period(known.orders)
-    laws = local.forces.laws
+    fastest, turns = known.period
+    laws = known.local.forces.laws
     columns = Columns.of([column for law in laws for column in law.columns(speed)])
     order = float(np.copysign(float(fastest), speed))
-    one_at_a_time = own_laws(local.forces, columns.kind == OWN_LAW, 1.0 / order)
-    system = small_system(
-        local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
-    )
+    one_at_a_time = known.own_laws(columns.kind == OWN_LAW, 1.0 / order)
+    system = small_system(known.still, speed, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio)
     # What the drive carries stays at its speed, whatever acts on it.
     drifts = len(system.carried) < len(system.rigid) and known.drifts
-    shape = b"".join(law.table_key() for law in laws)
     counted = columns.counted
     return Point(
         system,
-        local.forces,
+        known.local.forces,
         order,
         known.contact,
         known.static[counted],
         columns.stiffness[counted],
         drifts,
-        any(not each.common for law in laws for each in law.repeats()),
-        shape,
+        known.rolling,
+        known.shape,
     )
 
 

@@ -21,6 +21,7 @@ from rotorgear.analysis.sweep.axes import Axis, along, axis_of, number_in, point
 from rotorgear.analysis.sweep.blocks import Job, blocks, packed, run_blocks, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
 from rotorgear.analysis.sweep.gather import gathered
+from rotorgear.analysis.sweep.over_speed import OverSpeed
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
 from rotorgear.analysis.sweep.reduce import Large, Reducer
 from rotorgear.analysis.sweep.request import Request, start_of, steps_of
@@ -163,6 +164,7 @@ def ready_points(
 ) -> tuple[list[str], list[Point | None], list[str], list[tuple[str, ...]], Reduction | None]:
     """Hashes of the models, points made ready, why a point failed, what is left out of each model, and what was reduced."""
     maker = PointMaker(request.modes, request.elements)
+    one_over_speed = OverSpeed(model, axes, along(model, axes), maker) if change is None else None
     change = change or along(model, axes)
     values = points_of(axes)
     texts = [repr(value) for value in values]
@@ -172,9 +174,14 @@ def ready_points(
     for i, value in enumerate(values):
         progress(_READY * i / len(values), f"point {i + 1} of {len(values)}")
         try:
-            own = change(model, value)
-            texts[i] = model_hash(own)
-            made = maker(own)
+            known = one_over_speed(value) if one_over_speed else None
+            if known is not None:
+                texts[i], make = known
+                made = make()
+            else:
+                own = change(model, value)
+                texts[i] = model_hash(own)
+                made = maker(own)
         except RotorgearError as error:
             failure[i] = str(error)
             continue

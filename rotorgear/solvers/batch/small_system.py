@@ -5,7 +5,8 @@ z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,7 +15,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.solvers.batch.columns import Columns
 from rotorgear.solvers.batch.own_laws import OwnLaws, not_held, steepest, taken_at_rest
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
-from rotorgear.solvers.time.local_system import LocalSystem
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 
 # Dense matrices in the kernel: beyond this many, other methods are cheaper.
 MOST_DOFS = 80
@@ -90,64 +91,116 @@ class SmallSystem:
         return int(self.load.size)
 
 
-def small_system(
-    local: LocalSystem,
-    rest: Equilibrium,
-    columns: Columns,
-    own: OwnLaws,
-    w: float,
-    turns: int,
-    modal_ratio: float = 0.0,
-    shapes: Shapes | None = None,
-) -> SmallSystem:
-    """Return a system at the speed of its rotation in the form of the kernels.
+class Still:
+    """What of a small system is the same at all speeds: L, its inverse, and the system in the coordinates L^T q, in SI units.
+
+    Attributes:
+        K: (n, n), load and rest: (n,), clean_B: (n, m) and W: (n, p), all but the load and B without rounding.
+        about: (n, n) stiffness with all contacts closed; held: (n, n) damping of the laws at their reference.
 
     Args:
-        local: the system. rest: its equilibrium. columns: of its local forces, in SI. own: those with laws of their own.
-        w: rad/s of the fastest excitation. turns: its periods in the common one.
-        modal_ratio: damping ratio added to every mode with strain. shapes: of a system that was reduced.
+        local: the system. rest: its equilibrium. shapes: of a system that was reduced.
 
     Raises:
         AnalysisError: too many dofs, or one without inertia.
     """
-    if shapes is None:
-        refuse_large(local.n)
-    try:
-        L = np.linalg.cholesky(local.M.toarray())
-    except np.linalg.LinAlgError:
-        raise AnalysisError("a degree of freedom has no inertia: a sweep needs mass on all of them") from None
-    inverse = np.linalg.inv(L)
-    B = inverse @ local.B.toarray()
-    K = inverse @ local.K.toarray() @ inverse.T
-    D = inverse @ local.velocity_terms(float(local.rotation.speeds[0])).toarray() @ inverse.T
-    about = inverse @ local.stiffness_about.toarray() @ inverse.T
-    damped = D + B @ local.forces.reference_damping @ B.T
-    steep = steepest(local, rest.q, own, 2.0 * np.pi / w)
-    linear = [(about, damped), *((about + B @ k @ B.T, damped + B @ c @ B.T) for k, c in steep)]
-    squares, modes = np.linalg.eigh(0.5 * (linear[-1][0] + linear[-1][0].T))
+
+    def __init__(self, local: LocalSystem, rest: Equilibrium, shapes: Shapes | None = None) -> None:
+        if shapes is None:
+            refuse_large(local.n)
+        try:
+            self.root = L = np.linalg.cholesky(local.M.toarray())
+        except np.linalg.LinAlgError:
+            raise AnalysisError("a degree of freedom has no inertia: a sweep needs mass on all of them") from None
+        self.local = local
+        self.equilibrium = rest
+        self.shapes = shapes
+        self.inverse = inverse = np.linalg.inv(L)
+        self.B = B = inverse @ local.B.toarray()
+        self.clean_B = _clean(B)
+        self.K = _clean(inverse @ local.K.toarray() @ inverse.T)
+        self.load = inverse @ local.load
+        self.W = _clean(inverse @ local.watched_vectors)
+        self.about = inverse @ local.stiffness_about.toarray() @ inverse.T
+        self.held = B @ local.forces.reference_damping @ B.T
+        self.rest = L.T @ rest.q
+        self._damping = local.D.toarray(), None if local.G is None else local.G.toarray()
+
+    @cached_property
+    def standing(self) -> np.ndarray:
+        """Damping (n, n) at standstill."""
+        return np.asarray(self.inverse @ self._damping[0] @ self.inverse.T)
+
+    def damping(self, speed: float) -> np.ndarray:
+        """Damping and gyroscopic terms (n, n) at a speed of the reference."""
+        D, G = self._damping
+        return self.standing if G is None else np.asarray(self.inverse @ (D + speed * G) @ self.inverse.T)
+
+    @cached_property
+    def modes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Squares (n,) of the frequencies with all contacts closed, and modes (n, n)."""
+        return modes_of(self.about)
+
+    @cached_property
+    def rigid(self) -> np.ndarray:
+        """Motions without strain where no law acts by itself, orthonormal, (r, n)."""
+        return self.orthonormal(self.equilibrium.free)
+
+    def orthonormal(self, free: np.ndarray) -> np.ndarray:
+        """Motions (n, r) of q as orthonormal rows of L^T q, (r, n)."""
+        return np.linalg.qr(self.root.T @ free)[0].T if free.size else np.zeros((0, self.local.n))
+
+
+def modes_of(stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Squares of frequencies (n,) and modes (n, n) of a stiffness beside mass one."""
+    squares, modes = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+    return squares, modes
+
+
+def small_system(
+    still: Still, speed: float, columns: Columns, own: OwnLaws, w: float, turns: int, modal_ratio: float = 0.0
+) -> SmallSystem:
+    """Return a system at a speed of the reference in rad/s in the form of the kernels.
+
+    Args:
+        still: the system as it is at any speed. speed: of the reference. columns: of its local forces, in SI.
+        own: those with laws of their own.
+        w: rad/s of the fastest excitation. turns: its periods in the common one.
+        modal_ratio: damping ratio added to every mode with strain.
+    """
+    shapes = still.shapes
+    B = still.B
+    n = still.local.n
+    D = still.damping(speed)
+    damped = D + still.held
+    linear = [(still.about, damped)]
+    squares, modes = still.modes
+    rigid = still.rigid
+    carried = np.zeros((0, n))
+    if own.forces.laws:
+        local = replace(still.local, rotation=Rotation.constant(speed))
+        rest = still.equilibrium
+        steep = steepest(local, rest.q, own, 2.0 * np.pi / w)
+        linear += [(still.about + B @ k @ B.T, damped + B @ c @ B.T) for k, c in steep]
+        squares, modes = modes_of(linear[-1][0])
+        rigid = still.orthonormal(not_held(local, rest.q, own, rest.free))
+        if len(rigid):
+            carried = _carried(rigid, damped, B, *taken_at_rest(local, rest.q, own, turns * 2.0 * np.pi / w))
     energy = np.sqrt(np.abs(squares) + _FLOOR * np.abs(squares).max())[:, None] * modes.T / w
     if modal_ratio:
         D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
-    free = not_held(local, rest.q, own, rest.free)
-    rigid = np.linalg.qr(L.T @ free)[0].T if free.size else np.zeros((0, local.n))
-    carried = np.zeros((0, local.n))
-    if len(rigid) and own.forces.laws:
-        carried = _carried(rigid, damped, B, *taken_at_rest(local, rest.q, own, turns * 2.0 * np.pi / w))
-    # All |eigenvalues| of z'' = -K z - D z'.
-    zero = np.zeros((local.n, local.n))
-    matrices = [np.block([[zero, np.eye(local.n)], [-(k / w**2), -(c / w)]]) for k, c in linear]
-    rates = np.concatenate([np.abs(np.linalg.eigvals(A)) for A in matrices])
+    rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
     followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
     return SmallSystem(
-        _clean(K) / w**2,
+        still.K / w**2,
         _clean(D) / w,
-        inverse @ local.load / w**2,
-        _clean(B),
-        _clean(inverse @ local.watched_vectors),
+        still.load / w**2,
+        still.clean_B,
+        still.W,
         rigid,
         carried,
-        L.T @ rest.q,
-        L,
+        still.rest,
+        still.root,
         energy,
         columns.scaled(w),
         own,
@@ -157,6 +210,16 @@ def small_system(
         float(followed.max(initial=0.0)),
         shapes,
     )
+
+
+def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:
+    """All |eigenvalues| (2 n,) of z'' = -K z - D z'."""
+    n = len(K)
+    A = np.zeros((2 * n, 2 * n))
+    A[:n, n:] = np.eye(n)
+    A[n:, :n] = -K
+    A[n:, n:] = -D
+    return np.abs(np.linalg.eigvals(A))
 
 
 def _carried(

@@ -19,7 +19,7 @@ from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.model.model import Model
 from rotorgear.solvers.batch.run_block import BatchPlan, Start, run_block
-from rotorgear.solvers.batch.small_system import small_system
+from rotorgear.solvers.batch.small_system import Still
 from tests.models import pair_file, spur_pair
 from tests.paths import ROOT
 from tests.unit.analysis.sweep.test_sweep_laws import ROLLING
@@ -224,7 +224,7 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
     M[:, last] = 0.0
     light = replace(own, local=replace(own.local, M=M.tocsc()))
     with pytest.raises(AnalysisError, match="no inertia"):
-        small_system(light.local, None, None, None, 1.0, 1)  # type: ignore[arg-type]
+        Still(light.local, None)  # type: ignore[arg-type]
     found = Reducer(0.01)([light], lambda size, error: None)[0]
     assert found[0].n < own.local.n
     assert ready_reduced(light, *found).static_force == pytest.approx(ready_reduced(own, *found).static_force, rel=1e-6)
