@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from rotorgear.gears.maps.map_positions import MapPositions
+from rotorgear.gears.geometry.flank import FlankModification
+from rotorgear.gears.maps.map_positions import MapPositions, errors_by_period, families, load_groups
 
 LOADS = 5
 WORKING = 3
@@ -50,3 +54,39 @@ def test_beside_kinks_other_loads_stay_straight() -> None:
     event[4] = True
     even, approach, _, _ = MapPositions(u, event).kept(values, values + 1.0, values, 1)
     np.testing.assert_allclose(approach[:, 2], np.interp(even, u, values[:, 2], period=1.0), rtol=1e-12)
+
+
+@pytest.mark.parametrize("near", [True, False])
+def test_loads_of_helical_pairs_are_three_times_as_close_about_the_working_one(near: bool) -> None:
+    spur_problem: Any = SimpleNamespace(one_slice=False, oblique=False)
+    helical_problem: Any = SimpleNamespace(one_slice=False, oblique=True)
+    coarse, fine = load_groups(spur_problem, near), load_groups(helical_problem, near)
+    flat = [0.0, *(load for group in coarse for load in group)]
+    assert flat[1:] == sorted(flat[1:])
+    expected = []
+    for group in coarse:
+        own: list[float] = []
+        for load in group:
+            before = flat[flat.index(load) - 1]
+            if before > 0.2 and load < 2.3:
+                own += [before + (load - before) / 3.0, before + (load - before) * 2.0 / 3.0]
+            own.append(load)
+        expected.append(own)
+    assert [list(group) for group in fine] == [pytest.approx(group) for group in expected]
+    # Of a spur pair slices are those of loads up to the working one, up to 2.5 times it, and above.
+    parts = families(spur_problem, coarse)
+    assert [part[-1][-1] for part in parts] == [pytest.approx(end) for end in ((1.0, 2.0) if near else (1.0, 2.2, 5.0))]
+    assert tuple(group for part in parts for group in part) == coarse
+    assert families(helical_problem, fine) == [fine]
+
+
+def test_periods_differ_while_a_wrong_tooth_can_touch() -> None:
+    """Pairs that can touch lie between the ends of the path, a corner and the whole face farther."""
+    line: Any = SimpleNamespace(start=10e-3, end=35e-3, base_pitch=14e-3, base_helix_angle=0.3)
+    flanks = (FlankModification(pitch_error=((5, 8e-6),)), FlankModification())
+    problem: Any = SimpleNamespace(line=line, width=40e-3, flanks=flanks, teeth=(34, 80))
+    found = errors_by_period(problem)
+    assert len(found) == 34
+    pairs = int(np.ceil((25e-3 + 14e-3 + 40e-3 * np.tan(0.3)) / 14e-3))
+    differ = [n for n, row in enumerate(found) if row != found[20]]
+    assert differ == [n for n in range(34) if abs((n - 5 + 17) % 34 - 17) <= pairs]
