@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.linalg as la
 
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import (
     ContactGeometry,
     Face,
     contact_vector,
+    equivalent_mass_general,
+    equivalent_mass_torsion,
     face_strains,
     flank_normal,
     gear_mesh,
@@ -194,3 +197,29 @@ def test_a_rigid_shaft_under_its_teeth_tilts_them_as_its_node_does() -> None:
     whole = np.concatenate([*motion, *ends])
     cut = face_strains(g, Face(0.004, 1e4, 0.04, (True, True))) @ whole
     assert cut == pytest.approx(face_strains(g, Face(0.004, 1e4)) @ whole[:12], rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_equivalent_mass_is_that_of_two_free_bodies_on_the_spring_of_the_mesh(seed: int) -> None:
+    """k v v^T x = w^2 M x has one frequency, w^2 = k/m_e; of bodies that only turn it is that of torsion."""
+    rng = np.random.default_rng(seed)
+    g = random_contact(rng)
+    first, second = rng.uniform(0.1, 3.0, (2, 6))
+    v = contact_vector(g)
+    M = np.diag(np.concatenate([first, second]))
+    k = 3e8
+    values = la.eigh(k * np.outer(v, v), M, eigvals_only=True)
+    assert values[-1] == pytest.approx(k / equivalent_mass_general(g, first, second), rel=1e-9)
+    assert np.abs(values[:-1]).max() < 1e-9 * values[-1]
+    heavy = np.full(6, 1e30)
+    turning = [np.append(heavy[:5], J) for J in (first[5], second[5])]
+    along = np.cos(g.base_helix_angle) ** 2
+    torsion = equivalent_mass_torsion(first[5], second[5], g.pinion_base_radius, g.gear_base_radius)
+    assert torsion == pytest.approx(along * equivalent_mass_general(g, *turning), rel=1e-9)
+    # r1 theta1 + r2 theta2 on one spring.
+    r = np.array([g.pinion_base_radius, g.gear_base_radius])
+    two = la.eigh(k * np.outer(r, r), np.diag([first[5], second[5]]), eigvals_only=True)
+    assert two[-1] == pytest.approx(k / torsion, rel=1e-9)
+    # A body without inertia where the mesh pushes gives way.
+    assert equivalent_mass_general(g, np.where(v[:6] == v[5], 0.0, first), second) == 0.0
+    assert equivalent_mass_torsion(0.0, 2.0, 0.1, 0.2) == 0.0
