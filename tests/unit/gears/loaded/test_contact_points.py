@@ -11,9 +11,9 @@ import pytest
 from scipy.integrate import trapezoid
 
 from rotorgear.gears.geometry.line_of_action import LineOfAction
-from rotorgear.gears.loaded.contact_points import Slices, contact_slices
+from rotorgear.gears.loaded.contact_points import Slices, contact_slices, patch_loads
 from rotorgear.gears.loaded.face import load_per_width
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line
 from rotorgear.gears.loaded.tooth_contact import line_of_action
 from tests.unit.gears.tooth_pairs import WIDTH, pair
 
@@ -152,3 +152,64 @@ def test_positions_stand_for_half_of_the_intervals_beside_them(periods: int) -> 
     values = np.random.default_rng(5).random(len(u))
     closed_u, closed = np.append(u, u[0] + periods), np.append(values, values[0])
     assert weight @ values == pytest.approx(trapezoid(closed, closed_u) / periods, rel=1e-12)
+
+
+@pytest.mark.parametrize("gear", [0, 1])
+def test_patches_are_semi_ellipses_of_unit_load_about_their_slices(gear: int) -> None:
+    """Sum 1, centre at the slice, mean square c^2/4 across: elements of second order integrate these exactly."""
+    module, base = 4e-3, 17.0
+    arc = np.linspace(0.5, 4.5, 41)  # nodes across the flank, in modules along its arc xi^2/(2 r_b)
+    height = np.linspace(-3.0, 3.0, 9)
+    body: Any = SimpleNamespace(
+        base_radius=base,
+        flank_start=math.sqrt(2.0 * base * arc[0]),
+        flank_end=math.sqrt(2.0 * base * arc[-1]),
+        roll=np.sqrt(2.0 * base * arc),
+        height=height,
+    )
+    centre = np.array([[2.0, 2.1, 2.2], [0.6, 0.61, 0.62], [3.3, 3.2, 3.1]])
+    z = 1e-3 * np.array([[-9.0, -8.0, -7.0], [1.0, 2.5, 4.0], [6.0, 6.5, 7.0]])
+    weight = np.array([5.0, 8.0, 5.0]) / 18.0
+    roll = np.sqrt(2.0 * base * centre) * module
+
+    class Three(SimpleNamespace):
+        def __len__(self) -> int:
+            return 3
+
+    slices: Any = Three(roll=np.stack([roll, roll]), z=z, weight=weight)
+    least, most = np.array([0.05, 0.05, 0.4]), 0.3
+    found = patch_loads(slices, gear, body, module, least, most)
+    loads = found.loads.reshape(3, len(height), len(arc))
+    assert loads.sum(axis=(1, 2)) == pytest.approx(np.ones(3), rel=1e-12)
+    # As wide as the flank leaves room, at least and at most so much.
+    c = np.clip(np.minimum(centre - arc[0], arc[-1] - centre), least[:, None], np.maximum(least, most)[:, None])
+    assert c[:, 0] == pytest.approx([0.3, 0.1, 0.4])
+    assert found.log_width == pytest.approx(np.log(c) @ weight, rel=1e-12)
+    across = loads.sum(axis=1)
+    assert across @ arc == pytest.approx(centre @ weight, rel=1e-12)
+    assert across @ arc**2 == pytest.approx((centre**2 + 0.25 * c**2) @ weight, rel=1e-9)
+    # Along the face the place of the slice; the gear's face runs the other way.
+    along = loads.sum(axis=2)
+    side = 1.0 if gear == 0 else -1.0
+    assert along @ height == pytest.approx(side * (z / module) @ weight, rel=1e-9)
+    ends = side * z / module
+    for row in range(3):
+        low, high = found.layers[row]
+        assert height[2 * low] <= ends[row].min() <= height[2 * low + 2]
+        assert height[2 * high] <= ends[row].max() <= height[2 * high + 2]
+    # Displacements of the slices by a flexibility of the nodes are those of whole matrices.
+    G = np.random.default_rng(1).normal(size=(found.loads.shape[1],) * 2)
+    assert found.moved(G, np.array([2, 0])) == pytest.approx(found.loads[[2, 0]] @ G, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("approach", [2e-6, 15e-6])
+def test_corners_can_touch_as_far_as_their_gap_is_the_approach(approach: float) -> None:
+    line = line_of(20.86)
+    problem: Any = SimpleNamespace(line=line)
+    before, after = beyond_line(problem, approach)
+    step = 0.45 * line.base_pitch / 400
+    for gear, reach in ((1, before), (0, after)):
+        assert line.corner(gear, np.array([reach]))[0][0] >= approach
+        assert line.corner(gear, np.array([reach - step]))[0][0] < approach
+    # No farther than corners are followed at all.
+    assert beyond_line(problem, 1.0) == pytest.approx((0.45 * line.base_pitch, 0.45 * line.base_pitch))
