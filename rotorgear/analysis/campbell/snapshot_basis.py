@@ -24,6 +24,7 @@ from rotorgear.analysis.modal.solve import Wanted, group_notes, solve, with_moda
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.solvers.eigen.one_to_one import least_cost
 from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, eigen
 from rotorgear.solvers.eigen.undamped_basis import ScaledBasis
 from rotorgear.system.components import dof_motions
@@ -242,8 +243,6 @@ class SpeedModes:
 
     def _error(self, true: Snapshot) -> float:
         """Largest relative error of the asked eigenvalues at a speed, each with a partner of its own."""
-        from scipy.optimize import linear_sum_assignment
-
         found = self.damped(np.concatenate([np.zeros(0), *(part.s for part in self.at(true.speed))]))
         asked = true.s[: max(self.reach.inside(np.abs(true.s)), 1)]
         if len(found) < len(asked):
@@ -251,7 +250,7 @@ class SpeedModes:
         if not len(asked):
             return 0.0
         distance = np.abs(found - asked[:, None]) / np.abs(asked)[:, None]
-        rows, columns = linear_sum_assignment(np.minimum(distance, 1.0))
+        rows, columns = least_cost(np.minimum(distance, 1.0))
         return float(distance[rows, columns].max(initial=0.0))
 
 

@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rotorgear.solvers.eigen.one_to_one import least_cost
+
 # 105 on 100 is within 5 %, although 105 / 100 - 1 rounds to more than 0.05.
 ROUNDING = 1e-12
 
@@ -30,15 +32,13 @@ def assign(measured: ArrayLike, computed: ArrayLike, tolerance: float) -> list[t
         computed: positive numbers in any order, shape (f,).
         tolerance: t, between 0 and 1.
     """
-    from scipy.optimize import linear_sum_assignment
-
     errors = relative_errors(measured, computed)
     if errors.size == 0:
         return []
     admissible = np.abs(errors) <= tolerance + ROUNDING
     # One inadmissible pair costs more than all admissible ones together: so their number is as large as possible.
     outside = 1.0 + min(errors.shape) * miss_cost(tolerance + ROUNDING)
-    rows, columns = linear_sum_assignment(np.where(admissible, np.abs(np.log1p(errors)), outside))
+    rows, columns = least_cost(np.where(admissible, np.abs(np.log1p(errors)), outside))
     kept = admissible[rows, columns]
     rows = rows[kept]
     columns = columns[kept]

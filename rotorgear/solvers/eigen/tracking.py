@@ -18,6 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.solvers.eigen.one_to_one import least_cost
 from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, clusters
 
 AMBIGUOUS = 0.3  # best cost over second best, above which a step is too long
@@ -38,8 +39,6 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> tuple[np.ndarra
     Returns:
         The number at b of each mode at a, (m_a,), -1 where it has none; and whether its link makes the step too long, (m_a,).
     """
-    from scipy.optimize import linear_sum_assignment
-
     if not len(a.s) or not len(b.s):
         return np.full(len(a.s), -1), np.zeros(len(a.s), bool)
     slope = Pencil(0.0 * a.pencil.M, (b.pencil.D - a.pencil.D) / length, (b.pencil.K - a.pencil.K) / length)
@@ -61,7 +60,7 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> tuple[np.ndarra
     size = 0.5 * (np.abs(a.s)[:, None] + np.abs(b.s))
     mismatch = np.abs(b.s - a.s[:, None] - 0.5 * length * (rate_a[:, None] + rate_b)) / size
     cost = (1.0 - mac) + np.minimum(mismatch / MISMATCH, 10.0) * 0.1
-    rows, columns = linear_sum_assignment(cost)
+    rows, columns = least_cost(cost)
     partner = np.full(len(a.s), -1)
     partner[rows] = columns
 
