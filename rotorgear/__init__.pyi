@@ -9,6 +9,7 @@ from rotorgear.model.load import schema as schema
 from rotorgear.rexs.import_rexs import import_rexs as import_rexs
 from rotorgear.model.shipped import models as models
 from rotorgear.export.model_files import new as new
+from rotorgear.model.text import changed_text as changed_text
 from rotorgear.model.model import Model as Model
 from rotorgear.model.parts.operation import Operation as Operation
 from rotorgear.model.parts.load import Load as Load

@@ -16,7 +16,9 @@ from rotorgear.extras import require
 from rotorgear.files.bounds import MODEL
 from rotorgear.files.read import read_text
 from rotorgear.files.write import written
+from rotorgear.model.model import Model
 from rotorgear.model.shipped import models, shipped_model
+from rotorgear.model.text import below
 from rotorgear.results.optimise import OptimiseResult, value_words
 from rotorgear.results.rexs_import import RexsImport
 from rotorgear.results.update import UpdateResult
@@ -91,8 +93,8 @@ def scaled_text(
         *owners, last = re.sub(r"\[(\d+)\]", r".\1", address).split(".")
         owner: Any = document
         for key in owners:
-            owner = _below(owner, key, address)
-        old = _below(owner, last, address)
+            owner = below(owner, key, address)
+        old = below(owner, last, address)
         place: Any = int(last) if isinstance(owner, list) else last
         comment = old.trivia.comment.lstrip("# ") if hasattr(old, "trivia") else ""
         fixed = (texts or {}).get(address)
@@ -109,13 +111,6 @@ def _stays(value: Any) -> bool:
         return not isinstance(value, dict | list) and float(value) == 0.0
     number = _NUMBER.match(value)
     return number is None or float(number[0]) == 0.0
-
-
-def _below(owner: Any, key: str, address: str) -> Any:
-    try:
-        return owner[int(key)] if isinstance(owner, list) else owner[key]
-    except (KeyError, IndexError, ValueError, TypeError):
-        raise AnalysisError(f"{address}: the file does not spell this value out: it can't be written there") from None
 
 
 def _times(value: Any, factor: float, address: str) -> Any:
@@ -177,17 +172,17 @@ def write_optimised_model(result: OptimiseResult, source: str | Path, path: str 
     return _write(path, scaled_text(read_text(source, MODEL.most_bytes), factors, remarks, texts))
 
 
-def write_model_file(result: RexsImport, path: str | Path) -> Path:
-    """Write the model file that `import_rexs` made, with its comments.
+def write_model_file(result: RexsImport | Model, path: str | Path) -> Path:
+    """Write the model file that `import_rexs` made, with its comments, or that of a model (`Model.to_toml`).
 
     Args:
-        result: of `import_rexs`.
+        result: of `import_rexs`, or a model.
         path: of the file, such as "gearbox.toml".
 
     Raises:
-        WriteError: the file can't be written.
+        WriteError: the file can't be written. MissingExtraError: tomlkit is not installed, for a model.
     """
-    return _write(path, result.toml)
+    return result.to_toml(path) if isinstance(result, Model) else _write(path, result.toml)
 
 
 def _write(path: str | Path, text: str) -> Path:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from rotorgear.files.bounds import LONGEST_TEXT, MODEL
 from rotorgear.files.read import UnreadableError, read_text
 from rotorgear.files.toml import long_texts, tables_of
 from rotorgear.model.model import SCHEMA_VERSION, Model
+from rotorgear.model.named_files import with_named_files
 from rotorgear.model.parts.problems import address, shown
 from rotorgear.model.spreads import scatter_problems
 from rotorgear.quantity import nearest
@@ -65,7 +65,7 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
     ]
     if long:
         raise ModelError(long, source)
-    _find_files(data, Path(folder))
+    with_named_files(data, lambda name: str(Path(folder) / name))
     try:
         model = Model(**data)
     except ModelError as error:
@@ -73,31 +73,8 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
     problems = scatter_problems(model) if model.scatter else []
     if problems:
         raise ModelError(problems, source)
+    model.remember(text, folder)
     return model
-
-
-def _find_files(data: dict[str, Any], folder: Path) -> None:
-    """Let the files that a model names be looked for beside the model file, not where the program runs."""
-
-    def parts(name: str) -> Iterable[Any]:
-        table = data.get(name)
-        return table.values() if isinstance(table, dict) else ()
-
-    def find(table: Any, *keys: str) -> None:
-        for key in keys if isinstance(table, dict) else ():
-            if isinstance(table.get(key), str):
-                table[key] = str(folder / table[key])
-
-    for gear in parts("gears"):
-        if isinstance(gear, dict):
-            find(gear.get("flank"), "topography")
-            find(gear.get("body"), "mesh")
-    for load in parts("loads"):
-        find(load, "history")
-    for casing in parts("casings"):
-        find(casing, "mesh", "matrices")
-        if isinstance(casing, dict) and isinstance(casing.get("mesh"), dict):
-            find(casing["mesh"], *casing["mesh"])
 
 
 def _refused(path: Path, text: str, hint: str = "") -> ModelError:

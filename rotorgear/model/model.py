@@ -109,7 +109,35 @@ class Model(Tables):
             ModelError: an address that leads nowhere, or values that don't fit, all at once.
         """
         values = {address: value} if isinstance(address, str) else address
-        return Model(**with_values(self, values))
+        changed = Model(**with_values(self, values))
+        if self.source is not None:
+            changed.remember(*self.source)
+        return changed
+
+    @property
+    def source(self) -> tuple[str, str] | None:
+        """The text of the file that the model, or what it was made of, came from, and its folder; None without one."""
+        return self.__dict__.get("_source_text")
+
+    def remember(self, text: str, folder: str | Path) -> None:
+        """Keep the text of the file that the model came from: no part of the model, but of what `to_toml` writes."""
+        self.__dict__["_source_text"] = (text, str(folder))
+
+    def to_toml(self, path: str | Path) -> Path:
+        """Write the model as a file that reads as the same model.
+
+        Of a model that came from a file, or that `with_` made of one, comments, order and units stay, and only what differs is
+        written anew; another model is written in SI.
+
+        Args:
+            path: of the file, such as "gearbox.toml".
+
+        Raises:
+            WriteError: the file can't be written. MissingExtraError: tomlkit is not installed.
+        """
+        from rotorgear.model.text import write_model  # what reads a model need not know how one is written
+
+        return write_model(self, path, self.source)
 
     def __repr__(self) -> str:
         return f"Model({self.title!r}: {self._counts()})"
