@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import rotorgear as rg
 from rotorgear.model.layout.assembly import tooth_numbers
@@ -124,17 +125,21 @@ def test_phases_of_the_same_teeth_do_not_depend_on_which_gear_is_called_pinion()
     assert np.abs(apart(rg.static(model).mesh_phase["pair"], rg.static(other).mesh_phase["pair"])) < 1e-9
 
 
-def central(teeth: int, others: list[tuple[int, float]], is_pinion: bool, shift: float) -> rg.Model:
-    """A gear with one wrong tooth among others at some angles about it, all with loaded teeth of 4 mm."""
+def central(teeth: int, others: list[tuple[int, float, float]], is_pinion: bool) -> rg.Model:
+    """A gear with one wrong tooth among others (teeth, angle, profile shift) about it, all with loaded teeth of 4 mm."""
     spring = {"stiffness": {"radial": 1e9, "axial": 1e9, "tilt": 1e7}}
     shafts: dict[str, Any] = {"middle": {"position": [0.0, 0.0]}}
-    own = {**GEAR, "profile_shift": shift, "flank": {"pitch_errors": {"0": "5 um"}}}
+    own = {**GEAR, "flank": {"pitch_errors": {"0": "5 um"}}}
     gears: dict[str, Any] = {"middle": {"shaft": "middle", "teeth": teeth, **own}}
     meshes = {}
-    for k, (z, angle) in enumerate(others):
-        distance = 0.002 * (teeth + z)
+    alpha = math.radians(20.0)
+    for k, (z, angle, shift) in enumerate(others):
+        # Without backlash: inv(alpha_w) = inv(alpha) + 2 x tan(alpha)/(z_1 + z_2).
+        wanted = math.tan(alpha) - alpha + 2.0 * shift * math.tan(alpha) / (teeth + z)
+        working = brentq(lambda a, wanted=wanted: math.tan(a) - a - wanted, 0.2, 0.6)
+        distance = 0.002 * (teeth + z) * math.cos(alpha) / math.cos(working)
         shafts[f"s{k}"] = {"position": [distance * math.cos(angle), distance * math.sin(angle)]}
-        gears[f"g{k}"] = {"shaft": f"s{k}", "teeth": z, **GEAR, "profile_shift": -shift}
+        gears[f"g{k}"] = {"shaft": f"s{k}", "teeth": z, **GEAR, "profile_shift": shift}
         pinion, gear = ("middle", f"g{k}") if is_pinion else (f"g{k}", "middle")
         meshes[f"m{k}"] = {"pinion": pinion, "gear": gear, "stiffness": "tooth_fe"}
     return rg.Model(
@@ -153,8 +158,8 @@ def test_maps_of_a_gear_with_a_wrong_tooth_begin_with_the_teeth_that_stand_there
     is_pinion: bool, drives: bool, direction: int
 ) -> None:
     """Tooth by tooth: the last one whose carrying flank has passed the pitch point, in the order in which they come there."""
-    teeth, others = 23, [(31, 0.4), (37, 2.9), (29, -1.7)]
-    layout = central(teeth, others, is_pinion, 0.3).layout
+    teeth, others = 23, [(31, 0.4, 0.3), (37, 2.9, -0.2), (29, -1.7, 0.1)]
+    layout = central(teeth, others, is_pinion).layout
     # Sense of rotation of the middle gear: the reference shaft is its own, or that of the first other gear.
     sense = direction if is_pinion else -direction
     pinion_drives = drives == is_pinion
@@ -167,7 +172,7 @@ def test_maps_of_a_gear_with_a_wrong_tooth_begin_with_the_teeth_that_stand_there
     assert geometry is not None
     pitch = 2.0 * math.pi / teeth
     numbers = []
-    for k, (_, angle) in enumerate(others):
+    for k, (_, angle, _) in enumerate(others):
         mesh = layout.mesh(f"m{k}")
         # Half the tooth at the working circle; without backlash both halves of a pair are half a pitch.
         working = 2.0 * geometry.base_radius / math.cos(mesh.pressure_angle)

@@ -11,7 +11,7 @@ from rotorgear.forces.plain_spring import PlainSpring
 from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.solvers.periodic.arclength import at_value
 from rotorgear.solvers.periodic.balance import HarmonicGrid
-from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
+from rotorgear.solvers.periodic.harmonic_orbits import _BASES, _CONTACTS, HarmonicOrbits
 from rotorgear.solvers.periodic.plant import Plant, Plants
 from rotorgear.solvers.periodic.samples import spectrum
 from validation.oscillators import local_system
@@ -84,6 +84,8 @@ def test_a_motion_is_one_of_twice_its_period_and_of_more_harmonics(solved: tuple
     orbits, y = solved
     double = orbits.doubled()
     assert (double.grid.harmonics, double.grid.instants, double.grid.order) == (10, 64, 0.5)
+    # Of a period that comes twice in a turn, once.
+    assert HarmonicOrbits(plant_at, HarmonicGrid(2, 8, 2.0), orbits.scale).doubled().grid.order == 1.0
     wide = orbits.twice(y, double)
     assert np.abs(double.residual(wide, 0.3)).max() < 1e-6
     # Every other harmonic is that of the motion, and the others are zero.
@@ -109,3 +111,28 @@ def test_unknowns_of_samples_are_those_of_the_motion(solved: tuple[HarmonicOrbit
     spring = start[0, 2].real
     K = STIFFNESS + np.diag([0.0, 0.0, 1e7 + 2e16 * spring**2])
     assert np.linalg.solve(K, LOAD)[2] == pytest.approx(spring, rel=1e-6)
+
+
+def test_a_large_basis_reaches_beyond_what_a_contact_alone_would_vibrate_at() -> None:
+    """80 masses in a chain; a contact of 5e9 N/m between one of 2 kg and the ground: sqrt(k/m), well above the excitation."""
+    n = 80
+    mass = np.ones(n)
+    mass[30] = 2.0
+    chain = 1e10 * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    law = PlainSpring(5e9, damping=50.0)
+
+    def plant(p: float) -> Plant:
+        return Plants().of(
+            local_system(np.diag(mass), 1e-6 * chain, chain, [1.0] * n, [(law, np.eye(n)[:, [30]])], 200.0 + p)
+        )
+
+    basis = HarmonicOrbits(plant, HarmonicGrid(3, 16, 1.0), np.array([1e-6])).modes(0.0)
+    own = np.sqrt(5e9 / 2.0)
+    assert basis.highest >= _CONTACTS * own > _BASES * 200.0
+    assert not basis.complete
+    assert basis.count < n
+    # Orthonormal in M, with the static shape of the contact in it.
+    assert basis.V.T @ np.diag(mass) @ basis.V == pytest.approx(np.eye(basis.V.shape[1]), abs=1e-8)
+    still = np.linalg.solve(plant(0.0).K.toarray(), np.eye(n)[:, 30])
+    inside = basis.V @ (basis.V.T @ (mass * still))
+    assert inside == pytest.approx(still, abs=1e-8 * np.abs(still).max())

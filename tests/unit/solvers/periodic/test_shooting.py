@@ -47,6 +47,14 @@ def test_the_unknowns_of_a_motion_are_its_displacements_and_velocities_and_the_c
     np.testing.assert_allclose(orbits.state(y, 0.4), (q, v), rtol=1e-12)
     cycle = orbits.cycle(y, 0.4)
     np.testing.assert_allclose(cycle.at.d[0], [q[2], *q[:2]], rtol=1e-9)
+    np.testing.assert_allclose(cycle.at.v[0], [v[2], *v[:2]], rtol=1e-9)
+    # Over two periods it begins alike, and goes on from where the first one ends.
+    double = orbits.doubled()
+    both = double.cycle(orbits.twice(y, double), 0.4)
+    assert both.period == 2.0 * cycle.period
+    np.testing.assert_allclose(both.at.d[:64], cycle.at.d, rtol=1e-7, atol=1e-15)
+    np.testing.assert_allclose(both.at.v[:64], cycle.at.v, rtol=1e-6, atol=1e-12)
+    assert both.displacement.shape == (7, 3)
     # Velocities are the rates of displacements, by differences over a small part of the period.
     fine = orbits.cycle(y, 0.4, 20_000)
     step = fine.period / 20_000
