@@ -140,8 +140,20 @@ def grid_of(
     if count * every > MOST_STEPS:
         raise AnalysisError(
             f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
+            + ("" if steps else _of_stiff_contact(task, rates))
         )
     return Grid(spacing, count, round(settle / spacing), every, _kept(task, count, records)), fastest
+
+
+def _of_stiff_contact(task: Task, rates: np.ndarray) -> str:
+    """What makes automatic steps short, and what to do about it; `rates` (m,) in rad/s of the local displacements."""
+    column = int(np.argmax(rates))
+    part = task.local.parts[int(np.searchsorted(task.local.local.forces.first, column, side="right")) - 1]
+    remedy = "take stiffness = 'rigid' for teeth that are stiff beside all else" if part.is_mesh else "soften it"
+    return (
+        f" (steps), which method = 'newmark' stays stable with: they are so short because {part.part} vibrates at "
+        f"{rates[column] / (2.0 * np.pi):.3g} Hz on the inertia that it meets; {remedy}"
+    )
 
 
 def history_bytes(task: Task, records: int) -> float:

@@ -230,3 +230,11 @@ def test_keys_of_teeth_that_give_are_refused_beside_rigid() -> None:
     (problem,) = error.value.problems
     assert problem.address == "meshes.stage.damping_ratio"
     assert "stay in touch exactly" in str(problem)
+
+
+def test_a_stiff_mesh_that_asks_for_too_many_steps_is_named_with_its_remedy() -> None:
+    data = thruster(1e16)
+    for gear in data["gears"].values():
+        gear["polar_inertia"] = 1e-6
+    with pytest.raises(rg.AnalysisError, match=r"because meshes\.m1\d vibrates at .* take stiffness = 'rigid'"):
+        rg.transient(rg.Model(**data), time="10 s", discard="0 s")
