@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.operation import ModelDamping
 from rotorgear.model.parts.tables import Tables
@@ -37,12 +38,16 @@ class Cut:
         name: of the point. part: address of the part that is cut.
         dofs: numbers (12,) of the dofs of its element at both ends.
         row: (12,) the load from the forces at these dofs.
+        component: number of the load in Fx Fy Fz Mx My Mz.
+        rigid: whether it is a rigid coupling, whose load equilibrium alone gives.
     """
 
     name: str
     part: str
     dofs: np.ndarray
     row: np.ndarray
+    component: int = 0
+    rigid: bool = False
 
     def element(self, groups: Sequence[ElementGroup]) -> tuple[int, int]:
         """Number of the group among some that holds its element, and number of the element in it."""
@@ -82,7 +87,8 @@ def _cut(layout: Layout, nodes: Nodes, name: str) -> Cut:
         dofs, relative = relative_motion(layout, nodes, point.on)
         # A unit of relative displacement by the second end alone does the work of the load.
         row[6:] = np.linalg.inv(relative[:, 6:])[:, k]
-        return Cut(name, point.on, dofs, row)
+        rigid = layout.model.couplings[point.on.removeprefix("couplings.")].rigid
+        return Cut(name, point.on, dofs, row, k, rigid)
     place = layout.place(f"points.{name}")
     node = nodes.at(*place)
     sections = layout.model.shafts[place.shaft].sections
@@ -137,8 +143,18 @@ class LoadRows:
 
 
 def load_rows(system: System, speed: float = 0.0) -> LoadRows:
-    """Rows of all points that read a load on the free dofs of a system, at a reference speed in rad/s."""
+    """Rows of all points that read a load on the free dofs of a system, at a reference speed in rad/s.
+
+    Raises:
+        AnalysisError: a rigid coupling, which has no strains.
+    """
     every = cuts(system.layout, system.nodes)
+    for cut in every:
+        if cut.rigid:
+            raise AnalysisError(
+                f"points.{cut.name}: the load in a rigid coupling is known in statics only; read it in the shaft or coupling "
+                "beside it, or give this one a stiffness"
+            )
     groups = system.groups_at(speed) if every else []
     T = system.dofs.transform
     gravity = system.model.operation.gravity if system.model.operation else None

@@ -22,7 +22,7 @@ from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
 from rotorgear.system.planets import PinLoad, pin_loads, planet_groups, turning_carriers
-from rotorgear.system.rigid_members import RigidContacts, rigid_contacts, without_rigid
+from rotorgear.system.rigid_members import Conditions, conditions, without_rigid
 
 
 @dataclass(frozen=True)
@@ -139,16 +139,16 @@ class System:
     @cached_property
     def dofs(self) -> DofMap:
         """Which of their displacements are degrees of freedom, and how the others follow."""
-        return without_rigid(self._without_conditions, self.rigid_contacts)
+        return without_rigid(self._without_conditions, self.conditions)
 
     @cached_property
     def _without_conditions(self) -> DofMap:
         return map_dofs(self.layout, self.nodes)
 
     @cached_property
-    def rigid_contacts(self) -> RigidContacts:
-        """The contacts of meshes whose teeth do not give."""
-        return rigid_contacts(self.layout, self.nodes, self._without_conditions, self.state.rigid)
+    def conditions(self) -> Conditions:
+        """What rigid meshes and couplings keep at zero."""
+        return conditions(self.layout, self.nodes, self._without_conditions, self.state.rigid)
 
     @property
     def train(self) -> Train:

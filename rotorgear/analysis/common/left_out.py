@@ -202,7 +202,7 @@ def _dofs(system: System) -> Iterator[Note]:
     for how, count in (
         ("held fixed by supports", held["supports"]),
         ("tied by rigid sections", held["rigid sections"]),
-        ("taken away by rigid meshes", held.get("rigid meshes", 0)),
+        ("taken away by rigid meshes and couplings", held.get("rigid members", 0)),
     ):
         if count:
             yield Note("", f"{count} dofs {how}")

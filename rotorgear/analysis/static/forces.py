@@ -172,15 +172,16 @@ def element_forces(equilibrium: Equilibrated) -> Iterator[tuple[np.ndarray, np.n
 
 
 def inner_forces(equilibrium: Equilibrated) -> np.ndarray:
-    """Sum of the forces of all elements and rigid meshes on all dofs, (a,)."""
+    """Sum of the forces of all elements and rigid members on all dofs, (a,)."""
     total = _of_elements(equilibrium)
-    contacts = equilibrium.system.rigid_contacts
-    return total + contacts.rows.T @ contacts.forces(equilibrium.loads - total)
+    kept = equilibrium.system.conditions
+    return total + kept.rows.T @ kept.forces(equilibrium.loads - total)
 
 
 def rigid_forces(equilibrium: Equilibrated) -> np.ndarray:
     """Force along the flank normal of each contact of a rigid mesh, (m,): below 0 on the flank behind."""
-    return equilibrium.system.rigid_contacts.forces(equilibrium.loads - _of_elements(equilibrium))
+    kept = equilibrium.system.conditions
+    return kept.forces(equilibrium.loads - _of_elements(equilibrium))[kept.of_meshes]
 
 
 def _of_elements(equilibrium: Equilibrated) -> np.ndarray:

@@ -52,9 +52,27 @@ def internal_loads(equilibrium: Equilibrated) -> tuple[np.ndarray, np.ndarray]:
         ]
         before = loads
         loads = np.array([cut.load(forces[g][1][e]) for cut, (g, e) in zip(every, at, strict=True)]) - beside
+        loads = _in_rigid(equilibrium, every, forces, loads)
         change = np.abs(loads - before)
     largest = max(float(np.abs(force).max(initial=0.0)) for _, force in forces)
     return loads, change + _SUMS * EPS * largest
+
+
+def _in_rigid(
+    equilibrium: Equilibrated, every: Sequence[Cut], forces: list[tuple[np.ndarray, np.ndarray]], loads: np.ndarray
+) -> np.ndarray:
+    """Loads (p,) with those in rigid couplings, which the forces of all elements lack for equilibrium."""
+    if not any(cut.rigid for cut in every):
+        return loads
+    missing = equilibrium.loads.copy()
+    for dofs, force in forces:
+        np.add.at(missing, dofs, -force)
+    kept = equilibrium.system.conditions
+    found = [
+        kept.load(cut.part, cut.component, missing) if cut.rigid else load
+        for cut, load in zip(every, loads, strict=True)
+    ]
+    return np.array(found)
 
 
 def _on_the_same(wanted: np.ndarray, dofs: np.ndarray, force: np.ndarray) -> np.ndarray:

@@ -171,7 +171,7 @@ def _result(equilibrium: Equilibrated, speed: float | None, estimate: float) -> 
         carries=equilibrium.presses,
         mesh_force=equilibrium.force,
         mesh_force_on_gear=forces_on_gears(equilibrium),
-        rigid_mesh=system.rigid_contacts.names,
+        rigid_mesh=rigid_meshes(system),
         rigid_mesh_force=rigid_forces(equilibrium),
         mesh_stiffness=equilibrium.lines.stiffness,
         mesh_deflection=np.where(equilibrium.closed, approach, 0.0),
@@ -239,6 +239,11 @@ def _face_rows(equilibrium: Equilibrated) -> tuple[MeshFace, ...]:
     return tuple(rows)
 
 
+def rigid_meshes(system: System) -> tuple[str, ...]:
+    """The mesh of each contact of rigid ones."""
+    return tuple(force.contact.mesh for force in system.state.rigid)
+
+
 def phases_in_pitches(load: State) -> dict[str, float]:
     """Phase of each mesh in pitches, 0 to 1; NaN where teeth are missing."""
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
@@ -264,8 +269,7 @@ def _warnings(equilibrium: Equilibrated, faces: tuple[MeshFace, ...]) -> list[No
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
             notes.append(Note(which, "carries on the other flank than the torque flow in torsion says"))
     what = "carries on the other flank than the torque flow in torsion says, on which a rigid mesh stays"
-    contacts = equilibrium.system.rigid_contacts
-    rigid = zip(contacts.names, rigid_forces(equilibrium), strict=True)
+    rigid = zip(rigid_meshes(equilibrium.system), rigid_forces(equilibrium), strict=True)
     notes += [Note(f"meshes.{mesh}", what, "give it a stiffness") for mesh, force in rigid if force < 0.0]
     what = "closes a loop that can't be put together with the clockings given"
     why = "leave out the clocking of one of its gears and it closes the loop"

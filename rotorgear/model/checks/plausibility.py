@@ -242,7 +242,7 @@ def _couplings(layout: Layout) -> Iterator[Judged]:
     speed = abs(operation.speed or 0.0)
     torque = operation.torque or (operation.power / speed if operation.power and speed else 0.0)
     for name, coupling in layout.model.couplings.items():
-        stiffness = coupling.stiffness.as_rows()[5][5]
+        stiffness = 0.0 if coupling.rigid else coupling.torsional_stiffness
         ratio = abs(float(layout.train.ratio(coupling.from_shaft)))
         if stiffness > 0.0 and ratio:
             twist = torque / ratio / stiffness

@@ -8,7 +8,7 @@ from itertools import islice, pairwise
 from rotorgear.errors import AnalysisError, Problem
 from rotorgear.model.checks.names import unknown
 from rotorgear.model.parts.gear import Gear
-from rotorgear.model.parts.problems import shown, told
+from rotorgear.model.parts.problems import not_default, shown, told
 from rotorgear.model.parts.references import ON_SHAFTS
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
@@ -90,6 +90,13 @@ def matrices(model: Tables) -> Iterator[Problem]:
         yield from six_by_six(address, element.stiffness, element.damping)
         yield from _table(address, element.table)
     for name, coupling in model.couplings.items():
+        given = not_default(coupling, ("stiffness", "damping"))
+        wanted = "a stiffness, or rigid = true"
+        yield from told(
+            f"couplings.{name}",
+            ("stiffness", not (coupling.rigid or coupling.stiffness), "", "missing", f"required: {wanted}"),
+            *((key, coupling.rigid, f"a {key} beside rigid", "one of the two") for key in given),
+        )
         yield from six_by_six(f"couplings.{name}", coupling.stiffness, coupling.damping)
 
 

@@ -28,6 +28,8 @@ from rotorgear.model.parts.tables import Tables
 
 # Pitches by which a loop may miss: beyond, the tips of teeth meet tips.
 MOST_MISSED = 0.25
+# Of rigid couplings in the torque flow, N m/rad: far above those of steel, and far below what numbers can hold.
+STIFF_IN_TORSION = 1e10
 
 if TYPE_CHECKING:
     import numpy as np
@@ -275,9 +277,16 @@ class Layout:
 
     @cached_property
     def turning_couplings(self) -> tuple[tuple[Place, Place, float], ...]:
-        """Ends and torsional stiffness (N m/rad) of the couplings that make both shafts turn at one speed."""
+        """Ends and torsional stiffness (N m/rad) of the couplings that make both shafts turn at one speed.
+
+        Of rigid ones one that is stiff beside all others, by which the torque flow finds the flanks.
+        """
         return tuple(
-            (self.at(c.from_shaft, c.from_at), self.at(c.to_shaft, c.to_at), c.stiffness.as_rows()[5][5])
+            (
+                self.at(c.from_shaft, c.from_at),
+                self.at(c.to_shaft, c.to_at),
+                min(c.torsional_stiffness, STIFF_IN_TORSION),
+            )
             for c in self.model.couplings.values()
             if c.turns_both
         )

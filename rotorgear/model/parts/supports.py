@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal
@@ -13,7 +14,7 @@ from rotorgear.model.parts.bearings.geometry import BearingGeometry, Oil
 from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
-from rotorgear.model.parts.fields import Part, Station
+from rotorgear.model.parts.fields import Flag, Part, Station
 from rotorgear.model.parts.problems import class_at
 from rotorgear.quantity import QuantityError, parse_in_unit
 
@@ -182,19 +183,29 @@ class Support(Part):
 
 
 class Coupling(Part):
-    """A flexible coupling between two coaxial points: shaft ends, gear halves, or an inner and an outer shaft."""
+    """A coupling between two coaxial points: shaft ends, gear halves, or an inner and an outer shaft."""
 
     from_shaft: str = Field(description="name of the first shaft")
     from_at: Station = Field("end", description="z on the first shaft; default: its end")
     to_shaft: str = Field(description="name of the second shaft")
     to_at: Station = Field("start", description="z on the second shaft; default: its start")
-    stiffness: StiffnessMatrix = Field(description="stiffness; with a torsional one, both shafts turn at one speed")
+    stiffness: StiffnessMatrix | None = Field(
+        None, description="stiffness; with a torsional one, both shafts turn at one speed"
+    )
     damping: DampingMatrix | None = Field(None, description="damping")
+    rigid: Flag = Field(False, description="true: both ends move as one body, in place of a stiffness")
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """Of a rigid one infinite, in N m/rad."""
+        if self.rigid:
+            return math.inf
+        return 0.0 if self.stiffness is None else self.stiffness.as_rows()[5][5]
 
     @property
     def turns_both(self) -> bool:
         """Whether its torsional stiffness makes both shafts turn at one speed."""
-        return self.stiffness.as_rows()[5][5] > 0.0
+        return self.torsional_stiffness > 0.0
 
 
 ElementDof = Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion"]

@@ -86,7 +86,7 @@ def test_each_rigid_mesh_takes_one_dof_away_and_frequencies_are_those_of_stiff_t
     found = rg.modal(rigid, modes=8)
     assert found.dofs == 22
     assert rg.modal(stiff, modes=8).dofs == 24
-    assert any("taken away by rigid meshes" in str(note) for note in found.left_out)
+    assert any("taken away by rigid meshes and couplings" in str(note) for note in found.left_out)
     # Of a chain by itself, with inertias and springs referred to the first shaft.
     ratio = np.cumprod([1.0, *(1.0 / STAGES.get(number, 1) for number in range(1, 22))])
     M = np.diag(np.array(INERTIA) * ratio**2)
@@ -219,7 +219,7 @@ def test_a_loop_of_rigid_meshes_is_refused() -> None:
     for shaft in stiff["shafts"].values():
         for section in shaft.get("sections", ()):
             section["rigid"] = True
-    with pytest.raises(rg.AnalysisError, match="closes a loop of rigid meshes"):
+    with pytest.raises(rg.AnalysisError, match="closes a loop of rigid members"):
         rg.modal(rg.Model(**stiff), modes=4)
 
 
@@ -238,3 +238,64 @@ def test_a_stiff_mesh_that_asks_for_too_many_steps_is_named_with_its_remedy() ->
         gear["polar_inertia"] = 1e-6
     with pytest.raises(rg.AnalysisError, match=r"because meshes\.m1\d vibrates at .* take stiffness = 'rigid'"):
         rg.transient(rg.Model(**data), time="10 s", discard="0 s")
+
+
+def joined(**coupling: Any) -> rg.Model:
+    """A shaft in two halves of unequal length, 40 mm apart where a rigid coupling joins them."""
+    return rg.Model(
+        operation={"input_shaft": "a", "gravity": (0.0, -9.81, 0.0)},
+        shafts={
+            "a": {"position": (0.0, 0.0), "sections": [{"length": 0.3, "outer_diameter": 0.03}]},
+            "b": {"position": (0.0, 0.0), "start": 0.34, "sections": [{"length": 0.21, "outer_diameter": 0.04}]},
+        },
+        supports={"wall": {"shaft": "a", "at": "start", "fixed": ["all"]}},
+        couplings={"flange": {"from_shaft": "a", "to_shaft": "b", **coupling}},
+        loads={"tip": {"shaft": "b", "at": "end", "force": (10.0, -20.0, 35.0), "moment": (1.0, 2.0, 3.0)}},
+        points={
+            "torque": {"on": "couplings.flange", "quantity": "torque"},
+            "shear": {"on": "couplings.flange", "quantity": "shear", "direction": "y"},
+            "bending": {"on": "couplings.flange", "quantity": "bending", "direction": "x"},
+        },
+    )
+
+
+def test_a_rigid_coupling_joins_two_shafts_as_a_rigid_section_without_mass_does() -> None:
+    rigid = joined(rigid=True)
+    sections = [
+        {"length": 0.3, "outer_diameter": 0.03},
+        {"length": 0.04, "outer_diameter": 0.03, "rigid": True, "material": "light"},
+        {"length": 0.21, "outer_diameter": 0.04},
+    ]
+    whole = rg.Model(
+        operation={"input_shaft": "a", "gravity": (0.0, -9.81, 0.0)},
+        materials={"light": {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 1e-6}},
+        shafts={"a": {"sections": sections}},
+        supports={"wall": {"shaft": "a", "at": "start", "fixed": ["all"]}},
+    )
+    found, exact = (rg.modal(model, modes=8, elements=4).frequency_hz for model in (rigid, whole))
+    np.testing.assert_allclose(found, exact, rtol=1e-7)
+
+
+def test_statics_tells_the_load_in_a_rigid_coupling_as_in_a_stiff_one() -> None:
+    rigid = rg.static(joined(rigid=True))
+    stiff = rg.static(joined(stiffness={"radial": 1e10, "axial": 1e10, "tilt": 1e9, "torsion": 1e9}))
+    weight = math.pi / 4.0 * 0.04**2 * 0.21 * 7850.0 * 9.81
+    assert rigid.load_at("torque") == pytest.approx(3.0, rel=1e-9)
+    assert rigid.load_at("shear") == pytest.approx(-20.0 - weight, rel=1e-9)
+    assert rigid.load_at("bending") == pytest.approx(1.0 + 20.0 * 0.23 + weight * 0.125, rel=1e-9)
+    for row in stiff.internal_loads:
+        assert row.load == pytest.approx(rigid.load_at(row.point), rel=1e-9)
+
+
+def test_a_load_in_a_rigid_coupling_is_refused_in_vibration() -> None:
+    with pytest.raises(rg.AnalysisError, match=r"points\.torque: the load in a rigid coupling"):
+        rg.frf(joined(rigid=True), np.array([10.0]), inputs=["supports.wall:x"], outputs=["torque"])
+
+
+@pytest.mark.parametrize(
+    ("coupling", "key"), [({}, "stiffness"), ({"rigid": True, "stiffness": {"torsion": 1.0}}, "stiffness")]
+)
+def test_a_coupling_is_rigid_or_has_a_stiffness(coupling: dict[str, Any], key: str) -> None:
+    with pytest.raises(ModelError) as error:
+        joined(**coupling)
+    assert [problem.address for problem in error.value.problems] == [f"couplings.flange.{key}"]
