@@ -10,9 +10,23 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from rotorgear.analysis.scatter.family import Family, _error, _interpolated, _inverse_iteration
+import rotorgear as rg
+from rotorgear.analysis.scatter.family import (
+    Family,
+    _error,
+    _interpolated,
+    _inverse_iteration,
+    basis_of,
+    nominal_modes,
+    sampled_system,
+)
 from rotorgear.analysis.scatter.gather import _bands, _group_bands, _leading, _margin_bands, quantile_error
 from rotorgear.analysis.scatter.samples import nearest_margin
+from rotorgear.analysis.static.state_at import linear_system
+from rotorgear.model.parts.operation import Scatter
+from rotorgear.model.spreads import spreads_of
+from rotorgear.system.plan import Plan
+from tests.paths import MODELS
 
 NOTHING: Any = None
 REACH = np.array([2.0, 3.5])
@@ -139,3 +153,27 @@ def test_standard_errors_of_quantiles_are_those_of_blocks() -> None:
     # Of equal shares the first number of the file leads.
     assert _leading(np.array([0.2, 0.4 - 1e-9, 0.4]), ("a", "b", "c")) == ("b", pytest.approx(0.4))
     assert _leading(np.zeros(2), ("a", "b")) == ("", 0.0)
+
+
+def test_the_basis_holds_what_scattering_numbers_add_to_modes_to_first_order() -> None:
+    """Modes of a system whose bearings differ by a few percent lie in it ten times as well as in its modes alone."""
+    pair = rg.load(MODELS / "geared_pair.toml")
+    spreads = spreads_of(pair, {"bearings.*.stiffness": Scatter(sigma="10 %")})
+    plan = Plan(1)
+    system = linear_system(pair, [None], plan)
+    values, X, rigid = nominal_modes(system, None, 8)
+    V = basis_of(spreads, None, plan, system, values, X)
+    assert V.T @ (system.mass @ V) == pytest.approx(np.eye(V.shape[1]), abs=1e-8)
+    assert pytest.approx(V[:, : X.shape[1]]) == X
+    assert X.shape[1] < V.shape[1] <= X.shape[1] + len(X.T) * 2 * len(spreads)
+    left = []
+    for size in (0.2, 0.1):
+        other = sampled_system(spreads, size * np.linspace(-1.0, 1.0, len(spreads)), None, plan)
+        q = nominal_modes(other, None, 8)[1][:, rigid : rigid + 3]
+        for basis in (V, X):
+            rest = q - basis @ (basis.T @ (system.mass @ q))
+            left.append(np.sqrt(np.max(np.sum(rest * (system.mass @ rest), axis=0))))
+    # Nearly all of the first order is there, by shapes of one shift for all modes.
+    assert left[0] < 0.1 * left[1]
+    assert left[2] < 0.1 * left[3]
+    assert left[3] == pytest.approx(0.5 * left[1], rel=0.1)
