@@ -105,7 +105,8 @@ def sister_places(layout: Layout, names: Iterable[str]) -> list[tuple[float, np.
     return [
         (layout.train.ratio(carrier.shaft), np.array(carrier.directions), np.array([found[written]]))
         for written, carrier in carriers.items()
-        if layout.train.ratios[carrier.shaft] != 0
+        # What single sisters have is rounding of what none of them has, as of the strain of pins in torsion alone.
+        if layout.train.ratios[carrier.shaft] != 0 and len(found[written]) == len(carrier.directions)
     ]
 
 
