@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 import pytest
@@ -255,6 +255,15 @@ def periods(own: OnTruePaths, count: float) -> float:
     return count * 2.0 * np.pi / (TEETH[own.planets][2] * abs(own.turns))
 
 
+@cache
+def six_periods(planets: int, speed: float, torque: float) -> tuple[str, float, np.ndarray, np.ndarray]:
+    """A stage, six of its mesh periods in s, and the forces of its contacts and pins in them, from rest."""
+    text = stage(torque, planets, loss=3e-7, speed=speed)
+    own = OnTruePaths(text, planets, speed, torque, 3e-7)
+    end = periods(own, 6)
+    return text, end, *own.motion(end, 60)
+
+
 def pin_histories(found: rg.TransientResult, planets: int) -> np.ndarray:
     """Forces (r, N, 2) of the pins outwards and onwards."""
     return np.stack(
@@ -274,15 +283,13 @@ def test_motions_with_teeth_that_part_are_those_of_true_paths(
     planets: int, speed: float, torque: float, method: str, steps: int, bound: float
 ) -> None:
     """Second order in the step, for either sense, in all methods, for forces of contacts and pins."""
-    text = stage(torque, planets, loss=3e-7, speed=speed)
-    own = OnTruePaths(text, planets, speed, torque, 3e-7)
-    F, pins = own.motion(periods(own, 6), 60)
+    text, end, F, pins = six_periods(planets, speed, torque)
     assert np.any(F == 0.0), "teeth part"
     off = []
     for now in (steps // 2, steps):
         found = rg.transient(
             rg.loads(text),
-            time=periods(own, 6),
+            time=end,
             discard=0.0,
             steps=now,
             method=method,
