@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.modal.problem import Problem
+from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes, damped_modes, with_largest_one
 from rotorgear.solvers.eigen.eigen import UndampedModes
 from rotorgear.solvers.eigen.gyroscopic import gyroscopic_modes
@@ -22,7 +23,7 @@ from rotorgear.solvers.eigen.quadratic import corrected, newton, scaled
 from rotorgear.solvers.eigen.ritz import strain_ritz
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped
 from rotorgear.solvers.sparse.entries import column_forms, magnitudes, unit_vectors
-from rotorgear.solvers.sparse.pencil import rounding_noise
+from rotorgear.solvers.sparse.pencil import count_below, rounding_noise
 from rotorgear.system.assembly import StrainForms
 
 # Rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do.
@@ -54,9 +55,11 @@ def damped_group(problem: Problem, count: int | None, below: float | None) -> tu
         # On a fast carrier the symmetric stiffness of planets alone is no spring, and gyroscopic terms hold them.
         R = problem.rigid
         more = None if count is None else count + R.shape[1]
-        found = by_strains(
-            problem, damped_modes(problem.M, problem.D, problem.K, count=more, below=below, rigid_vectors=R)
-        )
+        # Spin and damping hardly change how many modes there are.
+        expected = None if below is None or count is not None else _count_below(problem, below)
+        M, D, K = problem.M, problem.D, problem.K
+        found = damped_modes(M, D, K, count=more, below=below, rigid_vectors=R, expected=expected)
+        found = by_strains(problem, found)
         return (_without_drift(found, count) if R.shape[1] else found), ""
     near = _near_undamped(problem, count, below)
     if near is not None:
@@ -79,6 +82,14 @@ def damped_group(problem: Problem, count: int | None, below: float | None) -> tu
         V = found.vectors[:, ~found.rigid]
         basis = np.hstack([undamped.elastic, V.real, V.imag])
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
+
+
+def _count_below(problem: Problem, below: float) -> int | None:
+    """How many modes the symmetric part of the stiffness has up to a frequency in rad/s; None where that is not clear."""
+    try:
+        return count_below(problem.M, problem.K_symmetric, below**2)
+    except ConvergenceError:
+        return None
 
 
 # Share of the frequencies below which a motion is the drift of a train with planets.

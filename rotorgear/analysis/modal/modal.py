@@ -36,11 +36,14 @@ from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.modal import ModalResult
 from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.plan import Plan
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
 
 DEFAULT_MODES = 24
 # Each round raises orders or halves elements where the error is: a model that needs more rounds than this does not converge.
 _ROUNDS = 30
+# How far beyond the limit modes are looked for where the mesh is known.
+_NEAR = 1.05
 
 
 @recorded
@@ -187,7 +190,12 @@ def _on_fine_mesh(
     reach = Reach(asked.modes, limit, 0, 1.0) if fixed else Reach(asked.modes, limit)
     # Damping and spin hardly change what mesh a mode needs: undamped modes find it at less cost, and the mesh is checked with
     # the others then. Films whose symmetric part alone is no stable spring have no such modes.
-    undamped_first = not fixed and speed is not None and not system.has_tables and not system.circulatory(speed).nnz
+    # What turning planets bring is no spring: modes at standstill find their mesh as well.
+    turning = bool(turning_carriers(system.layout))
+    varies = system.has_varying_springs or bool(system.layout.elastic_bodies) if turning else system.has_tables
+    undamped_first = (
+        not fixed and speed is not None and not varies and not system.circulatory(0.0 if turning else speed).nnz
+    )
     for _ in range(_ROUNDS if undamped_first else 0):
         found = solve(system, Wanted(None, *reach.solver_request(), asked.only))
         if reach.modes is not None and len(found.eigenvalues) < reach.modes:
@@ -200,6 +208,8 @@ def _on_fine_mesh(
         system = system.with_plan(finer)
     if undamped_first:
         clock.lap("refinement")
+        # Modes of planets that go round are dear, and hardly one changes places on a mesh that is known.
+        reach = replace(reach, factor=min(reach.factor, _NEAR)) if turning else reach
     for round_number in range(_ROUNDS):
         progress(min(0.1 + 0.15 * round_number, 0.8), f"solving {system.n} dofs")
         wanted = Wanted(speed, *reach.solver_request(), asked.only, asked.pruning)

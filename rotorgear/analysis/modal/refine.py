@@ -14,6 +14,7 @@ import numpy as np
 
 from rotorgear.analysis.modal.solve import Modes, Wanted, solve
 from rotorgear.errors import AnalysisError
+from rotorgear.model.parts.carrier import MARK, written_name
 from rotorgear.system.bubble_errors import bubble_errors
 from rotorgear.system.plan import PieceKey, Plan
 from rotorgear.system.system import System
@@ -57,6 +58,9 @@ def refined(system: System, parts: dict[PieceKey, np.ndarray], accuracy: float) 
         return None
     names = list(parts)
     table = np.array([parts[name] for name in names])  # (pieces, m)
+    alike = _of_sisters(names)
+    for pieces_of_all in alike:
+        table[pieces_of_all] = table[pieces_of_all].mean(axis=0)
     aim = _AIM * accuracy
     if np.all(table.sum(axis=0) <= aim):
         return None
@@ -66,9 +70,20 @@ def refined(system: System, parts: dict[PieceKey, np.ndarray], accuracy: float) 
         ranked = np.argsort(-table[:, mode])
         left = np.cumsum(table[ranked, mode][::-1])[::-1]
         chosen |= {int(piece) for piece, rest in zip(ranked, left, strict=True) if rest > 0.5 * aim}
+    for pieces_of_all in alike:
+        chosen |= set(pieces_of_all) if chosen & set(pieces_of_all) else set()
     pieces = _pieces(system)
     finer = {names[k]: _finer(*pieces[names[k]], float(np.max(table[k])) / (aim / len(names))) for k in chosen}
     return replace(system.plan, cut={**system.plan.cut, **finer})
+
+
+def _of_sisters(names: list[PieceKey]) -> list[list[int]]:
+    """Numbers of the same piece of all planets, which stay equal: of two modes of one frequency each moves some of them more."""
+    found: dict[PieceKey, list[int]] = {}
+    for number, (shaft, piece) in enumerate(names):
+        if MARK in shaft:
+            found.setdefault((written_name(shaft), piece), []).append(number)
+    return list(found.values())
 
 
 def all_finer(system: System) -> Plan:

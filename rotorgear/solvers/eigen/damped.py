@@ -34,6 +34,7 @@ _TOO_BLURRED = 1e-8  # rounding of the smallest mu from which the upper spectrum
 _LARGEST_DENSE = 6000  # states: 0.6 GB a complex matrix
 _GATHERED_DENSE = 2000  # states: a minute, where a Krylov space does not tell eigenvalues apart
 _SPARE = 8  # pairs beyond those that matter which are refined too, since refinement may change their order
+_BEYOND = 1.04  # eigenvalues that are asked for over those that are expected
 _SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
 _BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
 _TWINS = 1.0  # imaginary part over rounding up to which a pair is two real roots
@@ -80,11 +81,16 @@ def prepared(
     return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
 
 
-def solve(inverse: InverseState, rows: int | None, below: float | None, dense: bool = False) -> Pairs:
-    """At least `rows` pairs, and all up to `below`: more and more of the spectrum until the reach suffices."""
+def solve(
+    inverse: InverseState, rows: int | None, below: float | None, dense: bool = False, expected: int | None = None
+) -> Pairs:
+    """At least `rows` pairs, and all up to `below`: more and more of the spectrum until the reach suffices.
+
+    `expected`: how many pairs may be below, to begin with.
+    """
     quadratic = inverse.quadratic
     limit = np.inf if below is None else below / quadratic.w0
-    wanted = 2 * rows + 4 if rows is not None else 40
+    wanted = 2 * rows + 4 if rows is not None else max(40, int(_BEYOND * 2 * (expected or 0)) + 4)
     iterates = not dense and quadratic.n > _DENSE_UP_TO and not (rows is None and below is None)
     while iterates and wanted < quadratic.n // 2:
         try:
@@ -279,6 +285,7 @@ def damped_modes(
     rigid_vectors: np.ndarray | None = None,
     frequency_scale: float | None = None,
     dense: bool = False,
+    expected: int | None = None,
 ) -> DampedModes:
     """The damped modes of smallest |lambda|.
 
@@ -291,6 +298,7 @@ def damped_modes(
         rigid_vectors: (n, r) basis of the null space of K; None means that K is regular.
         frequency_scale: a frequency near the lowest ones [rad/s]; saves the search for it, never changes the answer.
         dense: all eigenvalues by LAPACK, whatever n is: for spectra over very many decades.
+        expected: how many modes may lie below; saves looking for few first, never changes which are found.
 
     Raises:
         AnalysisError: K has a rigid-body motion that was not given, or a given one is strained or without inertia.
@@ -303,7 +311,7 @@ def damped_modes(
     with single_thread(K.shape[0]):
         inverse = prepared(M, D, K, R, frequency_scale)
         rows = None if count is None else max(count - R.shape[1], 0)
-        found, elastic, reach = solve(inverse, rows, below, dense)
+        found, elastic, reach = solve(inverse, rows, below, dense, expected)
 
         # Rigid motions come first; the search has left them out. All is scaled here to unit diagonals.
         quadratic = inverse.quadratic

@@ -318,3 +318,26 @@ def test_statics_of_two_planets_at_a_speed_says_what_it_leaves_out() -> None:
     found = rg.static(rg.loads(text.replace("[operation]", '[operation]\ntorque = 100\noutput_shaft = "carrier"')))
     assert found.mesh_force == pytest.approx(np.full(4, found.mesh_force[0]), rel=1e-6)
     assert any("carriers" in str(note) for note in found.left_out)
+
+
+def test_planets_have_one_mesh_however_their_modes_are_combined() -> None:
+    """Of two modes of one frequency each moves some planets more: meshes that differ would be no sisters at a speed."""
+    model = rg.load("models/wind_turbine.toml")
+    for speed in (None, "16 rpm"):
+        found = rg.modal(model, speed=speed, modes=40, accuracy=1e-5)
+        meshes: dict[tuple[str, float, float], set[tuple[int, int]]] = {}
+        for piece in found.discretisation:
+            name = piece.shaft.partition("#")[0]
+            meshes.setdefault((name, round(piece.start, 9), round(piece.end, 9)), set()).add(
+                (piece.elements, piece.order)
+            )
+        assert all(len(cuts) == 1 for cuts in meshes.values())
+        assert any(order > 2 for cuts in meshes.values() for _, order in cuts)
+
+
+def test_modes_up_to_a_frequency_are_those_of_a_number() -> None:
+    model = rg.load("models/wind_turbine.toml")
+    below = rg.modal(model, speed="16 rpm", fmax=1200.0, elements=2)
+    some = rg.modal(model, speed="16 rpm", modes=len(below) + 3, elements=2)
+    assert below.frequency_hz[-1] < 1200.0 < some.natural_frequency_hz[len(below)]
+    assert some.eigenvalues[1 : len(below)] == pytest.approx(below.eigenvalues[1:], rel=1e-9)
