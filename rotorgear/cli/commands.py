@@ -326,6 +326,13 @@ _GROUPS = {
             body="bodies.schema",
         ),
         Command(
+            "compile",
+            "Compile the loops of motions in time ahead of the first run",
+            (),
+            shows=(),
+            body="bodies.compile_ahead",
+        ),
+        Command(
             "validate",
             "Run the validation cases; exit code 1 where one fails",
             (),

@@ -17,8 +17,11 @@ import os
 import time
 import uuid
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import IO, Any
+
+from rotorgear.progress import foretell
 
 # The longest compilation is some 20 s; after this, whoever holds the lock has failed or hangs.
 LONGEST_WAIT = 120.0
@@ -72,6 +75,11 @@ class CompiledOnce:
         finally:
             self._release()
 
+    @property
+    def is_kept(self) -> bool:
+        """Whether anything that was compiled is on the disk; of what is kept nowhere, as if it were."""
+        return not self._beginning or bool(self._files())
+
     def _files(self) -> list[Path]:
         """The files of the function; the dot behind its line tells it from one whose line has more digits."""
         if not self._beginning:
@@ -107,6 +115,17 @@ class CompiledOnce:
         if self._held is not None:
             self._held.close()
             self._held = None
+
+
+@cache
+def foretell_compilation(function: Any, seconds: float) -> None:
+    """Tell whoever hears forecasts that a compiled function is not kept yet, and the CPU seconds that it takes once.
+
+    Looked up once for each function: loops call it.
+    """
+    kept = getattr(function, "_cache", None)
+    if isinstance(kept, CompiledOnce) and not kept.is_kept:
+        foretell("compiling, once", seconds, "that no run time holds; rotorgear compile does it ahead")
 
 
 def _locked(file: IO[bytes]) -> bool:

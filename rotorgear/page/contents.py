@@ -25,7 +25,7 @@ from rotorgear.analysis.standards.standards import HIGHEST, judged
 from rotorgear.analysis.static.static import static
 from rotorgear.analysis.teeth.gear_sheet import gear
 from rotorgear.analysis.teeth.mesh import mesh
-from rotorgear.cpu import cpu_seconds
+from rotorgear.cpu import compiling_seconds, cpu_seconds
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -67,12 +67,12 @@ class Contents:
 
 
 def _section(analysis: Callable[[], Any]) -> dict[str, Any]:
-    start = cpu_seconds()
+    start = cpu_seconds() - compiling_seconds()
     try:
         result = analysis()
     except RotorgearError as error:
         return {"missing": str(error)}
-    return {"result": result, "seconds": cpu_seconds() - start}
+    return {"result": result, "seconds": cpu_seconds() - compiling_seconds() - start}
 
 
 def computed(

@@ -110,10 +110,10 @@ class Result(Record):
 
     @property
     def cost(self) -> str:
-        """CPU seconds in words, and how many of them went into compilation."""
+        """CPU seconds in words, without those of compilation, which are told beside them: they are spent once."""
         compilation = self.seconds.get("compilation", 0.0)
-        words = f" ({compilation:.2f} of them compilation)" if compilation >= _WORTH_TELLING else ""
-        return f"{self.seconds['total']:.2f} CPU s{words}"
+        words = f" (and {compilation:.2f} of compilation, once)" if compilation >= _WORTH_TELLING else ""
+        return f"{self.seconds['total'] - compilation:.2f} CPU s{words}"
 
     @property
     def ended_early(self) -> bool:

@@ -6,6 +6,7 @@ import multiprocessing
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ import rotorgear as rg
 from rotorgear.analysis.common.pool import in_order
 from rotorgear.cpu import Clock, cpu_seconds
 from tests.overhung import overhung_disk
+from tests.paths import MODELS
 
 
 def burn(seconds: float) -> float:
@@ -73,3 +75,9 @@ def test_compilation_is_a_step_of_its_own() -> None:
     assert clock.laps["compilation"] > 0.01
     assert 0.1 <= clock.laps["work"] < 0.1 + clock.laps["compilation"] + 0.2
     assert sum(clock.laps.values()) == pytest.approx(clock.total()["total"])
+
+
+def test_no_printed_run_time_holds_compilation() -> None:
+    found = rg.static(rg.load(MODELS / "split_torque.toml"))
+    slow = replace(found, seconds={"work": 1.25, "compilation": 24.5, "total": 25.75})
+    assert slow.cost == "1.25 CPU s (and 24.50 of compilation, once)"

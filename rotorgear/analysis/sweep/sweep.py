@@ -32,7 +32,7 @@ from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.portrait import Portraits
 from rotorgear.results.sweep import Reduction, SweepResult
-from rotorgear.solvers.batch.run_block import BatchPlan, Orbit, trajectory
+from rotorgear.solvers.batch.run_block import BatchPlan, Orbit, foretell_batches, trajectory
 from rotorgear.solvers.sparse.factor import single_thread
 
 # How many portraits, or the values of the parameters next to which points keep theirs.
@@ -144,6 +144,7 @@ def sweep(
         run = partial(run_blocks, workers=workers, executor=executor)
         plans = waves(shape, request.directions, request.initial_conditions)
         grouped = [blocks(jobs, points, chosen) for jobs in plans]
+        foretell_batches()
         forecast = Forecast("sweep", clock.worked, sum(map(len, grouped)) - len(kept))
         orbits = _run(points, chosen, grouped, request, run, stream, kept, forecast, progress)
     clock.lap("integration")

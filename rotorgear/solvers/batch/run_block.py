@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.files.compiled_once import foretell_compilation
 from rotorgear.solvers.batch.arguments import ActingLaws, BatchMotion, BatchSystem
 from rotorgear.solvers.batch.columns import ERROR, FORCE, NEVER
 from rotorgear.solvers.batch.small_system import SmallSystem
@@ -15,6 +16,7 @@ from rotorgear.solvers.time.arguments import SparseRows
 
 # Steps between two questions whether to go on: a fraction of a second.
 _SLICE = 50_000
+_COMPILATION = 25.0  # CPU seconds that its loop took to compile on one core
 _REGISTER = 64  # bytes of the widest vector registers
 
 
@@ -91,6 +93,13 @@ class Orbit:
     jumped: bool = False
     before: np.ndarray = field(default_factory=lambda: np.zeros(0))
     error: np.ndarray = field(default_factory=lambda: np.array(np.nan))
+
+
+def foretell_batches() -> None:
+    """Tell whoever hears forecasts if the loop of batches is to be compiled first."""
+    from rotorgear.solvers.batch.kernel import batch_loop
+
+    foretell_compilation(batch_loop, _COMPILATION)
 
 
 def run_block(

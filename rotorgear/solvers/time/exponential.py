@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.files.compiled_once import foretell_compilation
 from rotorgear.solvers.eigen.complex_modes import ComplexModes, complex_modes
 from rotorgear.solvers.time.arguments import ExponentialStep, Kept
 from rotorgear.solvers.time.local_system import (
@@ -27,6 +28,7 @@ from rotorgear.solvers.time.local_system import (
 
 # Modal coordinates y by their parts, motions without stiffness and their rates, and the rest of the local forces, as states
 # name them.
+_COMPILATION = 25.0  # CPU seconds that its loop took to compile on one core
 _MOTION = ("yr", "yi", "r0", "r1", "u")
 # Radians of a contact's vibration in a step above which it stays out of the modes.
 _RESOLVED = 0.8
@@ -201,6 +203,7 @@ class ExponentialStepper(Stepper):
         """Advance a state in place and record; returns steps done, status and linear solutions."""
         from rotorgear.solvers.time.kernel_exponential import exponential_loop
 
+        foretell_compilation(exponential_loop, _COMPILATION)
         motion = tuple(state.inner[name] for name in _MOTION)
         done, status, solutions = exponential_loop(
             self._step, self._laws, steps, every, state.step, motion, state.carried, kept

@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
+from rotorgear.files.compiled_once import foretell_compilation
 from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
@@ -23,6 +24,7 @@ from rotorgear.solvers.time.arguments import Kept, NewmarkStep, SparseRows, Tria
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper, turning_of
 
 # Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
+_COMPILATION = 25.0  # CPU seconds that its loop took to compile on one core
 _FELT = 1e-5
 
 
@@ -159,6 +161,7 @@ class NewmarkStepper(Stepper):
         """Advance a state in place and record; returns steps done, status and linear solutions."""
         from rotorgear.solvers.time.kernel_newmark import newmark_loop
 
+        foretell_compilation(newmark_loop, _COMPILATION)
         done, status, solutions = newmark_loop(self._step, self._laws, steps, every, state.step, state.carried, kept)
         return done, status, solutions
 

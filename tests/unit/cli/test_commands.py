@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from rotorgear.cli.commands import COMMANDS
 from rotorgear.cli.main import app
+from tests.paths import MODELS
 
 
 def test_help_lists_all_commands_in_their_groups_and_reads_no_verb(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -53,3 +54,15 @@ def test_a_shell_completes_commands(words: str, found: set[str]) -> None:
 def test_a_shell_completes_options() -> None:
     environment = {"_ROTORGEAR_COMPLETE": "complete_bash", "COMP_WORDS": "rotorgear modal --sp", "COMP_CWORD": "2"}
     assert CliRunner(env=environment).invoke(app, [], prog_name="rotorgear").output.split() == ["--speed"]
+
+
+def test_what_was_compiled_ahead_is_not_announced_again() -> None:
+    done = CliRunner().invoke(app, ["compile"])
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("the machine code of motions in time is ready, after ")
+    steps = [line.partition(": ")[2].partition(", after")[0] for line in done.stderr.splitlines()]
+    assert steps == ["transient, exponential steps", "transient, Newmark's steps", "sweep", "orbits"]
+    model = str(MODELS / "helical_pair.toml")
+    assert (
+        "compiling" not in CliRunner().invoke(app, ["transient", model, "--time", "1 ms", "--discard", "0 ms"]).output
+    )

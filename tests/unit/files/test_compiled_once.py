@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from rotorgear.files.compiled_once import CompiledOnce
+from rotorgear.files.compiled_once import CompiledOnce, foretell_compilation
+from rotorgear.progress import hearing_forecasts
 from rotorgear.solvers.time import compiled
 
 
@@ -143,3 +144,22 @@ def test_a_full_disk_costs_time_only(kept_function: Callable[[], Any], monkeypat
 
     monkeypatch.setattr(os, "replace", full)
     assert kept_function().stats.cache_misses
+
+
+def test_a_compilation_that_is_to_come_is_foretold_once(tmp_path: Path) -> None:
+    class Function:
+        def __init__(self, line: int) -> None:
+            kept = Kept()
+            kept.cache_path = str(tmp_path)  # type: ignore[attr-defined]
+            self._cache = CompiledOnce(kept, tmp_path / "function.lock", f"module.loop-{line}.")
+
+    (tmp_path / "module.loop-7.nbi").write_bytes(b"index")
+    heard: list[tuple[str, float]] = []
+    with hearing_forecasts(lambda what, seconds, more: heard.append((what, seconds))):
+        new, known = Function(12), Function(7)
+        foretell_compilation(known, 3.0)
+        assert not heard
+        foretell_compilation(new, 25.0)
+        foretell_compilation(new, 25.0)
+        foretell_compilation(len, 25.0)
+    assert heard == [("compiling, once", 25.0)]
