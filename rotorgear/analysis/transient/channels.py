@@ -12,13 +12,12 @@ import numpy as np
 
 from rotorgear.analysis.common.points import motion_points, point_rows
 from rotorgear.errors import AnalysisError
-from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.time.arguments import Sisters
 from rotorgear.solvers.time.local_system import Observed, Records, Rotation, sisters_of, turned, turning_of
 from rotorgear.system.internal_loads import load_rows, read_loads
 from rotorgear.system.local import LocalModel
-from rotorgear.system.planets import sister_places, turning_carriers
+from rotorgear.system.planets import sister_places
 
 _AXES = ("x", "y", "z")
 
@@ -95,7 +94,7 @@ def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.
     """The load of each point that reads one, by kind of row, and the weight along its element.
 
     Raises:
-        AnalysisError: a load that the speed of the shaft takes part in, where that changes, or inside a planet that goes round.
+        AnalysisError: a load that the speed of the shaft takes part in, where that changes.
     """
     system = local.system
     units = read_loads(system.model)
@@ -103,13 +102,7 @@ def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.
         return
     rotation = local.local.rotation
     rows = load_rows(system, float(rotation.speeds[0]))
-    planets = {planet for planets in turning_carriers(system.layout) for planet in planets.planets}
     for k, (name, unit) in enumerate(units.items()):
-        if system.layout.place(f"points.{name}").shaft in planets:
-            raise AnalysisError(
-                f"points.{written_name(name)}: loads inside planets that go round are not built in time: leave the point out, or "
-                "hold the carrier"
-            )
         if not rotation.is_constant and any(part[k].any() for part in rows.per_speed):
             raise AnalysisError(
                 f"points.{name}: gyroscopic moments take part in this load, which is known at a constant speed only: leave the "
