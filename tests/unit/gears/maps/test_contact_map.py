@@ -47,3 +47,20 @@ def test_approaches_under_the_loads_of_the_map_are_its_rows_between_positions(he
     found = hertz.at_loads(u)
     assert found == pytest.approx(hertz.approach_at(hertz.load, u[:, None]), rel=1e-14)
     assert hertz.at_loads(hertz.position) == pytest.approx(hertz.approach, rel=1e-15)
+
+
+def test_slopes_stay_within_three_times_the_chords_beside_them_and_the_cubics_rise() -> None:
+    """Compliances that are given as they are, but where a cubic with them would turn back (Fritsch and Carlson)."""
+    load = np.array([0.0, 2e3, 3e3, 7e3])
+    approach = np.array([[1e-6, 5e-6, 6e-6, 30e-6], [0.0, 2e-6, 5e-6, 9e-6]])
+    chord = np.array([[2e-9, 1e-9, 6e-9], [1e-9, 3e-9, 1e-9]])
+    given = np.array([[2.5e-9, 9e-9, 2e-9, 40e-9], [5e-9, 1e-9, 2.9e-9, 1e-9]])
+    found = ContactMap(np.array([0.0, 0.5]), 1, load, approach, compliance=given)
+    least = np.column_stack([chord[:, 0], np.minimum(chord[:, :-1], chord[:, 1:]), chord[:, -1]])
+    assert found.slopes == pytest.approx(np.minimum(given, 3.0 * least), rel=1e-12)
+    assert found.slopes[0, 0] == given[0, 0]
+    assert found.slopes[0, 1] == pytest.approx(3e-9)
+    fine = np.linspace(0.0, 7e3, 701)
+    assert np.all(np.diff(found.approaches(fine), axis=1) > 0.0)
+    # Above its loads a map goes on along its last slope.
+    assert found.approach_at(9e3, 0.0) == pytest.approx(30e-6 + 2e3 * 18e-9, rel=1e-12)
