@@ -15,7 +15,7 @@ from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact
 from rotorgear.gears.loaded.mesh_cycle import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.maps.contact_map import ContactMap
-from rotorgear.gears.maps.solved_map import contact_map, kept_map, with_start
+from rotorgear.gears.maps.solved_map import _error, contact_map, faded, kept_map, with_start
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import LOAD, cycle, helical, pair, spur
@@ -215,3 +215,28 @@ def test_the_slope_at_no_load_is_that_of_the_parabola_through_both_points() -> N
     assert found[0, 0] == pytest.approx(b[0], rel=1e-9)
     # Contacts stiffen with the load: a parabola that softens begins with the slope of its second point.
     assert found[1, 0] == slope[1, 0]
+
+
+def test_what_a_change_of_slices_moves_fades_away_towards_the_last_load() -> None:
+    """Approach and moment go on from those below the bound and end as their own; slopes are their own at once."""
+    rng = np.random.default_rng(4)
+    columns, below = rng.normal(size=(3, 4, 5)), rng.normal(size=(3, 5))
+    factors = [1.0, 1.4, 2.0, 2.5]
+    found = faded(columns, below, factors)
+    assert found.shape == (3, 3, 5)
+    assert found[1] == pytest.approx(columns[1, 1:])
+    for kind in (0, 2):
+        assert found[kind, -1] == pytest.approx(columns[kind, -1])
+        jump = columns[kind, 0] - below[kind]
+        for k, left in enumerate((1.1 / 1.5, 0.5 / 1.5, 0.0)):
+            assert found[kind, k] == pytest.approx(columns[kind, k + 1] - left * jump)
+
+
+def test_the_error_of_a_map_is_its_largest_difference_to_contacts_that_it_has_not_seen() -> None:
+    """A map moved by 3 um along the normal is 3 um off, and one of eight positions more than one of 64."""
+    found = contact_map(spur(), LOAD, 64)
+    problem = contact_problem(spur())
+    moved = replace(found, approach=found.approach + 3e-6)
+    assert _error(problem, moved, LOAD) == pytest.approx(3e-6, abs=2.0 * found.error)
+    assert _error(problem, found, LOAD) == pytest.approx(found.error, rel=1e-9)
+    assert found.error < 0.3 * contact_map(spur(), LOAD, POSITIONS).error
