@@ -293,3 +293,13 @@ def test_forces_and_moments_of_a_load_turn_with_its_shaft(turned: bool, tmp_path
     sign = -1.0 if turned else 1.0
     assert found.force == pytest.approx((sign * -170.0, 300.0, sign * 90.0))
     assert found.moment == pytest.approx((sign * 2.5, -4.0, 0.0))
+
+
+def test_components_that_are_not_read_are_counted_by_their_kind(tmp_path: Path) -> None:
+    pair = Pair()
+    for k in range(3):
+        pair.add("lubricant_nozzle", f"nozzle {k}")
+    pair.add("heat_exchanger", "cooler")
+    left = imported(pair.document(), tmp_path).left_out
+    assert "3 x lubricant_nozzle" in left
+    assert "heat_exchanger" in left
