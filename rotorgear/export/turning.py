@@ -70,7 +70,11 @@ class Turning:
         leading = self.leading(shape)
         train = self.model.layout.train
         turn = self.sense * math.copysign(2.0 * math.pi / len(leading.planets), train.ratio(leading.shaft)) * periods
-        angle = turn / train.ratio(leading.shaft)  # of the reference shaft
+        return self.at_angle(shape, turn / train.ratio(leading.shaft))
+
+    def at_angle(self, shape: np.ndarray, angle: float) -> tuple[Solids, np.ndarray]:
+        """The same where the reference shaft has gone on by an angle in rad."""
+        train = self.model.layout.train
         moved = np.array(shape)
         for planets in self.sets:
             T = sister_turn(planets.angles)

@@ -144,7 +144,7 @@ def write_motion(
     """Write the kept motion as VTK files and return their paths: `motion.pvd` plays `motion/instant_NNNN.vtp`.
 
     Displacements are those about the mean of the window, drawn with one scale, which stands in the field data. Point data:
-    `displacement` (scaled) and `displacement_m` (true, in m).
+    `displacement` (scaled) and `displacement_m` (true, in m). Where carriers turn, everything stands where it is at that time.
 
     Args:
         result: a transient with `frames`.
@@ -162,6 +162,7 @@ def write_motion(
         raise AnalysisError("this transient kept no motion to animate: run it with frames (--vtk)")
     pv, solids, plain = undeformed(result)
     about = result.motion - result.motion.mean(axis=2, keepdims=True)
+    turning = turning_of(result.model, result.nodes, solids, float(result.speed[-1]))
     # One scale for all instants: that of the largest.
     sizes = np.abs([solids.displacement(about[:, :, i]) for i in range(about.shape[2])]).max(axis=(1, 2))
     scale = solids.scaled(about[:, :, int(np.argmax(sizes))], amplitude)[1]
@@ -170,9 +171,12 @@ def write_motion(
         (scratch / "motion").mkdir()
         for i, time in enumerate(result.motion_time):
             progress(i / result.motion_time.size, f"instant {i + 1}")
-            raw = solids.displacement(about[:, :, i])
+            now, shape = solids, about[:, :, i]
+            if turning is not None:
+                now, shape = turning.at_angle(shape, float(result.speed[-1]) * float(time))
+            raw = now.displacement(shape)
             moved = plain.copy(deep=False)
-            moved.SetPoints(pv.vtk_points((solids.points + scale * raw).astype(np.float32)))
+            moved.SetPoints(pv.vtk_points((now.points + scale * raw).astype(np.float32)))
             steps.append((float(time), f"motion/instant_{i + 1:04d}.vtp"))
             shapes = {"displacement": scale * raw, "displacement_m": raw}
             save_shape(moved, scratch / steps[-1][1], shapes, {"displacement_scale": scale, "time_s": time})

@@ -137,10 +137,6 @@ def transient(
     task = prepare(damped(model, modal_damping), speed, elements, start)
     grid, fastest = grid_of(task, duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(task, grid, method, modes, rho_inf, beta, gamma)
-    if frames and task.local.local.sisters.planets.size:
-        raise AnalysisError(
-            "frames: an animation of planets that go round is not built for motions in time; modes have one (modal --vtk)"
-        )
     clock.lap("model")
     wanted = accuracy or DEFAULT_ACCURACY
     left = 1.0

@@ -143,3 +143,45 @@ def test_planets_keep_their_own_axes_where_another_shaft_has_no_place() -> None:
     for k in range(4):
         outwards = solids.axes[names.index(f"planet#{k + 1}")][:, 0]
         assert outwards == pytest.approx([np.cos(0.5 * np.pi * k), np.sin(0.5 * np.pi * k), 0.0], abs=1e-12)
+
+
+def test_instants_of_a_motion_in_time_have_planets_where_they_are_then(tmp_path: Path) -> None:
+    """Places by the true angle of the carrier, and displacements outwards and onwards of the channels about their mean."""
+    pv = pytest.importorskip("pyvista")
+    planets, teeth = STAGES[0]
+    loads = '[loads.in]\nshaft = "sun"\nkind = "input"\ntorque = 400\n[loads.out]\nshaft = "carrier"\nkind = "output"\n'
+    text = helical_stage(planets, teeth=teeth, loss=2e-6, more=loads).replace(
+        "[meshes.sun_planet]\n", "[meshes.sun_planet]\ntransmission_error = [{harmonic = 1, amplitude = 3e-6}]\n"
+    )
+    found = rg.transient(
+        rg.loads(text), speed=400.0, time=0.02, steps=100, frames=24, method="exponential", error_estimate=False
+    )
+    rg.write_motion(found, tmp_path)
+    turn = float(found.model.layout.train.ratio("carrier")) * 400.0
+    at_start = 2.0 * np.pi * np.arange(planets) / planets
+    # What the channels tell in axes that go round, as a pattern over the pins at the start, about its mean.
+    own = np.stack(
+        [[found.history(f"bearings.pin#{k + 1} displacement {axis}") for axis in "xy"] for k in range(planets)]
+    )[:, :, -24:]
+    wave = at_start[:, None] - at_start[None, :]
+    time = found.time[-24:]
+
+    def on(angle: float, x: np.ndarray) -> np.ndarray:
+        first = 2.0 / planets * (np.cos(wave + angle) - np.cos(wave))
+        return x + np.tensordot(first, x, axes=1)
+
+    pattern = np.stack([on(-turn * t, own[:, :, i]) for i, t in enumerate(time)], axis=2)
+    told = pattern - pattern.mean(axis=2, keepdims=True)
+    number = build_solids(found.model, found.nodes).part_names.index("gears.planet#2")
+    for i in (0, 11, 23):
+        mesh = pv.read(tmp_path / "motion" / f"instant_{i + 1:04d}.vtp")
+        cells = mesh.extract_cells(np.flatnonzero(mesh.cell_data["part_id"] == number))
+        x, y, _ = (cells.points - cells.point_data["displacement"]).mean(axis=0)
+        angle = at_start[1] + turn * time[i]
+        assert np.exp(1j * np.arctan2(y, x)) == pytest.approx(np.exp(1j * angle), abs=1e-4)
+        outwards, onwards = on(turn * time[i], told[:, :, i])[1]
+        moved = outwards * np.array([np.cos(angle), np.sin(angle)]) + onwards * np.array(
+            [-np.sin(angle), np.cos(angle)]
+        )
+        shown = cells.point_data["displacement_m"].mean(axis=0)[:2]
+        assert shown == pytest.approx(moved, abs=1e-2 * np.abs(told).max())
