@@ -10,7 +10,7 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from rotorgear.errors import ModelError, RotorgearError
+from rotorgear.errors import AnalysisError, ModelError, RotorgearError
 from rotorgear.export.hdf5_values import digest_of, get_value, put_value, stored_fields
 from rotorgear.files.bounds import RESULT
 from rotorgear.files.hdf5 import new_hdf5, opened_hdf5
@@ -41,8 +41,12 @@ def save(result: Result, path: str | Path) -> Path:
         The path.
 
     Raises:
-        WriteError: the file can't be written; what was there before stays.
+        WriteError: the file can't be written; what was there before stays. AnalysisError: it is no result.
     """
+    if not isinstance(result, Result):
+        raise AnalysisError(
+            f"save keeps results of analyses, and got a {type(result).__name__}; model.to_toml writes a model"
+        )
     with new_hdf5(path) as (h5, file):
         file.attrs.update(
             {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": result.kind, "rotorgear_version": VERSION}

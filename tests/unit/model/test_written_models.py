@@ -155,3 +155,8 @@ def test_a_text_with_other_values() -> None:
     assert "under load" not in rg.changed_text(TEXT, {"operation.speed": None})
     with pytest.raises(AnalysisError, match=r"bearings\.lft\.stiffness: the file does not spell this value out"):
         rg.changed_text(TEXT, {"bearings.lft.stiffness": 1.0})
+
+
+def test_a_model_is_no_result() -> None:
+    with pytest.raises(AnalysisError, match=r"got a Model; model\.to_toml writes a model"):
+        rg.save(spur_pair(), "model.h5")  # type: ignore[arg-type]
