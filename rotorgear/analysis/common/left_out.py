@@ -12,6 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rotorgear.analysis.common.gear_bodies import body_notes
+from rotorgear.analysis.common.planet_notes import planet_notes
 from rotorgear.analysis.common.rings import ring_notes
 from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.model.model import Model
@@ -140,6 +141,7 @@ def left_out(
         *(mesh_stiffness(system) if analysis in ("modes", "frf") else ()),
         *body_notes(system),
         *(ring_notes(system) if analysis in ("modes", "frf", "response") else ()),
+        *(planet_notes(system, speed) if analysis in ("modes", "frf", "response") else ()),
         *system.state.notes,
     )
     # Of a part that is not there as a whole, nothing else need be said.

@@ -11,6 +11,7 @@ from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reductio
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.notes import gathering, mode_warnings
+from rotorgear.analysis.common.planet_notes import class_notes
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, speed_in_si
@@ -154,7 +155,7 @@ def modes_about(
         discretisation=pieces(system),
         seconds=clock.total(),
         laws=law_rows(system.state.operating),
-        left_out=(*left_out(system, "modes", speed), *found.groups),
+        left_out=(*left_out(system, "modes", speed), *class_notes(system), *found.groups),
         warnings=(
             *mode_warnings(system, asked.modes, s, asked.fmax),
             *conditioning_warnings(system, speed, s, found.rigid, energies.strain),
