@@ -15,7 +15,7 @@ from rotorgear.casings import mesh_error
 from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduced_body import mass_properties
+from rotorgear.casings.reduced_body import mass_properties, rigid_motions
 from rotorgear.casings.reduction import free_modes, held_modes, reduce, rigid_residual
 from rotorgear.casings.settings import CasingSettings, JoinSettings, MountSettings
 from tests.unit.casings.blocks import block, write_inp
@@ -255,3 +255,18 @@ def test_frequencies_of_a_smooth_block_converge_with_order_four(
         return (coarse**-p - middle**-p) / (middle**-p - fine**-p) - ratio
 
     assert brentq(of_order, 1.0, 9.0) > 3.5
+
+
+def test_a_body_whose_rigid_motions_are_sprung_has_their_frequency_and_residual(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Forces of 200^2 times the mass: all six motions at 200 rad/s, where a free body has rounding."""
+    fe = finite_element_body(settings(tmp_path, counts=(1, 1, 1)))
+    assert rigid_residual(fe)[0] < 1e-12
+    monkeypatch.setattr(type(fe), "stiffness_times", lambda self, U: 200.0**2 * self.matrices.times_mass(U))
+    residual, frequency = rigid_residual(fe)
+    assert frequency == pytest.approx(200.0 / (2.0 * np.pi), rel=1e-9)
+    R = rigid_motions(fe.mesh.points, fe.mass_properties[1])
+    forces = 200.0**2 * fe.matrices.times_mass(R)
+    share = np.linalg.norm(forces, axis=0) / np.linalg.norm(R, axis=0)
+    assert residual == pytest.approx(share.max() / abs(fe.matrices.stiffness.data).max(), rel=1e-12)
