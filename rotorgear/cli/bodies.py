@@ -215,10 +215,11 @@ def schema(call: Call) -> None:
 
 
 def compile_ahead(call: Call) -> None:
-    """Machine code of motions in time, by the shortest runs of a shipped model, which keep it in the cache folder."""
+    """Machine code of all laws and of motions in time, by the shortest runs, which keep it in the cache folder."""
     model = rg.load(next(one.path for one in rg.models() if one.name == "backlash_pair"))
     speed = "operation.speed"
     runs: dict[str, Callable[[], Any]] = {
+        "force laws": _evaluate_all_laws,
         "transient, exponential steps": lambda: rg.transient(model, time="2 ms", discard="0 ms", method="exponential"),
         "transient, Newmark's steps": lambda: rg.transient(model, time="2 ms", discard="0 ms", method="newmark"),
         "sweep": lambda: rg.sweep(model, {speed: "2600 rpm"}, discard=2, sample=10),
@@ -230,7 +231,15 @@ def compile_ahead(call: Call) -> None:
         for number, (name, run) in enumerate(runs.items()):
             progress(number / len(runs), name)
             run()
-    say(f"the machine code of motions in time is ready, after {cpu_seconds() - begun:.0f} CPU s")
+    say(f"all machine code is ready, after {cpu_seconds() - begun:.0f} CPU s")
+
+
+def _evaluate_all_laws() -> None:
+    """Each law once, at speed, as an equilibrium asks for it."""
+    from rotorgear.forces import registry
+
+    for name in registry.names():
+        registry.law_of(name).examples()[0].linearised(speed=100.0)
 
 
 def validate(call: Call) -> None:

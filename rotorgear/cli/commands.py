@@ -327,7 +327,7 @@ _GROUPS = {
         ),
         Command(
             "compile",
-            "Compile the loops of motions in time ahead of the first run",
+            "Compile laws and loops in time ahead of the first run",
             (),
             shows=(),
             body="bodies.compile_ahead",

@@ -59,9 +59,9 @@ def test_a_shell_completes_options() -> None:
 def test_what_was_compiled_ahead_is_not_announced_again() -> None:
     done = CliRunner().invoke(app, ["compile"])
     assert done.exit_code == 0, done.output
-    assert done.stdout.startswith("the machine code of motions in time is ready, after ")
+    assert done.stdout.startswith("all machine code is ready, after ")
     steps = [line.partition(": ")[2].partition(", after")[0] for line in done.stderr.splitlines()]
-    assert steps == ["transient, exponential steps", "transient, Newmark's steps", "sweep", "orbits"]
+    assert steps == ["force laws", "transient, exponential steps", "transient, Newmark's steps", "sweep", "orbits"]
     model = str(MODELS / "helical_pair.toml")
     assert (
         "compiling" not in CliRunner().invoke(app, ["transient", model, "--time", "1 ms", "--discard", "0 ms"]).output
