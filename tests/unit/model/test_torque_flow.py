@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rotorgear.errors import ModelError
+from rotorgear.gears.stiffness.face_load import FaceLoad, FaceSpring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
@@ -218,3 +220,34 @@ def test_two_loads_without_a_torque_are_refused(pair: Data) -> None:
         match=r"loads: got loads\.mill, operation\.output_shaft without torque or power, expected at most one",
     ):
         Model(**pair)
+
+
+@pytest.mark.parametrize("kind", ["static", "dynamic"])
+def test_a_contact_about_a_loaded_face_has_its_force_and_moment_there(kind: str, pair: Data) -> None:
+    """F = start + k (delta + e t - e t_0) and M = e F + couple + k_t t at the approach and the tilt t_0 of the state."""
+    force = flow_of(Model(**pair)).forces[0]
+    springs = {"static": FaceSpring(3e8, 2e-3, 4e4), "dynamic": FaceSpring(5e8, -1e-3, 7e4)}
+    face = FaceLoad(
+        width=0.03,
+        misalignment=12e-6,
+        force=2400.0,
+        moment=7.0,
+        approach=9e-6,
+        **springs,
+        z=np.zeros(1),
+        line_load=np.zeros(1),
+        load_factor=1.0,
+        peak_place=0.0,
+        peak_pressure=0.0,
+    )
+    about = force.about_face(face, 5e-6, kind)  # type: ignore[arg-type]
+    spring = springs[kind]
+    assert about.face is not None
+    assert about.start is not None
+    tilt = (5e-6 - 12e-6) / 0.03
+    assert about.contact.stiffness == spring.stiffness
+    closed = face.approach + about.face.place * tilt - about.face.shift
+    found = about.start + about.contact.stiffness * closed
+    assert found == pytest.approx(2400.0, rel=1e-12)
+    assert about.face.place * found + about.face.couple + about.face.tilt_stiffness * tilt == pytest.approx(7.0)
+    assert (about.face.place, about.face.tilt_stiffness) == (spring.place, spring.tilt_stiffness)
