@@ -24,6 +24,8 @@ from rotorgear.system.nodes import Nodes
 
 # What is left of a condition below this share of it is rounding: the conditions before it have it already.
 _NOTHING = 1e-9
+# A rotation is solved for where its lever is no smaller beside the displacements, in m.
+_LEVER = 1e-4
 _TORSION = 5
 
 
@@ -110,7 +112,7 @@ def without_rigid(dofs: DofMap, kept: Conditions) -> DofMap:
             )
         # A rotation goes first: displacements of the shafts keep their place among the dofs.
         main = np.asarray(abs(T).argmax(axis=0)).ravel()
-        turns = np.where((main % 6 == _TORSION) & (size > _NOTHING * size.max()), size, 0.0)
+        turns = np.where((main % 6 == _TORSION) & (size > _LEVER * size.max()), size, 0.0)
         taken = int(np.argmax(turns if turns.any() else size))
         left = np.delete(np.arange(len(size)), taken)
         follow = sp.csc_array(-condition[left][None] / condition[taken])
