@@ -64,7 +64,7 @@ class Exponential(Integrator):
         """
         if not system.rotation.is_constant and system.G is not None and system.G.nnz:
             raise AnalysisError("the exponential integrator needs a constant speed; use newmark for a run-up")
-        # Planets that go round free of their teeth have no modes: their inertia is a negative stiffness in axes at rest.
+        # Sisters that go round free of these laws have no modes: their inertia is a negative stiffness in axes at rest.
         if not (self.modal_ratio or self.modes or system.sisters.planets.size):
             system = self._resolved(system, h)
         return ExponentialStepper(self._modes(system, speed), system, h, tolerance)

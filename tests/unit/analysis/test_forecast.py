@@ -65,8 +65,9 @@ def test_orbits_tell_what_the_first_branch_will_take_before_half_of_it_is_there(
         ends = [case.speed(W) for W in (1.1, 1.3)]
         over = {"operation.speed": ends}
         found = rg.orbits(rg.loads(case.text()), over, step=0.1, progress=lambda fraction, text: steps.append(text))
-    ((what, seconds, more, at),) = told
-    assert what == "orbits"
+    # On an empty cache the compilation is told first.
+    (seconds, more, at), *again = [said for what, *said in told if what == "orbits"]
+    assert not again
     assert seconds > 0.0
     assert more.startswith("for the first branch, up to ")
     # Beside the points steps are told at the begin.
