@@ -274,9 +274,9 @@ def _stiffness(
 ) -> tuple[dict[str, str], list[str]]:
     """Stiffness by direction of a bearing around d in m, and comments that say which of it the file did not give."""
     account = structure.account
-    radial = _given(part, ("radial_stiffness",), "stiffness", account)
-    axial = _given(part, ("axial_stiffness",), "stiffness", account)
-    tilt = _given(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
+    radial = given_stiffness(part, ("radial_stiffness",), "stiffness", account)
+    axial = given_stiffness(part, ("axial_stiffness",), "stiffness", account)
+    tilt = given_stiffness(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
     takes_radial = account.truth(part, "radial_force_absorption") is not False
     takes_axial = _takes_axial(part, designation, structure)
     guessed = (0.0, 0.0, "", "")
@@ -314,7 +314,7 @@ def between(header: str, remark: str, first: tuple[ShaftPart, float], second: tu
     return table
 
 
-def _given(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:
+def given_stiffness(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:
     """A stiffness of the file; None where there is none, or a placeholder for rigid or free."""
     value = account.number(part, names, kind)
     bounds = _STIFFNESS if kind == "stiffness" else _TILT
@@ -404,10 +404,10 @@ def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], 
     None where it does neither, or is open.
     """
     account = structure.account
-    inner, outer = seats(part, shafts, structure)
     if is_open(part, structure):
         account.left_out.append(f"{part}: it is open")
         return None
+    inner, outer = seats(part, shafts, structure)
     name = names.of(part.name, "coupling", part.id)
     if inner is not None and outer is not None:
         table = between(f"couplings.{name}", str(part), inner, outer)
@@ -420,6 +420,15 @@ def coupling_table(part: Component, names: Names, shafts: dict[str, ShaftPart], 
         return None
     add_stub(table, d, account, part)
     return table
+
+
+# Stiffnesses of a coupling: their kind, and their attributes over the versions.
+COUPLING_STIFFNESS = {
+    "radial": ("stiffness", ("radial_stiffness",)),
+    "axial": ("stiffness", ("axial_stiffness",)),
+    "tilt": ("rotational_stiffness", ("bending_stiffness",)),
+    "torsion": ("rotational_stiffness", ("rotational_stiffness", "torsional_stiffness")),
+}
 
 
 def is_open(part: Component, structure: Structure) -> bool:
@@ -450,15 +459,16 @@ def add_stub(table: Table, d: float, account: Account, part: Component | None = 
     reason = f"none in the file: a steel stub of {1e3 * d:.4g} mm, as long as thick"
     values = {}
     notes = []
-    for key, kind, attributes, stub in (
-        ("radial", "stiffness", ("radial_stiffness",), 12.0 * 206e9 * inertia / d**3),
-        ("axial", "stiffness", ("axial_stiffness",), 206e9 * math.pi * d / 4.0),
-        ("tilt", "rotational_stiffness", ("bending_stiffness",), 206e9 * inertia / d),
-        ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness"), 79e9 * 2.0 * inertia / d),
-    ):
-        found = None if part is None else _given(part, attributes, kind, account)
+    stub = {
+        "radial": 12.0 * 206e9 * inertia / d**3,
+        "axial": 206e9 * math.pi * d / 4.0,
+        "tilt": 206e9 * inertia / d,
+        "torsion": 79e9 * 2.0 * inertia / d,
+    }
+    for key, (kind, attributes) in COUPLING_STIFFNESS.items():
+        found = None if part is None else given_stiffness(part, attributes, kind, account)
         if found is None:
-            found = float(f"{stub:.4g}")
+            found = float(f"{stub[key]:.4g}")
             notes.append(account.assume(f"{table.header}.stiffness.{key}", f"{found:.3g}", reason))
         values[key] = quantity(found, kind)
     table.add("stiffness", row(**values), notes[0] if notes else "")

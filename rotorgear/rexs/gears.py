@@ -71,7 +71,7 @@ def read_gear(
     account = structure.account
     shaft = shafts.get(structure.shaft_of(gear))
     if shaft is None:
-        account.missing(gear, "it must be on a shaft, by an assembly relation")
+        account.missing(gear, "it must be on a shaft or in the casing, by an assembly relation")
         return None
     data = structure.data_of(gear)
     comments: dict[str, str] = {}

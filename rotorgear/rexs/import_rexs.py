@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,14 +13,15 @@ from rotorgear.model.load import loads
 from rotorgear.model.model import model_hash
 from rotorgear.results.rexs_import import RexsImport
 from rotorgear.rexs.account import Account
-from rotorgear.rexs.bearings import bearing_table, coupling_table, holds, is_bearing, is_coupling
+from rotorgear.rexs.bearings import bearing_table, coupling_table, holds, is_bearing, is_coupling, is_open
 from rotorgear.rexs.bevels import BevelPart, bevel_table, matched_bevels, read_bevel_gear
 from rotorgear.rexs.carriers import Carriers
-from rotorgear.rexs.document import Document
+from rotorgear.rexs.document import Component, Document
 from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read_gear
 from rotorgear.rexs.loads import MASS, given_speeds, load_tables, mass_tables
 from rotorgear.rexs.planets import Planets, on_shafts, placed_planets, read_stages
 from rotorgear.rexs.read import read_document
+from rotorgear.rexs.seated import seat_table, with_seats
 from rotorgear.rexs.shafts import Materials, ShaftPart, read_sections, shaft_axes, shaft_table
 from rotorgear.rexs.structure import BEVEL, GEARS, Axis, Pair, Structure, refuse_other_kinds
 from rotorgear.rexs.toml_text import Names, Table, comment_line, quantity, text
@@ -129,17 +131,19 @@ def _with_load_case(
 
 def _tables(document: Document, version: tuple[int, int], account: Account) -> tuple[list[Table], dict[str, int]]:
     """All tables of the model file in its order, and how many parts of each kind there are."""
+    document, seats = with_seats(document)
     whole = Structure(document, account)
+    held = {number: joint for number, joint in seats.items() if joint is None or not is_open(joint, whole)}
     pairs = whole.pairs()
     on = on_shafts(whole)
     stages = read_stages(whole, on)
     axes = shaft_axes(whole, pairs, {number for stage in stages for number in stage.pins})
     planets = placed_planets(stages, on, axes, pairs, whole, version)
     structure = whole.without(planets.dropped)
-    shafts = _shafts(structure, axes, planets)
+    shafts = _shafts(structure, axes, planets, seats.keys())
     carriers = Carriers(planets, shafts, whole)
     materials = Materials(structure)
-    given = _given_speeds(shafts, structure, bool(stages))
+    given = _given_speeds(shafts, structure, bool(stages), held)
     shaft_tables = [
         shaft_table(
             part,
@@ -161,7 +165,7 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
         for table in mass_tables(part, names, shafts, structure)
     ]
     bodies = [*bodies, *carriers.bodies(materials, names)]
-    bearings, couplings = _joints(structure, shafts, planets, carriers)
+    bearings, couplings = _joints(structure, shafts, planets, carriers, held)
     parts = [*shaft_tables, *carriers.tables(), *gear_tables]
     operation, loads = load_tables(shafts, [*parts, *mesh_tables, *couplings], structure)
     taken = [part.id for part in document.components.values() if is_bearing(part) or is_coupling(part)]
@@ -171,13 +175,15 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     return [*head, *parts, *bodies, *mesh_tables, *bearings, *couplings, *loads], counts
 
 
-def _shafts(structure: Structure, axes: dict[str, Axis], planets: Planets) -> dict[str, ShaftPart]:
-    """The shafts that have a place and sections, by number."""
+def _shafts(
+    structure: Structure, axes: dict[str, Axis], planets: Planets, seats: Collection[str]
+) -> dict[str, ShaftPart]:
+    """The shafts that have a place and sections, or a seat in the casing, by number."""
     found = {}
     names = Names()
     for component in structure.document.of_type("shaft"):
-        sections = read_sections(component, structure)
-        if component.id in axes and sections:
+        sections = () if component.id in seats else read_sections(component, structure)
+        if component.id in axes and (sections or component.id in seats):
             name = names.of(component.name, "shaft", component.id)
             place = planets.places.get(component.id)
             found[component.id] = ShaftPart(component, name, axes[component.id], sections, place)
@@ -187,7 +193,7 @@ def _shafts(structure: Structure, axes: dict[str, Axis], planets: Planets) -> di
 
 
 def _given_speeds(
-    shafts: dict[str, ShaftPart], structure: Structure, planetary: bool
+    shafts: dict[str, ShaftPart], structure: Structure, planetary: bool, held: Collection[str]
 ) -> dict[str, tuple[str, str, str]]:
     """Number of a shaft -> key, value and comment of its speed, where it is held, or the second one of a train with carriers."""
     found: dict[str, tuple[str, str, str]] = {}
@@ -203,7 +209,7 @@ def _given_speeds(
             found |= {
                 side.id: ("speed_ratio", "0", f"held by {part}") for side in structure.beside(part) if side.id in shafts
             }
-    return found
+    return found | dict.fromkeys(held, ("speed_ratio", "0", "held: its gear stands in the casing"))
 
 
 def _gears(
@@ -259,7 +265,11 @@ def _gears(
 
 
 def _joints(
-    structure: Structure, shafts: dict[str, ShaftPart], planets: Planets, carriers: Carriers
+    structure: Structure,
+    shafts: dict[str, ShaftPart],
+    planets: Planets,
+    carriers: Carriers,
+    held: Mapping[str, Component | None],
 ) -> tuple[list[Table], list[Table]]:
     """Bearings (also those between two shafts), and couplings with the supports of shafts that some hold to the casing."""
     bearings: list[Table] = []
@@ -270,9 +280,14 @@ def _joints(
         if is_bearing(component):
             table = bearing_table(component, names, shafts, structure, pins.get(component.id))
             bearings += [table] if table is not None else []
-        elif is_coupling(component):
+        elif is_coupling(component) and component not in held.values():
             table = coupling_table(component, names, shafts, structure)
             couplings += [table] if table is not None else []
+    couplings += [
+        seat_table(shafts[number], coupling, names, structure.account)
+        for number, coupling in held.items()
+        if number in shafts
+    ]
     by_name = {part.name: number for number, part in shafts.items()}
     joined = [table for table in couplings if table.header.startswith("couplings.")]
     pairs = [(by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")]) for table in joined]

@@ -61,7 +61,10 @@ class Pins:
 
 @dataclass(frozen=True)
 class ShaftPart:
-    """A shaft of the model: its component, name, axis and sections by rising u; of a planet where its pins stand."""
+    """A shaft of the model: its component, name, axis and sections by rising u; of a planet where its pins stand.
+
+    That of a gear in the casing has no sections.
+    """
 
     component: Component
     name: str
@@ -72,6 +75,8 @@ class ShaftPart:
     @property
     def ends(self) -> tuple[float, float]:
         """Smallest and largest z."""
+        if not self.sections:
+            return self.axis.origin, self.axis.origin
         low, high = sorted((self.axis.z(self.sections[0].u), self.axis.z(self.sections[-1].end)))
         return low, high
 
@@ -82,15 +87,15 @@ class ShaftPart:
 
     def diameter(self, z: float) -> float:
         """The largest outer diameter of the sections at a place."""
-        return max((max(p.outer) for p in self._at(z)), default=max(self.sections[-1].outer))
+        return max((max(p.outer) for p in self._at(z)), default=0.0)
 
     def bore(self, z: float) -> float:
         """The smallest bore of the sections at a place."""
-        return min((min(p.inner) for p in self._at(z)), default=min(self.sections[-1].inner))
+        return min((min(p.inner) for p in self._at(z)), default=0.0)
 
     def _at(self, z: float) -> list[Section]:
         u = (z - self.axis.origin) * self.axis.sense
-        return [p for p in self.sections if p.u - _SAME_PLACE <= u <= p.end + _SAME_PLACE]
+        return [p for p in self.sections if p.u - _SAME_PLACE <= u <= p.end + _SAME_PLACE] or list(self.sections[-1:])
 
     def table(self, header: str, remark: str, z: float) -> Table:
         """The table of a part that is on the shaft at z."""
@@ -253,9 +258,15 @@ def shaft_table(part: ShaftPart, material: str, comment: str, model: Frame, give
     table = Table(f"shafts.{part.name}", f"{part.component}{several}")
     forward = part.axis.sense > 0
     _add_place(table, part, model)
-    table.add("start", quantity(part.start, "length"), "" if forward else "u of the file runs against z here")
+    table.add(
+        "start",
+        quantity(part.start, "length"),
+        "" if forward or not part.sections else "u of the file runs against z here",
+    )
     if given:
         table.add(*given)
+    if not part.sections:
+        return table
     if material:
         table.add("material", text(material), comment)
     lines = ["["]

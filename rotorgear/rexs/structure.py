@@ -128,16 +128,16 @@ _DATA_WORDS = (
     "notch",
     "groove",
 )
-_ASSEMBLIES = ("assembly", "ordered_assembly")
+ASSEMBLIES = ("assembly", "ordered_assembly")
 _REFERENCES = ("reference", "ordered_reference")
-_ON_SHAFT = (*_ASSEMBLIES, "side", "connection", "coupling")
+ON_SHAFT = (*ASSEMBLIES, "side", "connection", "coupling")
 _TOOLS = (
     "rack_shaped_tool",
     "cylindrical_gear_tool",
     "gear_shaped_tool",
     "cylindrical_gear_manufacturing_settings",
 )
-_DATA = (*_REFERENCES, *_ASSEMBLIES, "flank", "stage_gear_data", "manufacturing_step")
+_DATA = (*_REFERENCES, *ASSEMBLIES, "flank", "stage_gear_data", "manufacturing_step")
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ class Structure:
         """Number of the shaft that a component is on (in some of the roles of that shaft, where they are given), or ""."""
         wanted = roles or ("assembly", "inner_part", "shaft", "side_1")
         for relation in self._of.get(component.id, ()):
-            if relation.type in _ON_SHAFT:
+            if relation.type in ON_SHAFT:
                 for owner in self._known(relation.at(*wanted)):
                     if owner.type == "shaft" and owner.id != component.id:
                         return owner.id
@@ -262,7 +262,7 @@ class Structure:
         """The components that a bearing or a coupling sits between."""
         numbers: list[str] = []
         for relation in self._of.get(part.id, ()):
-            if relation.type in _ON_SHAFT:
+            if relation.type in ON_SHAFT:
                 numbers += relation.at("inner_part", "outer_part", "side_1", "side_2")
         return self._known(number for number in dict.fromkeys(numbers) if number != part.id)
 
@@ -273,7 +273,7 @@ class Structure:
 
     def parts_of(self, owner: Component, *types: str) -> list[Component]:
         """The components of some types that a component is put together from, in the order of the file."""
-        return [part for part in self._linked(owner, _ASSEMBLIES, "assembly", "part") if part.type in types]
+        return [part for part in self._linked(owner, ASSEMBLIES, "assembly", "part") if part.type in types]
 
     def referenced(self, owner: Component, kind: str) -> Component | None:
         """The component of a type that another one refers to."""

@@ -420,3 +420,59 @@ def test_two_stages_in_series_one_of_them_with_stepped_planets_have_the_product_
     assert sorted(model.carriers) == ["plain", "stepped"]
     assert model.layout.train.ratios["middle"] == Fraction(19, 231)
     assert model.layout.train.ratios["out"] == Fraction(19, 231) * Fraction(18, 78)
+
+
+def seated(d: Document, **attributes: Value) -> Document:
+    """A stage whose ring stands in the casing: as a part of it, or with attributes, by a coupling that has them."""
+    ring = named(d, "ring gear")
+    (shaft,) = (part.id for part in d.components.values() if (part.type, part.name) == ("shaft", "ring"))
+    g = Written(d.version)
+    g.components, g.relations = dict(d.components), list(d.relations)
+    g.casing = next(part.id for part in d.of_type("gear_casing"))
+    gone = {shaft, *(n for r in d.relations if ("assembly", shaft) in r.refs for n in r.at("part") if n != ring.id)}
+    gone |= {r.refs[0][1] for r in d.relations if ("inner_part", shaft) in r.refs}
+    g.relations = [r for r in g.relations if not gone & {n for _, n in r.refs}]
+    g.components = {n: part for n, part in g.components.items() if n not in gone}
+    # Axes of a ring may run the other way; its support vector is the middle of its face.
+    place = {"support_vector": Value([50.0, 0.0, 0.0], MM), "u_axis_vector": Value([-1.0, 0.0, 0.0], MM)}
+    kept = {key: value for key, value in ring.attributes.items() if key != "u_coordinate_on_shaft"}
+    g.components[ring.id] = replace(ring, attributes={**kept, **place})
+    if attributes:
+        number = "900"
+        g.components[number] = Component(number, "coupling", "bolts", attributes)
+        g.join("side", assembly=number, inner_part=ring.id, outer_part=g.casing)
+    else:
+        g.join("assembly", assembly=g.casing, part=ring.id)
+    return g.document()
+
+
+def test_a_ring_that_is_part_of_the_casing_stands_fixed_and_takes_its_torque(tmp_path: Path) -> None:
+    teeth, count = (17, 22, 61), 3
+    result = imported(seated(stage_of(teeth, count)), tmp_path)
+    model = rg.loads(result.toml)
+    ring = model.gears["ring_gear"]
+    assert (ring.shaft, ring.at, ring.teeth, ring.internal) == ("ring_gear", pytest.approx(0.05), 61, True)
+    assert ring.body.outer_diameter == pytest.approx(2e-3 * (61 + 2 * 1.25 + 2 * 3), rel=1e-12)
+    assert model.supports["ring_gear"].fixed == ("x", "y", "z", "tilt_x", "tilt_y", "torsion")
+    assert model.layout.train.ratios["carrier"] == Fraction(17, 17 + 61)
+    assert any(item.address == "supports.ring_gear.fixed" for item in result.assumptions)
+    # Willis: the ring takes z_r/z_s of the torque that goes in, against the sense of the carrier's.
+    loaded = model.with_("operation.output_shaft", "carrier").with_("operation.torque", "130 N m")
+    loaded = loaded.with_("operation.speed", "0.01 rpm")
+    assert abs(rg.static(loaded).support_force["ring_gear"][5]) == pytest.approx(130.0 * 61 / 17, rel=1e-9)
+
+
+def test_a_coupling_between_a_ring_and_the_casing_holds_it_by_its_stiffnesses(tmp_path: Path) -> None:
+    bolts = {
+        "radial_stiffness": Value(7e8, "N / m"),
+        "torsional_stiffness": Value(3.3e7, "N m / rad"),
+    }
+    model = model_of(seated(stage_of((17, 22, 61), 3), **bolts), tmp_path)
+    (bolted,) = model.supports.values()
+    assert "bolts" in model.supports
+    assert bolted.stiffness.radial == 7e8
+    assert bolted.stiffness.torsion == 3.3e7
+    assert bolted.fixed == ("z", "tilt_x", "tilt_y")
+    # Nothing holds the ring of a coupling that is open: its speed and that of the carrier are not determined.
+    with pytest.raises(rg.ModelError, match=r"shafts\."):
+        model_of(seated(stage_of((17, 22, 61), 3), **bolts, is_engaged=Value("false")), tmp_path)
