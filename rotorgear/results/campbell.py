@@ -8,7 +8,7 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
-from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
+from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece, carrier_columns
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Column, Line, error_words, exact, table_of, table_over
 
@@ -92,7 +92,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     The displacements of a branch at the p nodes and stations are `basis @ coordinates`; see `shapes`.
     """
 
-    json_axes = ("SHAFT", "MOTION", "MESH", "branch", "speed")
+    json_axes = ("SHAFT", "MOTION", "MESH", "CLASS", "CARRIER", "branch", "speed")
 
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm", note=", ascending in size")
     operating_speed: float | None = of("operating speed of the model", "rad/s", note="; `null` without one")
@@ -158,6 +158,41 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     margins: tuple[Margin, ...] = of("margins", "", "margin", record=Margin)
     onsets: tuple[Onset, ...] = of("onsets of instability", "", "onset", record=Onset)
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
+    mode_class: tuple[str, ...] = of(
+        "classes of a planetary branch",
+        "",
+        "branch",
+        note=", at the last speed at which it oscillates, as in a modal result; empty without planets",
+        column="class",
+        default=(),
+    )
+    class_energy: dict[str, np.ndarray] = of(
+        "share of a class in the kinetic energy",
+        "",
+        "CLASS",
+        "speed",
+        "branch",
+        note=" of a planetary stage, such as `stage rotational`",
+        default_factory=dict,
+    )
+    carrier_frequency_hz: dict[str, np.ndarray] = of(
+        "frequency in the frame of a carrier",
+        "Hz",
+        "CARRIER",
+        "speed",
+        "branch",
+        note=" that turns, of the part with the most energy; `null`: its stage rests",
+        default_factory=dict,
+    )
+    carrier_frequency_share: dict[str, np.ndarray] = of(
+        "share of what a carrier sees at that frequency",
+        "",
+        "CARRIER",
+        "speed",
+        "branch",
+        note=", in the kinetic energy of its stage",
+        default_factory=dict,
+    )
 
     def __len__(self) -> int:
         return int(self.eigenvalues.shape[1])
@@ -185,6 +220,15 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
         )
         caption = f"Branches; log dec., whirl and what moves at {last:.6g} rpm"
         yield table_over(self, "branch", *columns, "description", caption=caption, titled=True)
+        if self.mode_class:
+            hz, share = (
+                {carrier: values[end] for carrier, values in every.items()}
+                for every in (self.carrier_frequency_hz, self.carrier_frequency_share)
+            )
+            shown = (columns[0], columns[2], *carrier_columns(hz, share), "mode_class")
+            yield table_over(
+                self, "branch", *shown, caption=f"Classes of planetary motions at {last:.6g} rpm", titled=True
+            )
         if self.operating_speed is not None and self.margins:
             at = f"Margins at {self.operating_speed * RPM_PER_RAD_S:.6g} rpm"
             hits = Column("", "branch", where=lambda one: one.branch > 0)

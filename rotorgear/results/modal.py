@@ -220,9 +220,7 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         error = Column("", "error_estimate", where=lambda k: not self.rigid[k])
         yield table_over(self, "mode", number, "frequency_hz", error, *damped, "description", caption="Modes")
         if self.mode_class:
-            seen = [
-                Column(f"from {name} Hz", partial(self._seen, name), left=False) for name in self.carrier_frequency_hz
-            ]
+            seen = carrier_columns(self.carrier_frequency_hz, self.carrier_frequency_share)
             caption = "Classes of planetary motions"
             yield table_over(self, "mode", number, "frequency_hz", *seen, "mode_class", caption=caption, titled=True)
         if energies:
@@ -235,11 +233,15 @@ class ModalResult(AboutEquilibrium, kind="modal"):
             yield f"error: estimated relative error of each frequency; largest {error_words(estimates.max(), 1)}"
         yield from (*self.remarks(), "")
 
-    def _seen(self, carrier: str, k: int) -> str:
-        """The frequency of a mode in the frame of a carrier, with its share where that is not all."""
-        share = self.carrier_frequency_share[carrier][k]
-        text = exact(".4f")(self.carrier_frequency_hz[carrier][k])
-        return f"{text}, {100.0 * share:.0f} %" if share < 0.995 else text
+
+def carrier_columns(frequency: dict[str, np.ndarray], share: dict[str, np.ndarray]) -> list[Column]:
+    """Columns of the frequencies (m,) of m modes in the frame of each carrier, with the share (m,) where that is not all."""
+
+    def seen(carrier: str, k: int) -> str:
+        text = exact(".4f")(frequency[carrier][k])
+        return f"{text}, {100.0 * share[carrier][k]:.0f} %" if share[carrier][k] < 0.995 else text
+
+    return [Column(f"from {carrier} Hz", partial(seen, carrier), left=False) for carrier in frequency]
 
 
 def _largest(shares: dict[str, np.ndarray], k: int) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from rotorgear.analysis.common.casings import casing_warnings, reduction_errors,
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.left_out import left_out
+from rotorgear.analysis.common.planet_notes import class_notes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.common.stream import Stream
@@ -296,6 +298,18 @@ class _Diagram:
             at = np.hstack([shapes.coordinates(chain.group, chain.q[place][:, None]) for chain in known])
             margin = margins(lines, met, operating, s[place], shapes.portraits(at, np.full(len(known), operating)))
         strain = {name: v for name, v in seen.energies.strain.items() if name.startswith("meshes.")}
+        planetary: dict[str, Any] = {}
+        if system.layout.planets:
+            classes = shapes.classes(flat, np.broadcast_to(grid[kept][:, None], there.shape)[there], seen.energies)
+            words = np.full(there.shape, "", dtype=object)
+            words[there] = classes.words
+            last = len(kept) - 1 - np.argmax(there[::-1], axis=0)
+            planetary = {
+                "mode_class": tuple(words[last, range(len(chains))]) if classes.energy else (),
+                "class_energy": every(classes.energy),
+                "carrier_frequency_hz": every(classes.seen_hz(s[kept][there])),
+                "carrier_frequency_share": every(classes.seen_share),
+            }
         # A branch is described by its mode at the last speed asked for at which it oscillates: its whirl is that there, too.
         told = [int(kept[np.flatnonzero(np.isfinite(chain.s[kept]))[-1]]) for chain in chains]
         columns = [shapes.coordinates(chain.group, chain.q[n][:, None]) for chain, n in zip(chains, told, strict=True)]
@@ -325,6 +339,7 @@ class _Diagram:
             laws=law_rows(system.state.operating),
             left_out=self.left_out(),
             warnings=self.warnings(onsets),
+            **planetary,
             method=f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a "
             f"check: off by at most {bound:.0e}; {len(grid)} speeds, {self.halvings} steps halved to follow the modes"
             f"{self._beyond_asked()}{about_state(system.state)}",
@@ -349,7 +364,7 @@ class _Diagram:
             notes.append("margins: the model has no operating speed")
         elif self.operating_place() is None:
             notes.append("margins: the operating speed lies outside of the range")
-        return (*notes, *found.notes)
+        return (*notes, *class_notes(system), *found.notes)
 
     def warnings(self, onsets: tuple[Onset, ...]) -> tuple[str, ...]:
         """Motions that grow, and branches that can't be told apart."""

@@ -11,6 +11,7 @@ import numpy as np
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import Energies, mode_energies
+from rotorgear.analysis.modal.planet_classes import PlanetClasses, classes_of
 from rotorgear.analysis.modal.whirl import Whirl, whirl_of, whirl_words
 from rotorgear.results.modal import WHIRL_WORDS
 from rotorgear.solvers.sparse.entries import column_forms
@@ -70,6 +71,25 @@ class BasisShapes:
         energies = [[getattr(part.energies, item.name) for part in found] for item in fields(Energies)]
         whirl = Whirl(join([part.whirl.net for part in found]), join([part.whirl.numbers for part in found]))
         return Portraits(Energies(*map(join, energies)), whirl)
+
+    def classes(self, coordinates: np.ndarray, speeds: np.ndarray, energies: Energies) -> PlanetClasses:
+        """The classes of modes (r, m) of a model with planets at speeds (m,) in rad/s, with their energies."""
+        own = energies.kinetic_by_shaft
+        width = max(1, _CHUNK // max(self.everything.shape[0], 1))
+        found = []
+        for first in range(0, max(len(speeds), 1), width):
+            part = slice(first, first + width)
+            q = self.everything @ coordinates[:, part]
+            found.append(classes_of(self.system, q, {key: of[part] for key, of in own.items()}, speeds[part]))
+
+        def join(tables: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+            return {key: np.concatenate([table[key] for table in tables]) for key in tables[0]}
+
+        words = tuple(text for part in found for text in part.words)
+        energy, shift, share = (
+            join([getattr(part, name) for part in found]) for name in ("energy", "shift", "seen_share")
+        )
+        return PlanetClasses(energy, words, shift, share)
 
     def descriptions(self, coordinates: np.ndarray, speeds: np.ndarray) -> tuple[str, ...]:
         """One line for each mode."""

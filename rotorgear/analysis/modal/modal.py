@@ -132,7 +132,7 @@ def modes_about(
     energies = mode_energies(system, speed or 0.0, q, found.rigid)
     whirl = whirl_of(system, shapes[: len(system.nodes)], speed or 0.0)
     description = describe(system, q, energies, found.rigid, (s.imag == 0.0) & ~found.rigid)
-    classes = classes_of(system, s, q, energies, speed or 0.0)
+    classes = classes_of(system, q, energies.kinetic_by_shaft, speed or 0.0)
     clock.lap("energies")
     progress(1.0, "done")
     return ModalResult(
@@ -166,8 +166,8 @@ def modes_about(
         point_amplitudes=point_amplitudes(system, nodes, shapes),
         mode_class=classes.words if classes.energy else (),
         class_energy=classes.energy,
-        carrier_frequency_hz={name: w / (2.0 * np.pi) for name, w in classes.seen.items()},
-        carrier_frequency_share=classes.seen_share,
+        carrier_frequency_hz=classes.seen_hz(s) if speed else {},
+        carrier_frequency_share=classes.seen_share if speed else {},
     )
 
 

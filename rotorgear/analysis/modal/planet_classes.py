@@ -25,7 +25,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.analysis.modal.energies import Energies
 from rotorgear.analysis.modal.solve import Modes
 from rotorgear.model.layout.carriers import PlanetSet
 from rotorgear.model.layout.layout import Layout
@@ -58,14 +57,19 @@ class PlanetClasses:
     Attributes:
         energy: "CARRIER CLASS" -> share of the kinetic energy (m,).
         words: the classes of each mode in a few words, (m).
-        seen: carrier that turns -> frequency in rad/s at which it sees the largest part of its stage (m,); NaN where that rests.
+        shift: carrier that turns -> what it adds to the frequency of the largest part of its stage, in rad/s (m,); NaN where
+            that rests.
         seen_share: carrier that turns -> share of that part in the energy of the stage (m,).
     """
 
     energy: dict[str, np.ndarray]
     words: tuple[str, ...]
-    seen: dict[str, np.ndarray]
+    shift: dict[str, np.ndarray]
     seen_share: dict[str, np.ndarray]
+
+    def seen_hz(self, s: np.ndarray) -> dict[str, np.ndarray]:
+        """Carrier that turns -> frequency in Hz at which it sees the largest part of its stage, of eigenvalues s (m,)."""
+        return {carrier: np.abs(s.imag + shift) / (2.0 * np.pi) for carrier, shift in self.shift.items()}
 
 
 @dataclass(frozen=True)
@@ -214,8 +218,15 @@ def _pure_combinations(system: System, stages: list[_Stage], V: np.ndarray) -> n
     return np.asarray(turn / norm)
 
 
-def classes_of(system: System, s: np.ndarray, q: np.ndarray, energies: Energies, speed: float) -> PlanetClasses:
-    """The classes of modes with eigenvalues s (m,) and displacements q (a, m) of all dofs, at a reference speed in rad/s."""
+def classes_of(
+    system: System, q: np.ndarray, kinetic_by_shaft: dict[tuple[str, str], np.ndarray], speeds: float | np.ndarray
+) -> PlanetClasses:
+    """The classes of modes with displacements q (a, m) of all dofs.
+
+    Args:
+        kinetic_by_shaft: their kinetic energies, as of `mode_energies`.
+        speeds: of the reference shaft in rad/s, of all modes or of each (m,).
+    """
     m = q.shape[1]
     stages = _stages(system.layout)
     rows = {stage.carrier: np.zeros((4, m)) for stage in stages}
@@ -225,23 +236,22 @@ def classes_of(system: System, s: np.ndarray, q: np.ndarray, energies: Energies,
         rows[part.stage.carrier][part.row] += by_dof.sum(axis=0)
         axial[part.stage.carrier][part.row] += by_dof[part.axial].sum(axis=0)
     energy: dict[str, np.ndarray] = {}
-    seen: dict[str, np.ndarray] = {}
+    shift: dict[str, np.ndarray] = {}
     seen_share: dict[str, np.ndarray] = {}
     said: list[dict[str, list[str]]] = [{} for _ in range(m)]
     for stage in stages:
         own = rows[stage.carrier]
         total = own.sum(axis=0)
-        share = np.sum([v for (shaft, _), v in energies.kinetic_by_shaft.items() if shaft in stage.shafts], axis=0)
+        share = np.sum([v for (shaft, _), v in kinetic_by_shaft.items() if shaft in stage.shafts], axis=0)
         parts = own / np.where(total > 0.0, total, 1.0)
         for number, name in enumerate(MODE_CLASSES):
             energy[f"{stage.carrier} {name}"] = share * parts[number == _CLASS].sum(axis=0)
-        W = speed * system.train.ratio(stage.shaft)
-        if W:
+        if system.train.ratios[stage.shaft] != 0:
+            W = np.asarray(speeds) * system.train.ratio(stage.shaft)
             shifts = np.unique(_SHIFT)
             by_shift = np.stack([parts[shift == _SHIFT].sum(axis=0) for shift in shifts])
             rests = share < _LEAST
-            frequency = np.abs(s.imag + W * shifts[by_shift.argmax(axis=0)])
-            seen[stage.carrier] = np.where(rests, np.nan, frequency)
+            shift[stage.carrier] = np.where(rests, np.nan, W * shifts[by_shift.argmax(axis=0)])
             seen_share[stage.carrier] = np.where(rests, np.nan, by_shift.max(axis=0))
         for mode in np.flatnonzero(share >= _LEAST):
             text = _words(stage, own[:, mode], axial[stage.carrier][:, mode])
@@ -249,7 +259,7 @@ def classes_of(system: System, s: np.ndarray, q: np.ndarray, energies: Energies,
     # Of several stages each is named, those of one class together.
     named = len(stages) > 1
     words = ("; ".join(f"{' and '.join(who)}: {text}" if named else text for text, who in of.items()) for of in said)
-    return PlanetClasses(energy, tuple(words), seen, seen_share)
+    return PlanetClasses(energy, tuple(words), shift, seen_share)
 
 
 def _words(stage: _Stage, energy: np.ndarray, axial: np.ndarray) -> str:

@@ -164,3 +164,25 @@ def test_rows_and_json_hold_the_classes() -> None:
     written = found.to_dict()
     assert written["mode_class"] == list(found.mode_class)
     assert written["carrier_frequency_hz"]["stage"][3] == row["carrier_frequency_hz.stage"]
+
+
+def test_branches_of_a_campbell_diagram_have_the_classes_of_their_modes_at_each_speed() -> None:
+    planets, teeth = FOUR
+    model = rg.loads(helical_stage(planets, teeth=teeth))
+    system = flow_system(model)
+    count = 6 * (3 + planets)
+    carrier = np.array([-290.0, -310.0])
+    speeds = list(carrier / system.train.ratio("carrier"))
+    diagram = rg.campbell(model, speeds=speeds, modes=count, shaft_orders=(), mesh_orders=(), error_estimate=False)
+    assert len(diagram) == count - 1  # without the rotation of the train
+    for k, W in enumerate(carrier):
+        told = diagram.carrier_frequency_hz["stage"][k]
+        assert np.sort(told) == pytest.approx(in_frame_of_the_carrier(system, W) / (2.0 * np.pi), rel=1e-7)
+        moved = ~np.isclose(told, diagram.frequency_hz[k], rtol=1e-9, atol=0.0)
+        shares = {name: diagram.class_energy[f"stage {name}"][k] for name in ("rotational", "translational", "planet")}
+        assert shares["translational"] == pytest.approx(moved.astype(float), abs=1e-9)
+        assert sum(shares.values()) == pytest.approx(np.ones(len(diagram)), abs=1e-9)
+    classes = np.array(diagram.mode_class)
+    assert np.array_equal(classes == "translational-tilting", moved)
+    assert np.count_nonzero(classes == "planet") == 6 * (planets - 3)
+    assert "from stage Hz" in diagram.text()
