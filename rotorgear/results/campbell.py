@@ -225,10 +225,9 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
                 {carrier: values[end] for carrier, values in every.items()}
                 for every in (self.carrier_frequency_hz, self.carrier_frequency_share)
             )
-            shown = (columns[0], columns[2], *carrier_columns(hz, share), "mode_class")
-            yield table_over(
-                self, "branch", *shown, caption=f"Classes of planetary motions at {last:.6g} rpm", titled=True
-            )
+            seen = (columns[0], columns[2], *carrier_columns(hz, share))
+            caption = f"Classes of planetary motions at {last:.6g} rpm"
+            yield table_over(self, "branch", *seen, "mode_class", caption=caption, titled=True)
         if self.operating_speed is not None and self.margins:
             at = f"Margins at {self.operating_speed * RPM_PER_RAD_S:.6g} rpm"
             hits = Column("", "branch", where=lambda one: one.branch > 0)
