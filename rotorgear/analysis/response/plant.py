@@ -1,6 +1,7 @@
 """A gearbox as a linear plant: its dynamic stiffness at every speed, and what is read off a displacement.
 
-A part in a seat has no mass, so that its force on the seat is -(K q + C q') in its rows of the seat. The ground holds a body by
+A bearing in a seat has no mass, so that its force on the seat is -(K q + C q') in its rows of the seat; of rings that stand in
+seats see `ring_seats`. The ground holds a body by
 
     f = Ψᵀ (M a + C v + K u)
 
@@ -13,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +22,7 @@ import scipy.sparse as sp
 from rotorgear.analysis.common.points import motion_points, point_rows
 from rotorgear.analysis.common.stations import part_nodes
 from rotorgear.analysis.response.order import Order
+from rotorgear.analysis.response.ring_seats import RingSeats
 from rotorgear.solvers.frequency.harmonic import Dynamics, DynamicsOverSpeed, LowRank
 from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import Factor
@@ -122,10 +125,9 @@ class GroundLoads:
 
     Args:
         system: the model.
-        damped: modes V (n, m) of modal mass 1, and the damping of them, M V with 2 ζ ω; None without any.
     """
 
-    def __init__(self, system: System, damped: tuple[np.ndarray, LowRank] | None) -> None:
+    def __init__(self, system: System) -> None:
         given = system.model.damping
         self._parts = []
         names: list[str] = []
@@ -142,15 +144,13 @@ class GroundLoads:
             C = C + given.rayleigh_beta * K + given.rayleigh_alpha * M
             self._parts.append((own, K, C, M))
         self.names = tuple(names)
-        self._damped = damped
 
-    def read(self, w: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Amplitudes (o, g, 6) for displacements q (n, o) at frequencies w (o,); all in SI."""
+    def read(self, w: np.ndarray, q: np.ndarray, brake: np.ndarray | None) -> np.ndarray:
+        """Amplitudes (o, g, 6) for displacements q (n, o) at frequencies w (o,); all in SI.
+
+        `brake` are the accelerations (n, o) that the damping of modes acts as.
+        """
         found = [np.zeros((len(w), 0))]
-        brake = None
-        if self._parts and self._damped is not None:
-            modes, (P, d, _) = self._damped
-            brake = modes @ (d[:, None] * (P.T @ q)) * (1j * w)
         for own, K, C, M in self._parts:
             u = own @ q
             accelerations = -(w**2) * u
@@ -198,10 +198,13 @@ class Plant:
             for name, surface in self.surfaces.items()
         }
         self.seats: dict[str, list[str]] = {}
-        for part, (casing, number, _) in system.layout.seats:
+        rings = ((f"gears.{name}", seat) for name, seat in system.layout.ring_seats.items())
+        for part, (casing, number, _) in chain(system.layout.seats, rings):
             name = f"{casing}.{system.layout.casing(casing).seats[number]}"
             self.seats.setdefault(name, []).append(part)
-        self.ground = GroundLoads(system, self.damped)
+        self.rings = RingSeats(system)
+        self._with_rings = [list(self.seats).index(name) for name in self.rings.names]
+        self.ground = GroundLoads(system)
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._sums: SparseSums | None = None
         self._rows: tuple[tuple[np.ndarray, ...], tuple[sp.csr_array, ...]] | None = None
@@ -273,6 +276,11 @@ class Plant:
         rotation = (lines.rotation.T @ q).T
         normal = w[:, None] * self._normal(q)
         lacking = self._bubbles.change(speed, w, q, turning=True)
+        on_seats = np.asarray(seated).reshape(len(w), -1, 6)
+        brake = self._brake(w, q) if self.ground.names or self.rings.names else None
+        if self.rings.names:
+            couple = np.array([order.couple for order in orders])
+            on_seats[:, self._with_rings] += self.rings.read(lines, force, couple, w, q, brake)
         return Readings(
             mesh_force=force,
             transmission_error=rotation,
@@ -283,8 +291,8 @@ class Plant:
             internal_load=inside,
             displacement=there,
             normal_velocity=normal,
-            casing_seat_force=np.asarray(seated).reshape(len(w), -1, 6),
-            casing_ground_force=self.ground.read(w, q),
+            casing_seat_force=on_seats,
+            casing_ground_force=self.ground.read(w, q, brake),
             bubble_change=lacking,
         )
 
@@ -299,6 +307,13 @@ class Plant:
             return still
         modes, (P, d, _) = self.damped
         return still.braked(modes, d, P)
+
+    def _brake(self, w: np.ndarray, q: np.ndarray) -> np.ndarray | None:
+        """Accelerations (n, o) that the damping of modes acts as, of displacements q (n, o) at frequencies w (o,)."""
+        if self.damped is None:
+            return None
+        modes, (P, d, _) = self.damped
+        return np.asarray(modes @ (d[:, None] * (P.T @ q)) * (1j * w))
 
     def _normal(self, q: np.ndarray) -> np.ndarray:
         """Root of the mean square of the normal displacement over each casing's surface, (o, k), from q (n, o)."""

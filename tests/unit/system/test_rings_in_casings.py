@@ -61,3 +61,30 @@ def test_what_keeps_a_ring_from_its_seat_is_said(tmp_path: Path) -> None:
         rg.loads(text.replace('matrices = "', 'mesh = "').replace('{ring = "seat_3"}', '{other = "seat_3"}'))
     with pytest.raises(rg.ModelError, match=r"gears\.sun\.casing: got 'bar' of an external gear"):
         rg.loads(text.replace('shaft = "sun"\nat = 0\nwidth', 'casing = "bar"\nwidth'))
+
+
+def test_a_seat_feels_what_its_ring_hands_on_as_the_end_of_the_same_bar_does(tmp_path: Path) -> None:
+    """Forces and moments of a response inside the bar at its end, beyond which is the ring."""
+    error = '[meshes."planet_ring#2"]\ntransmission_error = [{harmonic = 1, amplitude = 3e-6, phase = 0.4}]'
+    at = "\n".join(
+        f'[points.{name}]\nshaft = "ring"\nat = "end"\nquantity = "{quantity}"{more}'
+        for name, quantity, more in (
+            ("n", "axial", ""),
+            ("t", "torque", ""),
+            ("vx", "shear", '\ndirection = "x"'),
+            ("vy", "shear", '\ndirection = "y"'),
+            ("mx", "bending", '\ndirection = "x"'),
+            ("my", "bending", '\ndirection = "y"'),
+        )
+    )
+    ask = {"speeds": ["1300 rpm", "4100 rpm"], "elements": 1, "method": "direct", "modal_damping": 0.013}
+    beside = rg.response(rg.loads(f"{on_a_bar()}\n{error}\n{at}"), **ask)  # type: ignore[arg-type]
+    seat = rg.response(rg.loads(f"{in_a_casing(tmp_path)}\n{error}"), **ask)  # type: ignore[arg-type]
+    assert seat.casing_seats == ("bar.seat_3",)
+    on_seat = seat.casing_seat_force[:, :, 0, :]
+    inside = beside.internal_load
+    names = list(beside.load_points)
+    order = [names.index(name) for name in ("vx", "vy", "n", "mx", "my", "t")]
+    assert on_seat == pytest.approx(inside[..., order], rel=1e-8, abs=1e-8 * np.abs(inside).max())
+    # One mesh that differs brings all three classes, and each component of the seat has its own.
+    assert np.all(np.abs(on_seat).max(axis=(0, 1)) > 1.0)
