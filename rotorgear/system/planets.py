@@ -288,10 +288,12 @@ class PinLoad:
             )
         return W**2 * (r * self.mass + float(self.pull @ give))
 
-    def group(self, ratio: float, speed: float) -> ElementGroup:
-        """What K_g on the carrier has beyond `group_per_square` at a speed of the reference shaft; `ratio` is the carrier's."""
-        W = ratio * speed
-        beyond = self.force(W) - W**2 * self.planets.radius * self.mass
+    def beyond(self, W: float) -> float:
+        """What f has beyond W^2 m r in N at a speed of the carrier in rad/s; errors as of `force`."""
+        return self.force(W) - W**2 * self.planets.radius * self.mass if W else 0.0
+
+    def group(self, beyond: float) -> ElementGroup:
+        """What K_g on the carrier has beyond `group_per_square`, by what f has."""
         return self._on_carrier(ElementMatrices(strain=_ROTATION, modulus=beyond * self._lever), 0.0)
 
     def group_per_square(self, ratio: float) -> ElementGroup:

@@ -41,13 +41,20 @@ class Matrices:
 
 @dataclass(frozen=True)
 class InPowers:
-    """Sparse matrices (n, n) of the speed W in rad/s: K = stiffness + W^2 per_square, with the loads of pins beside them, and the
-    circulatory N = circulation + W per_speed."""
+    """Sparse matrices (n, n) of the speed W in rad/s: K = stiffness + W^2 per_square + the sum of b_p pins_p, with b_p in N that
+    the load of pin p has beyond its square of W, the circulatory N = circulation + W per_speed, and the damping."""
 
     stiffness: sp.csc_array
     per_square: sp.csc_array
     circulation: sp.csc_array
     per_speed: sp.csc_array
+    pins: tuple[sp.csc_array, ...]
+    damping: sp.csc_array
+
+    @property
+    def of_stiffness(self) -> tuple[sp.csc_array, ...]:
+        """What K + N adds up from, with the weights of `System.powers`."""
+        return sp.csc_array(self.stiffness + self.circulation), self.per_speed, self.per_square, *self.pins
 
 
 Made = TypeVar("Made")
@@ -238,7 +245,7 @@ class System:
         loads = self._pins
         if tables:
             loads = pin_loads(self.layout, self.nodes, self.dofs, [*self.groups, *tables])
-        return [load.group(self.train.ratio(load.planets.shaft), speed) for load in loads]
+        return [load.group(load.beyond(speed * self.train.ratio(load.planets.shaft))) for load in loads]
 
     @cached_property
     def in_powers(self) -> InPowers | None:
@@ -251,7 +258,16 @@ class System:
             per_square=self.stiffness_per_square,
             circulation=still,
             per_speed=sp.csc_array(self._sum(self.groups, lambda g: g.circulatory_at(1.0)) - still),
+            pins=tuple(self._sum([load.group(1.0)], lambda g: g.matrices.stiffness) for load in self._pins),
+            damping=self._sum(self.groups, lambda g: g.matrices.damping),
         )
+
+    def powers(self, speed: float) -> np.ndarray:
+        """Weights of `InPowers.of_stiffness` at a reference speed in rad/s; errors as of `groups_of`."""
+        if speed and self._going_round[1] is not None:
+            raise self._going_round[1]
+        loads = (load.beyond(speed * self.train.ratio(load.planets.shaft)) for load in self._pins)
+        return np.array([1.0, speed, speed**2, *loads])
 
     @cached_property
     def mass(self) -> sp.csc_array:
@@ -309,8 +325,8 @@ class System:
     @_kept
     def damping(self, speed: float = 0.0) -> sp.csc_array:
         """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
-        every = self.groups if self.in_powers is not None else self.groups_at(speed)
-        C = self._sum(every, lambda g: g.matrices.damping)
+        powers = self.in_powers
+        C = powers.damping if powers is not None else self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
         given = self.model.damping
         if given.rayleigh_alpha:
             C = C + given.rayleigh_alpha * self.mass

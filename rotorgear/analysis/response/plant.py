@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import chain
 
 import numpy as np
@@ -214,6 +214,15 @@ class Plant:
     def dynamics(self, speed: float) -> Dynamics:
         """M, D and K at a reference speed in rad/s."""
         system = self.system
+        if system.in_powers is not None and not system.model.damping.rayleigh_beta:
+            shape = system.mass.shape
+            K, D = (
+                sp.csc_array((weights @ values, rows, ends), shape=shape)
+                for weights, (ends, rows, values) in zip(
+                    (system.powers(speed), np.array([1.0, speed])), self._in_powers, strict=True
+                )
+            )
+            return Dynamics(system.mass, D, K, self.low_rank, partial(self._factored, speed))
         if self.has_tables:
             K = sp.csc_array(system.stiffness(speed) + system.circulatory(speed))
             D = sp.csc_array(system.damping(speed) + speed * system.gyroscopic)
@@ -244,11 +253,26 @@ class Plant:
             self._parts = sp.csc_array(system.stiffness(0.0) + still), turning, *damping
         return self._parts
 
+    @cached_property
+    def _in_powers(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
+        """Column ends, rows and values (k, entries) of what K and D add up from over powers of the speed, each on one pattern."""
+        powers = self.system.in_powers
+        assert powers is not None
+        parts = (powers.of_stiffness, (self.system.damping(0.0), self.system.gyroscopic))
+        # Rows of the transposed matrices are columns.
+        found = (on_one_pattern(*(one.T for one in every)) for every in parts)
+        return tuple((ends, rows, np.array(values)) for ends, rows, values in found)
+
     def _factored(self, speed: float, w: float) -> Factor:
-        """Factors of K + i w D - w^2 M of a model without tables at a reference speed and a frequency in rad/s."""
+        """Factors of K + i w D - w^2 M at a reference speed and a frequency in rad/s, of a model without tables or in powers."""
+        system = self.system
+        powers = system.in_powers
         if self._sums is None:
-            self._sums = SparseSums(self.system.mass, *self._linear_parts())
-        return self._sums.factor((-(w**2), 1.0, speed, 1j * w, 1j * w * speed))
+            damping = (system.damping(0.0), system.gyroscopic)
+            parts = self._linear_parts() if powers is None else (*powers.of_stiffness, *damping)
+            self._sums = SparseSums(system.mass, *parts)
+        of_stiffness = (1.0, speed) if powers is None else system.powers(speed)
+        return self._sums.factor((-(w**2), *of_stiffness, 1j * w, 1j * w * speed))
 
     def loads(self, orders: list[Order], speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies (o,) in rad/s and loads (n, o) of all orders at a reference speed."""
