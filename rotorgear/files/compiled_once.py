@@ -17,7 +17,6 @@ import os
 import time
 import uuid
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
@@ -33,11 +32,16 @@ _logger = logging.getLogger(__name__)
 class CompiledOnce:
     """The cache of one compiled function, with a lock from where nothing is found until what was compiled is kept."""
 
-    def __init__(self, cache: Any, lock: Path, beginning: str = "") -> None:
-        """`beginning` is that of the names of its files, in the folder that the cache names `cache_path`; "" to check none."""
+    def __init__(self, cache: Any, lock: Path, beginning: str = "", seconds: float = 0.0) -> None:
+        """`beginning` is that of the names of its files, in the folder that the cache names `cache_path`; "" to check none.
+
+        `seconds`: CPU seconds that the function takes to compile, which are foretold before it does; 0 for what is not felt.
+        """
         self._cache = cache
         self._path = lock
         self._beginning = beginning
+        self._seconds = seconds
+        self._foretold = False
         self._held: IO[bytes] | None = None
 
     def __getattr__(self, name: str) -> Any:
@@ -48,6 +52,7 @@ class CompiledOnce:
         found = None if self._damaged() else self._cache.load_overload(signature, context)
         if found is not None:
             return found
+        self._foretell()
         self._acquire()
         # Who held the lock may have written in between; what is still damaged now stays so.
         if damaged := self._damaged():
@@ -63,6 +68,7 @@ class CompiledOnce:
 
     def save_overload(self, signature: Any, data: Any) -> None:
         """Keep what was compiled, and let the others have it; a full disk costs time only."""
+        self._foretold = False
         try:
             with suppress(OSError):
                 self._cache.save_overload(signature, data)
@@ -75,10 +81,15 @@ class CompiledOnce:
         finally:
             self._release()
 
-    @property
-    def is_kept(self) -> bool:
-        """Whether anything that was compiled is on the disk; of what is kept nowhere, as if it were."""
-        return not self._beginning or bool(self._files())
+    def foretell_unless_kept(self) -> None:
+        """Tell whoever hears forecasts what compilation will take if nothing is on the disk; where others compile, unheard."""
+        if not self._files():
+            self._foretell()
+
+    def _foretell(self) -> None:
+        if self._seconds and not self._foretold:
+            self._foretold = True
+            foretell("compiling, once", self._seconds, "that no run time holds; rotorgear compile does it ahead")
 
     def _files(self) -> list[Path]:
         """The files of the function; the dot behind its line tells it from one whose line has more digits."""
@@ -115,17 +126,6 @@ class CompiledOnce:
         if self._held is not None:
             self._held.close()
             self._held = None
-
-
-@cache
-def foretell_compilation(function: Any, seconds: float) -> None:
-    """Tell whoever hears forecasts that a compiled function is not kept yet, and the CPU seconds that it takes once.
-
-    Looked up once for each function: loops call it.
-    """
-    kept = getattr(function, "_cache", None)
-    if isinstance(kept, CompiledOnce) and not kept.is_kept:
-        foretell("compiling, once", seconds, "that no run time holds; rotorgear compile does it ahead")
 
 
 def _locked(file: IO[bytes]) -> bool:

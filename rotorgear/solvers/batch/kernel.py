@@ -149,7 +149,7 @@ def switch_tangents(h, system, columns, step_begin, ends, moved, tangents, work)
         correct(h, columns, step_begin, ends, system.per_force, d, work.done, tangents[k], moved[k], DONE * m * k)
 
 
-@compiled(fast=True, free=True)
+@compiled(fast=True, free=True, seconds=25.0)
 def batch_loop(turns, steps, begun, counting, system, columns, table, acting, motion):
     """Advance the motion of all systems in place by common periods and record a section at the end of each.
 

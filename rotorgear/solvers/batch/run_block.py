@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.files.compiled_once import foretell_compilation
+from rotorgear.files.compiled_once import CompiledOnce
 from rotorgear.solvers.batch.arguments import ActingLaws, BatchMotion, BatchSystem
 from rotorgear.solvers.batch.columns import ERROR, FORCE, NEVER
 from rotorgear.solvers.batch.small_system import SmallSystem
@@ -16,7 +16,6 @@ from rotorgear.solvers.time.arguments import SparseRows
 
 # Steps between two questions whether to go on: a fraction of a second.
 _SLICE = 50_000
-_COMPILATION = 25.0  # CPU seconds that its loop took to compile on one core
 _REGISTER = 64  # bytes of the widest vector registers
 
 
@@ -96,10 +95,11 @@ class Orbit:
 
 
 def foretell_batches() -> None:
-    """Tell whoever hears forecasts if the loop of batches is to be compiled first."""
+    """Tell whoever hears forecasts if the loop of batches is to be compiled first, by processes that nobody hears."""
     from rotorgear.solvers.batch.kernel import batch_loop
 
-    foretell_compilation(batch_loop, _COMPILATION)
+    if isinstance(kept := getattr(batch_loop, "_cache", None), CompiledOnce):
+        kept.foretell_unless_kept()
 
 
 def run_block(

@@ -77,7 +77,7 @@ def rates(small, laws, tau, x, work, push, out):
             out[n + i, c] = total
 
 
-@compiled
+@compiled(seconds=17.0)
 def flow(small, laws, x, outputs, tolerance, kept, most):
     """Advance state and tangents x (2 n, 1 + c) in place through times `outputs`, and keep the state there.
 

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.files.compiled_once import foretell_compilation
 from rotorgear.solvers.periodic.arclength import Linear
 from rotorgear.solvers.periodic.floquet import basis_of, sorted_by_size
 from rotorgear.solvers.periodic.harmonic_orbits import static_displacements
@@ -21,7 +20,6 @@ from rotorgear.solvers.periodic.samples import MotionCycle, answered, arguments_
 
 # Relative tolerance of the flow and its derivative, and the one that tells its error: no less, for rounding.
 TOLERANCE = 1e-11
-_COMPILATION = 17.0  # CPU seconds that its loop took to compile on one core
 _TIGHTER = 1e-13
 _MOST_STEPS = 400_000
 _DIFFERENCE = 1e-5
@@ -110,7 +108,6 @@ class ShootingOrbits:
         """State at the end beside its tangents, (2 n, 1 + 2 n) or (2 n, 1), and the states at the outputs (r, 2 n)."""
         from rotorgear.solvers.periodic.kernel_shooting import flow
 
-        foretell_compilation(flow, _COMPILATION)
         plant = self._plant_at(p)
         x = np.column_stack([y, np.eye(self.size)]) if tangents else y[:, None].copy()
         kept = np.zeros((len(outputs), self.size))

@@ -148,8 +148,7 @@ class NewmarkStep(NamedTuple):
         first, column: pattern by rows of K, D and M. load: (n,), constant. S: factored.
         Bt, Wt: B^T and W^T. P: (1 - af) S^-1 B, (n, m). channels: rows (p, n) on q, v and a, and (p, m) on the local forces.
         Ad, Av: (m, m), what a force of the step takes from d and v at its end, d = d_free - Ad F, v = v_free - Av F.
-        sisters, seen_sisters: of planets that go round, among the local displacements and all that is gathered. P, Ad and Av are
-        those of the structure, where planets stand as at the start; Av is that of the rates that they see.
+        With planets that go round, these are of the structure, where planets stand as at the start, and Av of what they see.
     """
 
     h: float
@@ -173,8 +172,6 @@ class NewmarkStep(NamedTuple):
     channels: tuple[SparseRows, ...]
     Ad: np.ndarray
     Av: np.ndarray
-    sisters: Sisters
-    seen_sisters: Sisters
 
 
 class ExponentialStep(NamedTuple):
@@ -192,7 +189,7 @@ class ExponentialStep(NamedTuple):
         watched: (p, m) what the rest of the step adds to watched displacements and channels by the modes; late: (p, m) what the
         rest at the step's end adds to channels that hold accelerations; forced: (p, m) what local forces there add.
         constant: (p,) of channels, by the load.
-        sisters, seen_sisters: as in `NewmarkStep`; k and c are those of the structure, too.
+        With planets that go round, k and c are those of the structure, too.
     """
 
     h: float
@@ -219,5 +216,3 @@ class ExponentialStep(NamedTuple):
     late: np.ndarray
     forced: np.ndarray
     constant: np.ndarray
-    sisters: Sisters
-    seen_sisters: Sisters

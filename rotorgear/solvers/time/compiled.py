@@ -60,6 +60,7 @@ def compiled(
     free: bool = False,
     inner: bool = False,
     entry: bool = True,
+    seconds: float = 0.0,
 ) -> Any:
     """Compile a function with numba and keep the result on disk.
 
@@ -72,9 +73,12 @@ def compiled(
             it that the process has loaded, and with reordered sums the last bit would depend on what the process did before.
         entry: Python calls it, or its address is handed over. Without, it is compiled once, not three times; Python must not call
             it.
+        seconds: CPU seconds that it took to compile on one core, where users feel them.
     """
     if function is None:
-        return lambda given: compiled(given, signature=signature, fast=fast, free=free, inner=inner, entry=entry)
+        return lambda given: compiled(
+            given, signature=signature, fast=fast, free=free, inner=inner, entry=entry, seconds=seconds
+        )
     if numba.config.DISABLE_JIT:
         return function
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
@@ -99,7 +103,7 @@ def compiled(
             name = (
                 f"{stem}.{function.__qualname__.replace('<', '').replace('>', '')}-{function.__code__.co_firstlineno}."
             )
-            made._cache = CompiledOnce(made._cache, lock, name)
+            made._cache = CompiledOnce(made._cache, lock, name, seconds)
         except (RuntimeError, OSError):  # a function without a file, such as one typed at a prompt
             made = None
         finally:

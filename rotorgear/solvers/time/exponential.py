@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.files.compiled_once import foretell_compilation
 from rotorgear.solvers.eigen.complex_modes import ComplexModes, complex_modes
 from rotorgear.solvers.time.arguments import ExponentialStep, Kept
 from rotorgear.solvers.time.local_system import (
@@ -28,7 +27,6 @@ from rotorgear.solvers.time.local_system import (
 
 # Modal coordinates y by their parts, motions without stiffness and their rates, and the rest of the local forces, as states
 # name them.
-_COMPILATION = 25.0  # CPU seconds that its loop took to compile on one core
 _MOTION = ("yr", "yi", "r0", "r1", "u")
 # Radians of a contact's vibration in a step above which it stays out of the modes.
 _RESOLVED = 0.8
@@ -150,8 +148,6 @@ class ExponentialStepper(Stepper):
             late=np.vstack([none, seen.a @ self._mobile]),
             forced=np.vstack([none, seen.F]),
             constant=np.concatenate([np.zeros(len(W)), seen.a @ self._pushed]),
-            sisters=system.sisters,
-            seen_sisters=system.seen_sisters,
         )
         self._laws = system.forces.arguments()
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
@@ -203,10 +199,9 @@ class ExponentialStepper(Stepper):
         """Advance a state in place and record; returns steps done, status and linear solutions."""
         from rotorgear.solvers.time.kernel_exponential import exponential_loop
 
-        foretell_compilation(exponential_loop, _COMPILATION)
         motion = tuple(state.inner[name] for name in _MOTION)
         done, status, solutions = exponential_loop(
-            self._step, self._laws, steps, every, state.step, motion, state.carried, kept
+            self._step, self._laws, *self.system.going_round, steps, every, state.step, motion, state.carried, kept
         )
         return done, status, solutions
 

@@ -105,10 +105,11 @@ def modal_pass(step, u, yr, yi, out):
             out[r] += first
 
 
-@compiled
-def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
+@compiled(seconds=25.0)
+def exponential_loop(step, laws, sisters, seen_sisters, steps, every, begun, motion, carried, kept):
     """Advance the motion and `carried` in place by steps after the `begun` first ones, and record every `every`-th.
 
+    `sisters`, `seen_sisters`: as of `newmark_loop`.
     `motion`: both parts of y = z - Q u (nz,), motions without stiffness r and their rates (nr,), and the rest u (m,).
 
     Returns:
@@ -145,17 +146,20 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
     free = np.zeros(m)
     u_before = np.empty(m)
     seen = np.zeros(gathered.level.size)
-    # Forces on the structure, and displacements of it at both ends of a step, where planets stand as at the start.
-    sisters = step.sisters
-    going_round = sisters.planets.size > 0
-    acting = np.empty(m)
-    place = begin.copy()
-    before_step = begin.copy()
+    acting = F
+    acting_at_end = at_end.F
+    place = d
+    before_step = begin
+    rate = work.v
     Ad = step.Ad
-    end = 0.0
-    column = np.empty(m)
-    rate = np.empty(m)
-    if going_round:
+    if sisters is not None:
+        # Forces on the structure, and displacements of it at both ends of a step, where planets stand as at the start.
+        acting = np.empty(m)
+        acting_at_end = np.empty(m)
+        place = begin.copy()
+        before_step = begin.copy()
+        rate = np.empty(m)
+        column = np.empty(m)
         Ad = np.empty((m, m))
         end, speed = rotation_at(begun * h, step.rotation)
         turn(sisters, -end, place, 0)
@@ -172,8 +176,8 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
             r1[k] += h * load[k]
             for j in range(m):
                 free[j] += B[k, j] * r0[k]
-        for i in range(m):
-            before_step[i] = place[i]
+        if sisters is not None:
+            before_step[:] = place
         for i in range(m):
             # u has its reference half from the step's begin, half from its end; Z takes the latter to the left-hand side.
             for j in range(m):
@@ -190,7 +194,7 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
             work.begin[i] = begin[i]
             u_before[i] = u[i]
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
-        if going_round:
+        if sisters is not None:
             end, speed = rotation_at(t, step.rotation)
             turn(sisters, end, work.d_free, 0)
             turn_both(sisters, end, angle, step.Ad, column, Ad)
@@ -199,11 +203,9 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
         if code < 0:
             return number - 1, code, solutions
         solutions += code
-        for i in range(m):
-            acting[i] = F[i]
-            place[i] = d[i]
-            rate[i] = work.v[i]
-        if going_round:
+        if sisters is not None:
+            acting[:] = F
+            place[:] = d
             turn(sisters, -angle, acting, 0)
             turn(sisters, -end, place, 0)
             for i in range(m):
@@ -233,8 +235,8 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
             for k in range(nr):
                 x += step.W[k, i] * r0[k] + step.Wv[k, i] * r1[k]
             seen[2 * m + i] = x
-        if going_round:
-            turn(step.seen_sisters, end, seen, 2 * m)
+        if sisters is not None:
+            turn(seen_sisters, end, seen, 2 * m)
         gather(gathered, seen, m, True)
         if number % every == 0:
             r = number // every - 1
@@ -258,19 +260,18 @@ def exponential_loop(step, laws, steps, every, begun, motion, carried, kept):
                 for k in range(nr):
                     total += B[k, i] * r1[k]
                 work.v[i] = total
-                rate[i] = total
             angle, speed = rotation_at(t, step.rotation)
             schedule_all(laws, angle, speed, t, work.state)
-            if going_round:
+            if sisters is not None:
+                rate[:] = work.v
                 add_going_round(sisters, speed, place, work.v)
                 turn(sisters, end, work.v, 0)
             force_all(laws, work.state, d, work.v, at_end)
+            if sisters is not None:
+                acting_at_end[:] = at_end.F
+                turn(sisters, -end, acting_at_end, 0)
             for i in range(m):
-                acting[i] = at_end.F[i]
-            if going_round:
-                turn(sisters, -end, acting, 0)
-            for i in range(m):
-                total = -acting[i]
+                total = -acting_at_end[i]
                 for j in range(m):
                     total += k_ref[i, j] * place[j] + c_ref[i, j] * rate[j]
                 rest[r, i] = total

@@ -54,10 +54,12 @@ def observe(step, carried, a, F, seen):
     add_rows(step.channels[3], F, seen, channels)
 
 
-@compiled
-def newmark_loop(step, laws, steps, every, begun, carried, kept):
+@compiled(seconds=25.0)
+def newmark_loop(step, laws, sisters, seen_sisters, steps, every, begun, carried, kept):
     """Advance `carried` in place by steps after the `begun` first ones, and record every `every`-th.
 
+    `sisters`, `seen_sisters`: planets that go round among the local displacements and all that is gathered; None where there are
+    none, and then numba compiles the loop without what follows such a question.
     Of whole steps accelerations and local forces are means, which channels and records take on to the step's end.
 
     Returns:
@@ -104,18 +106,16 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
     length = h if whole else 0.0
     old = h * h * (0.5 - beta)
     new = h * (1.0 - gamma)
-    # Forces on the structure, and displacements of it, where planets stand as at the start.
-    sisters = step.sisters
-    going_round = sisters.planets.size > 0
-    acting = F.copy()
+    acting = F
     Ad = step.Ad
     Av = step.Av
-    end = 0.0
-    column = np.empty(m)
-    followed = np.zeros(m)
-    moved = np.zeros(m)
-    place = begin.copy()
-    if going_round:
+    if sisters is not None:
+        # Forces on the structure, and displacements of it, where planets stand as at the start.
+        acting = F.copy()
+        place = begin.copy()
+        column = np.empty(m)
+        followed = np.zeros(m)
+        moved = np.zeros(m)
         Ad = np.empty((m, m))
         Av = np.empty((m, m))
         end, speed = rotation_at(begun * h, step.rotation)
@@ -159,7 +159,7 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
             v_free[j] = y
             work.begin[j] = begin[j]
             F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
-        if going_round:
+        if sisters is not None:
             end, speed = rotation_at(t, step.rotation)
             add_going_round(sisters, speed, d_free, v_free)
             turn(sisters, end, d_free, 0)
@@ -172,9 +172,8 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
         if code < 0:
             return number - 1, code, solutions
         solutions += code
-        for j in range(m):
-            acting[j] = F[j]
-        if going_round:
+        if sisters is not None:
+            acting[:] = F
             turn(sisters, -angle, acting, 0)
         for i in range(n):
             total = a_free[i]
@@ -189,7 +188,7 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
                 v[i] = vp[i] + gamma * h * total
                 a_end[i] = total
             a[i] = total
-        if going_round:
+        if sisters is not None:
             for j in range(m):
                 followed[j] = place[j]
                 place[j] = work.d[j]
@@ -207,8 +206,8 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
             begin[j] = work.d[j]
             F_end[j] = 1.5 * F[j] - 0.5 * before[j] if whole else F[j]
         observe(step, carried, a_end, F_end, seen)
-        if going_round:
-            turn(step.seen_sisters, end, seen, 2 * m)
+        if sisters is not None:
+            turn(seen_sisters, end, seen, 2 * m)
         gather(gathered, seen, m, whole)
         if number % every == 0:
             r = number // every - 1
@@ -220,7 +219,7 @@ def newmark_loop(step, laws, steps, every, begun, carried, kept):
                 schedule_all(laws, angle, speed, t, work.state)
                 work.v[:] = 0.0
                 add_rows(step.Bt, v, work.v, 0)
-                if going_round:
+                if sisters is not None:
                     add_going_round(sisters, speed, place, work.v)
                     turn(sisters, end, work.v, 0)
                 force_all(laws, work.state, work.d, work.v, at_end)

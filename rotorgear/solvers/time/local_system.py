@@ -202,6 +202,11 @@ class LocalSystem:
         d, rate = turned(self.sisters, np.full(2, self.rotation.angle(np.array(t))), np.array([d, rate]))
         return d, rate
 
+    @property
+    def going_round(self) -> tuple[Sisters | None, Sisters | None]:
+        """Both sets of sisters as compiled loops take them: without any, the loops are compiled without a word of them."""
+        return (self.sisters, self.seen_sisters) if self.sisters.planets.size else (None, None)
+
     def velocity_terms(self, speed: float) -> sp.csc_array:
         """D + W G at a speed of the reference, sparse (n, n)."""
         return self.D if self.G is None else sp.csc_array(self.D + speed * self.G)

@@ -16,7 +16,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.files.compiled_once import foretell_compilation
 from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
@@ -24,7 +23,6 @@ from rotorgear.solvers.time.arguments import Kept, NewmarkStep, SparseRows, Tria
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper, turning_of
 
 # Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
-_COMPILATION = 25.0  # CPU seconds that its loop took to compile on one core
 _FELT = 1e-5
 
 
@@ -147,8 +145,6 @@ class NewmarkStepper(Stepper):
             channels=tuple(_rows(Y) for Y in (observed.q, observed.v, observed.a, observed.F)),
             Ad=np.ascontiguousarray(Ad),
             Av=np.ascontiguousarray(Av),
-            sisters=system.sisters,
-            seen_sisters=system.seen_sisters,
         )
         self._laws = system.forces.arguments()
 
@@ -161,8 +157,9 @@ class NewmarkStepper(Stepper):
         """Advance a state in place and record; returns steps done, status and linear solutions."""
         from rotorgear.solvers.time.kernel_newmark import newmark_loop
 
-        foretell_compilation(newmark_loop, _COMPILATION)
-        done, status, solutions = newmark_loop(self._step, self._laws, steps, every, state.step, state.carried, kept)
+        done, status, solutions = newmark_loop(
+            self._step, self._laws, *self.system.going_round, steps, every, state.step, state.carried, kept
+        )
         return done, status, solutions
 
 

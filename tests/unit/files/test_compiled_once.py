@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from rotorgear.files.compiled_once import CompiledOnce, foretell_compilation
+from rotorgear.files.compiled_once import CompiledOnce
 from rotorgear.progress import hearing_forecasts
 from rotorgear.solvers.time import compiled
 
@@ -146,20 +146,27 @@ def test_a_full_disk_costs_time_only(kept_function: Callable[[], Any], monkeypat
     assert kept_function().stats.cache_misses
 
 
-def test_a_compilation_that_is_to_come_is_foretold_once(tmp_path: Path) -> None:
-    class Function:
-        def __init__(self, line: int) -> None:
-            kept = Kept()
-            kept.cache_path = str(tmp_path)  # type: ignore[attr-defined]
-            self._cache = CompiledOnce(kept, tmp_path / "function.lock", f"module.loop-{line}.")
-
+def test_each_compilation_that_is_to_come_is_foretold_once(tmp_path: Path) -> None:
     (tmp_path / "module.loop-7.nbi").write_bytes(b"index")
     heard: list[tuple[str, float]] = []
+
+    def loop(line: int, seconds: float) -> CompiledOnce:
+        kept = Kept()
+        kept.cache_path = str(tmp_path)  # type: ignore[attr-defined]
+        return CompiledOnce(kept, tmp_path / f"function-{line}.lock", f"module.loop-{line}.", seconds)
+
     with hearing_forecasts(lambda what, seconds, more: heard.append((what, seconds))):
-        new, known = Function(12), Function(7)
-        foretell_compilation(known, 3.0)
+        loop(7, 3.0).foretell_unless_kept()
+        loop(13, 0.0).load_overload("double", None)
         assert not heard
-        foretell_compilation(new, 25.0)
-        foretell_compilation(new, 25.0)
-        foretell_compilation(len, 25.0)
-    assert heard == [("compiling, once", 25.0)]
+        new = loop(12, 25.0)
+        new.foretell_unless_kept()
+        new.load_overload("double", None)
+        new.load_overload("double", None)
+        assert heard == [("compiling, once", 25.0)]
+        new.save_overload("double", "machine code")
+        assert new.load_overload("double", None) == "machine code"
+        assert len(heard) == 1
+        # Other types are compiled anew.
+        new.load_overload("single", None)
+    assert heard == [("compiling, once", 25.0)] * 2
