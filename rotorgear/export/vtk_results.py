@@ -162,7 +162,8 @@ def write_motion(
         raise AnalysisError("this transient kept no motion to animate: run it with frames (--vtk)")
     pv, solids, plain = undeformed(result)
     about = result.motion - result.motion.mean(axis=2, keepdims=True)
-    turning = turning_of(result.model, result.nodes, solids, float(result.speed[-1]))
+    turning = turning_of(result.model, result.nodes, solids, float(np.abs(result.speed).max()))
+    angles = np.interp(result.motion_time, result.time, result.angle)
     # One scale for all instants: that of the largest.
     sizes = np.abs([solids.displacement(about[:, :, i]) for i in range(about.shape[2])]).max(axis=(1, 2))
     scale = solids.scaled(about[:, :, int(np.argmax(sizes))], amplitude)[1]
@@ -173,7 +174,7 @@ def write_motion(
             progress(i / result.motion_time.size, f"instant {i + 1}")
             now, shape = solids, about[:, :, i]
             if turning is not None:
-                now, shape = turning.at_angle(shape, float(result.speed[-1]) * float(time))
+                now, shape = turning.at_angle(shape, float(angles[i]))
             raw = now.displacement(shape)
             moved = plain.copy(deep=False)
             moved.SetPoints(pv.vtk_points((now.points + scale * raw).astype(np.float32)))

@@ -60,6 +60,24 @@ def centrifugal_loads(system: System, speed: float) -> np.ndarray:
     return f
 
 
+def orbit_loads(system: System) -> np.ndarray:
+    """What accelerates the orbits of planets for a unit acceleration of the reference, over all dofs (a,).
+
+    -W' r M S e onwards on the planets, and N m r^2 W' on the shaft of their carrier, which turns as it is prescribed to.
+    """
+    f = np.zeros(system.dofs.transform.shape[0])
+    for planets in turning_carriers(system.layout):
+        rate = system.train.ratio(planets.shaft)
+        node = system.nodes.at(*system.layout.at(planets.shaft, planets.part.at))
+        for group in system.groups:
+            if group.shaft in planets.planets and group.matrices.mass is not None:
+                onwards = (group.dofs % 6 == 1) & (group.dofs < 6 * len(system.nodes))
+                load = np.einsum("eij,ej->ei", group.matrices.mass, onwards.astype(float))
+                np.add.at(f, group.dofs, -rate * planets.radius * load)
+                f[6 * node + 5] += rate * planets.radius**2 * float(np.sum(load[onwards]))
+    return f
+
+
 def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndarray:
     """Weight of all parts in a field of gravity in m/s^2, (a,): M times the acceleration, so that it does the right work."""
     f = np.zeros(system.dofs.transform.shape[0])

@@ -21,7 +21,6 @@ from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce, contact_geometry
 from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation, sisters_of
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
@@ -36,11 +35,13 @@ from rotorgear.system.local_parts import (
     external_parts,
     friction_part,
     load_parts,
+    run_up_parts,
     unbalance_parts,
     without_linear_part,
 )
 from rotorgear.system.planets import require_constant, sister_places, turning_carriers
 from rotorgear.system.rigid_motions import rigid_motions
+from rotorgear.system.run_up import Carried, on_rigid_train
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -113,7 +114,10 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         for group in system.groups_at(speed)
         if not group.part.startswith(("meshes.", "nonlinear_elements.", "carriers."))
     ]
-    carriers = system.of_carriers(speed)
+    # What planets bring is that of the start of a run-up, and changes from there.
+    runs_up = not rotation.is_constant
+    carriers = system.of_carriers(float(rotation.speed(np.zeros(1))[0]) if runs_up else speed)
+    runs_up = runs_up and bool(carriers)
     groups += carriers
     for k, group in enumerate(group for group in system.groups if group.part.startswith("meshes.")):
         m = group.matrices
@@ -138,12 +142,14 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         *unbalance_parts(system, rotation),
         *load_parts(system),
         *external_parts(system),
+        *(run_up_parts(system, rotation) if runs_up else ()),
     )
     T = system.dofs.transform
     nothing = np.zeros((T.shape[0], 0))
     lines = contact_lines(system)
     couple = np.where(np.isin(np.arange(len(lines.states)), list(mapped)), 0.0, lines.couple)
-    load = T.T @ (outer_loads(system, steady=True) + centrifugal_loads(system, speed)) - lines.tilt @ couple
+    outside = outer_loads(system, steady=True)
+    load = T.T @ (outside if runs_up else outside + centrifugal_loads(system, speed)) - lines.tilt @ couple
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
     about = forces.reference_stiffness.copy()
@@ -165,11 +171,18 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     if carriers:
         columns = [f"{part.part} {part.label} {k}" for part in parts for k in range(part.columns.shape[1])]
         joined = [*groups, *(group for group in system.groups if group.part.startswith("meshes."))]
-        local = replace(
-            local,
-            sisters=sisters_of(sister_places(system.layout, columns)),
-            load=_on_rigid_train(local, rigid_motions(system, joined)),
-        )
+        rigid = rigid_motions(system, joined)
+        local = replace(local, sisters=sisters_of(sister_places(system.layout, columns)))
+        if runs_up:
+            still = [group for group in groups if not group.part.startswith("carriers.")]
+            K = assemble(still, system.dofs, lambda g: g.matrices.stiffness)
+            K = sp.csc_array(K + assemble(still, system.dofs, lambda g: g.circulatory_at(speed)))
+            squares = rotation.speeds**2
+            least = 0.0 if np.ptp(np.sign(rotation.speeds)) > 0.0 else float(squares.min())
+            changes = Carried(system, local, K, rigid, (least, float(squares.max())))
+            local = replace(local, changes=changes).at_time(0.0)
+        else:
+            local = replace(local, load=local.load + on_rigid_train(local, rigid, local.load[:, None])[:, 0])
     return LocalModel(system, local, parts, tuple(groups))
 
 
@@ -177,20 +190,14 @@ def _require_plain_planets(system: System, rotation: Rotation) -> None:
     """Refuse, by name, what motions in time do not take of planets that go round.
 
     Raises:
-        AnalysisError: a speed that changes, loaded teeth, laws of bearings and elements, unbalances, loads that vary or differ.
+        AnalysisError: loaded teeth, laws of bearings and elements, unbalances, loads that vary or differ.
     """
     model = system.model
     turning = {planets.shaft: planets for planets in turning_carriers(system.layout)}
     if not turning or not np.any(rotation.speeds):
         return
     require_constant(system.layout)
-    first = next(iter(turning.values()))
     hold = "or hold the carrier: speed_ratio = 0 of shafts."
-    if not rotation.is_constant:
-        raise AnalysisError(
-            f"carriers.{first.carrier}: motions in time of planets that go round are built for a constant speed, not for a "
-            f"run-up. Give one speed, {hold}{first.shaft}."
-        )
     round_with = {planet: planets for planets in turning.values() for planet in planets.planets}
     for mesh in model.meshes:
         both = system.layout.mesh(mesh)
@@ -220,20 +227,6 @@ def _require_plain_planets(system: System, rotation: Rotation) -> None:
                 f"loads.{written_name(name)}: a load on planets that go round is built in time where it is constant and the same "
                 f"for all of them. Make it so, {hold}{planets.shaft}."
             )
-
-
-def _on_rigid_train(local: LocalSystem, rigid: np.ndarray) -> np.ndarray:
-    """The load (n,) with the work on free motions that it does on the rigid motions (n, r) next to them.
-
-    Planets that the centrifugal load has moved outwards go round on a larger circle, so that the free motions of the linear
-    matrices are not quite those of the train's ratios: torques that balance would drive them on.
-    """
-    R = free_motions(local.M, local.stiffness_about)
-    if not R.shape[1]:
-        return local.load
-    weighted = rigid.T @ local.M
-    next_to = rigid @ np.linalg.solve(weighted @ rigid, weighted @ R)
-    return np.asarray(local.load + local.M @ (R @ ((next_to - R).T @ local.load)))
 
 
 def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> Iterator[LocalPart]:

@@ -1,5 +1,5 @@
-"""What acts locally beside the teeth's normal contact: rolling bearings, nonlinear elements, tooth friction, unbalances, and
-torques that vary.
+"""What acts locally beside the teeth's normal contact: rolling bearings, nonlinear elements, tooth friction, unbalances,
+torques that vary, and what pulls planets in a run-up.
 
 A law is imported where a model has it, because its import compiles it.
 """
@@ -21,7 +21,7 @@ from rotorgear.model.parts.supports import element_law
 from rotorgear.quantity import ZERO_CELSIUS
 from rotorgear.solvers.time.local_system import Rotation
 from rotorgear.system.groups import node_dofs, relative_motion
-from rotorgear.system.loads import varying_load, wrench_load
+from rotorgear.system.loads import centrifugal_loads, orbit_loads, varying_load, wrench_load
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -247,3 +247,33 @@ def external_parts(system: System) -> Iterator[LocalPart]:
             table = TabulatedForce(load.history.places, values, over_angle, load.ratio, float(load.history.mean[k]))
             column = wrench_load(system, load, load.frame.own(np.eye(6)[k]))[:, None]
             yield LocalPart(load.address, f"{name} {component}", table, column)
+
+
+# Intervals of all tables of the square of the speed over time, which is linear in between: off by the square of their share.
+_INTERVALS = 1000
+
+
+def run_up_parts(system: System, rotation: Rotation) -> tuple[LocalPart, LocalPart]:
+    """The centrifugal load of the planets of all carriers, and what their orbits need to be accelerated, over time."""
+    from rotorgear.forces.tabulated_force import TabulatedForce
+
+    each = max(1, _INTERVALS // max(rotation.times.size - 1, 1))
+    parts = (
+        np.linspace(a, b, each, endpoint=False) for a, b in zip(rotation.times[:-1], rotation.times[1:], strict=True)
+    )
+    times = np.concatenate([*parts, rotation.times[-1:]])
+    squares = rotation.speed(times) ** 2
+    begins, steps = (np.array(values) for values in rotation.accelerations)
+    # Both sides of each change of the acceleration.
+    sides = np.column_stack([np.nextafter(begins, -np.inf), begins]).ravel()
+    accelerations = np.column_stack([np.append(0.0, steps[:-1]), steps]).ravel()
+    at_start = (float(np.interp(0.0, times, squares)), rotation.acceleration(0.0))
+    found = []
+    for label, column, table, mean in (
+        ("centrifugal load of planets", centrifugal_loads(system, 1.0), (times, squares), at_start[0]),
+        ("acceleration of planets", orbit_loads(system), (sides, accelerations), at_start[1]),
+    ):
+        places, values = (tuple(one.tolist()) for one in table)
+        law = TabulatedForce(places, values, average=mean)
+        found.append(LocalPart("carriers", label, law, column[:, None]))
+    return found[0], found[1]

@@ -38,7 +38,12 @@ class Channels:
     def values(self, records: Records, rotation: Rotation) -> np.ndarray:
         """Values (r, p) at the recorded steps; `rotation` of the reference tells where planets that go round are."""
         values = np.tile(self.constant, (len(records.t), 1))
-        for kind, (which, Y) in self.rows.items():
+        rows = self.rows
+        if records.system.rates is not None:
+            # In a run-up the rates that planets see are those at the speed of the moment.
+            whole = records.system.observed_rows
+            rows = {kind: (np.arange(len(self.names)), getattr(whole, kind)) for kind in "qvaF"}
+        for kind, (which, Y) in rows.items():
             values[:, which] += records.F @ Y.T if kind == "F" else records.rows(kind, Y)
         return turned(self.sisters, rotation.angle(records.t), values) if self.sisters.planets.size else values
 
@@ -50,8 +55,11 @@ class Channels:
         return Observed(**rows)
 
 
-def channels(local: LocalModel) -> Channels:
-    """Forces of bearings, motions of points, orbits of the shafts in their bearings, and fluctuations of the gears' speeds."""
+def channels(local: LocalModel, speed: float) -> Channels:
+    """Forces of bearings, motions of points, orbits of the shafts in their bearings, and fluctuations of the gears' speeds.
+
+    Those of planets that go round are what they see at a speed of the reference in rad/s.
+    """
     system = local.system
     every = list(_bearing_forces(local))
     for name in motion_points(system.model):
@@ -80,7 +88,7 @@ def channels(local: LocalModel) -> Channels:
             every.append((label, unit, {kind: row}))
     sisters = sisters_of(sister_places(system.layout, [name for name, *_ in every]))
     if sisters.planets.size:
-        _see_where_planets_are([item[2] for item in every], float(local.local.rotation.speeds[0]), sisters)
+        _see_where_planets_are([item[2] for item in every], speed, sisters)
     rows = {}
     for kind in "qvaF":
         which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)

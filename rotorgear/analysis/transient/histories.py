@@ -83,6 +83,15 @@ class LedgerBook:
             v = records.rows("v", rows)
             w = v if kind == "v" else records.rows("q", rows)
             power = power + np.einsum("ri,ri->r", v, w @ A.T)
+        now = records.system
+        if now.changes is not None:
+            # Planets that go round exchange with their turn what their stiffness and load have changed since the start.
+            grown = sp.csc_array(now.K - self.system.K)
+            touched = np.unique(np.concatenate([np.flatnonzero(now.load != self.system.load), *grown.tocoo().coords]))
+            rows = np.eye(self.system.n)[touched]
+            v, q = (records.rows(kind, rows) for kind in "vq")
+            pushed = q @ grown[touched][:, touched].T - (now.load - self.system.load)[touched]
+            power = power + np.einsum("ri,ri->r", v, pushed)
         if len(self.damping_rows):
             power = power + np.sum(records.rows("v", self.damping_rows) ** 2, axis=1)
         before, t0, p0 = self.sums or (0.0, 0.0, power[0])

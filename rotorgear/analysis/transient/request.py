@@ -235,6 +235,8 @@ def integrator_of(
             "damping.modal_ratio acts on modes: only the exponential method at constant speed can take it"
         )
     if method == "exponential":
+        if local.changes is not None:
+            raise AnalysisError("method exponential: it needs a constant speed; use newmark for a run-up")
         return Exponential(modes, modal_ratio), reason
     if method == "explicit":
         if local.sisters.planets.size:
@@ -253,7 +255,7 @@ def integrator_of(
 def _chosen(local: LocalSystem, steps: int, modal_ratio: float, modes: int | None) -> tuple[str, str]:
     """The cheaper method for the same error, from measured costs (docs/transient.md)."""
     gyroscopic = local.G is not None and local.G.nnz > 0
-    if not local.rotation.is_constant and gyroscopic:
+    if local.changes is not None or (gyroscopic and not local.rotation.is_constant):
         return "newmark", "the speed changes, and with it the gyroscopic terms"
     if np.any(local.M.diagonal() <= 0.0):
         if held_by_contacts(local):
@@ -318,10 +320,20 @@ def prepare(
     mean = equilibrium(replace(local.local, forces=local.local.forces.mean), rest.free)
     force = mean.force if mean.converged else np.full(local.local.m, np.nan)
     begin = {"equilibrium": rest.q, "mean": mean.q, "rest": np.zeros(local.local.n)}[start]
-    seen = channels(local)
+    seen = channels(local, largest)
     observed = seen.observed(local.local.n, local.local.m)
+    rates = None
+    if local.local.changes is not None:
+        # What planets see of rates has the speed and its square: three speeds say it all.
+        ahead = observed
+        seen = channels(local, 0.0)
+        observed = seen.observed(local.local.n, local.local.m)
+        behind = channels(local, -largest).observed(local.local.n, local.local.m)
+        none = observed.plus(-1.0, observed)
+        by_square = none.plus(0.5, ahead).plus(0.5, behind).plus(-1.0, observed)
+        rates = none.plus(0.5 / largest, ahead).plus(-0.5 / largest, behind), none.plus(1.0 / largest**2, by_square)
     seen_sisters = sisters_of(sister_places(given.layout, [*local.watched_names, *seen.names]))
-    local = replace(local, local=replace(local.local, observed=observed, seen_sisters=seen_sisters))
+    local = replace(local, local=replace(local.local, observed=observed, rates=rates, seen_sisters=seen_sisters))
     meshes = {name: given.layout.mesh_frequency(name, largest) for name in given.model.meshes}
     return Task(local, seen, rest, force, {name: f for name, f in meshes.items() if f}, largest, start, begin)
 

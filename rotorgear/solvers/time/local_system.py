@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -53,6 +53,12 @@ class Rotation:
         steps = np.diff(self.speeds) / np.diff(self.times)
         return tuple(map(float, self.times)), (*map(float, steps), 0.0)
 
+    def acceleration(self, t: float) -> float:
+        """Acceleration in rad/s^2 from a time on."""
+        times, accelerations = self.accelerations
+        k = int(np.searchsorted(times, t, side="right"))
+        return accelerations[k - 1] if k else 0.0
+
     @property
     def angles(self) -> np.ndarray:
         """Angle in rad at each of the times, with 0 at time 0."""
@@ -86,9 +92,20 @@ class Observed:
     a: np.ndarray
     F: np.ndarray
 
+    def plus(self, share: float, other: Observed) -> Observed:
+        """The sum with a share of other rows."""
+        return Observed(*(getattr(self, kind) + share * getattr(other, kind) for kind in "qvaF"))
+
     def values(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, F: np.ndarray) -> np.ndarray:
         """Values (p,) of a state."""
         return np.asarray(self.q @ q + self.v @ v + self.a @ a + self.F @ F)
+
+
+class Changes(Protocol):
+    """What changes with the speed of the reference beside W G."""
+
+    def at(self, speed: float, acceleration: float) -> tuple[sp.csc_array, np.ndarray]:
+        """Stiffness (n, n) and constant load (n,) at a speed in rad/s and an acceleration in rad/s^2."""
 
 
 def sisters_of(sets: Iterable[tuple[float, np.ndarray, np.ndarray]] = ()) -> Sisters:
@@ -150,8 +167,10 @@ class LocalSystem:
         G: gyroscopic matrix for unit speed of the reference; None where nothing gyrates.
         watched: W (n, p): displacements whose statistics at all steps are kept; none where it is None.
         observed: channels, the same; none where it is None.
-        sisters: of planets that go round, among the local displacements, at a constant speed; seen_sisters: the same, among
-        watched displacements and channels in a row.
+        sisters: of planets that go round, among the local displacements; seen_sisters: the same, among watched displacements and
+            channels in a row.
+        changes: of K and load with the speed, where these are those of a moment; None where nothing but W G changes.
+        rates: what `observed` grows by with the speed and with its square, where that is of a moment, too.
     """
 
     M: sp.csc_array
@@ -166,6 +185,22 @@ class LocalSystem:
     observed: Observed | None = None
     sisters: Sisters = field(default_factory=sisters_of)
     seen_sisters: Sisters = field(default_factory=sisters_of)
+    changes: Changes | None = None
+    rates: tuple[Observed, Observed] | None = None
+
+    def at_time(self, start: float, end: float | None = None) -> LocalSystem:
+        """The system at the mean speed and acceleration from `start` to `end` in s, by default at the start."""
+        if self.changes is None:
+            return self
+        ends = self.rotation.speed(np.array([start, start if end is None else end]))
+        speed = float(ends.mean())
+        acceleration = self.rotation.acceleration(start) if end is None else float(ends[1] - ends[0]) / (end - start)
+        K, load = self.changes.at(speed, acceleration)
+        observed = self.observed
+        if observed is not None and self.rates is not None:
+            by_speed, by_square = self.rates
+            observed = observed.plus(speed, by_speed).plus(speed**2, by_square)
+        return replace(self, K=K, load=load, observed=observed)
 
     @property
     def n(self) -> int:
@@ -198,7 +233,7 @@ class LocalSystem:
         rate = np.asarray(self.B.T @ v, dtype=float)
         if not self.sisters.planets.size:
             return d, rate
-        rate = rate - float(self.rotation.speeds[0]) * turning_of(self.sisters, self.m) @ d
+        rate = rate - float(self.rotation.speed(np.array(t))) * turning_of(self.sisters, self.m) @ d
         d, rate = turned(self.sisters, np.full(2, self.rotation.angle(np.array(t))), np.array([d, rate]))
         return d, rate
 
@@ -276,6 +311,7 @@ class Records:
         motion: arrays (r, ...) in the coordinates of the integrator, and product: gives rows of q, v and a of them.
         done: steps that were taken. status: 0, or what stopped the loop (-1 no convergence, -2 not finite).
         solutions: linear systems of m x m that were solved.
+        system: with the matrices of these steps.
     """
 
     t: np.ndarray
@@ -287,6 +323,7 @@ class Records:
     done: int
     status: int
     solutions: int
+    system: LocalSystem
 
     def rows(self, kind: str, Y: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Y q, Y v or Y a at the recorded steps, or at some of them, (r, p); `kind` is "q", "v" or "a"."""
@@ -327,7 +364,9 @@ class Stepper:
         t = (state.step + every * np.arange(1, r + 1)) * self.h
         state.step += done
         motion = tuple(array[:r] for array in motion)
-        return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], motion, self.rows, done, status, solutions)
+        return Records(
+            t, kept.d[:r], kept.F[:r], kept.energy[:r], motion, self.rows, done, status, solutions, self.system
+        )
 
 
 class Integrator(Protocol):

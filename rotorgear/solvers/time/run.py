@@ -14,7 +14,7 @@ from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionS
 
 # Records in a chunk: large enough for fast products, small enough to stop and report often.
 CHUNK = 512
-# Change of the speed within a chunk of a run-up, relative to its largest, for which W G is held constant.
+# Change of the speed within a chunk of a run-up, relative to its largest, for which W G, and what carriers bring, is held.
 _SPEED_CHANGE = 2e-3
 
 
@@ -49,7 +49,8 @@ def run(
         ConvergenceError: a step did not converge, or something is no longer finite; all records before it were received.
     """
     solutions = 0
-    fixed_speed = system.rotation.is_constant or system.G is None or not system.G.nnz
+    unchanged = system.changes is None and (system.G is None or not system.G.nnz)
+    fixed_speed = system.rotation.is_constant or unchanged
     stepper: Stepper | None = None
     first = state.step
     begun = time.monotonic()
@@ -64,7 +65,8 @@ def run(
         if stepper is None or not fixed_speed:
             middle = (state.step + 0.5 * steps) * schedule.h
             speed = float(system.rotation.speed(np.array(middle)))
-            stepper = integrator.prepare(system, schedule.h, speed, tolerance)
+            here = system.at_time(state.step * schedule.h, (state.step + steps) * schedule.h)
+            stepper = integrator.prepare(here, schedule.h, speed, tolerance)
             stepper.start(state)
         records = stepper.advance(state, steps, schedule.every)
         solutions += records.solutions

@@ -16,6 +16,8 @@ import scipy.linalg as la
 from scipy.integrate import solve_ivp
 
 import rotorgear as rg
+from rotorgear.analysis.transient.channels import channels
+from rotorgear.analysis.transient.request import prepare
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines
@@ -133,15 +135,26 @@ class OnTruePaths:
         return self.waves(strains)
 
     @cached_property
+    def ratio(self) -> float:
+        """Speed of the carrier over that of the sun."""
+        return float(self.system.train.ratio("carrier"))
+
+    @property
     def turns(self) -> float:
-        """Speed of the carrier in rad/s."""
-        return float(self.system.train.ratio("carrier")) * self.speed
+        """Speed of the carrier in rad/s at the start."""
+        return self.ratio * self.speed
+
+    def turned(self, t: float) -> tuple[float, float, float]:
+        """Angle of the carrier in rad, its speed and its acceleration at a time."""
+        return self.turns * t, self.turns, 0.0
 
     def at(self, waves: tuple[np.ndarray, np.ndarray, np.ndarray], t: float) -> np.ndarray:
-        return waves[0] + waves[1] * np.cos(self.turns * t) + waves[2] * np.sin(self.turns * t)
+        angle = self.turned(t)[0]
+        return waves[0] + waves[1] * np.cos(angle) + waves[2] * np.sin(angle)
 
     def rate(self, waves: tuple[np.ndarray, np.ndarray, np.ndarray], t: float) -> np.ndarray:
-        return self.turns * (waves[2] * np.cos(self.turns * t) - waves[1] * np.sin(self.turns * t))
+        angle, W, _ = self.turned(t)
+        return W * (waves[2] * np.cos(angle) - waves[1] * np.sin(angle))
 
     @cached_property
     def pin_springs(self) -> np.ndarray:
@@ -160,7 +173,7 @@ class OnTruePaths:
             mesh, number = force.contact.mesh.split("#")
             psi = 2.0 * np.pi * (int(number) - 1) / self.planets
             phase = np.sign(self.speed) * (-sun if mesh == "sun_planet" else ring) * psi
-            wave = np.cos(ring * abs(self.turns) * t + self.system.state.phases[f"{mesh}#1"] + phase)
+            wave = np.cos(ring * abs(self.turned(t)[0]) + self.system.state.phases[f"{mesh}#1"] + phase)
             found.append(self.error * wave + (self.late[int(number) - 1] if mesh == "sun_planet" else 0.0))
         return np.array(found)
 
@@ -173,12 +186,10 @@ class OnTruePaths:
         return self.pin_springs * (strain + self.loss * (self.at(self.pins, t).T @ v + self.rate(self.pins, t).T @ q))
 
     @cached_property
-    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """M, D and K without contacts and pins, and the load, in axes that go round for the planets."""
+    def parts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """M, G for unit speed of the sun, M S and M S S + G S / ratio of the planets, and K without contacts and pins."""
         system = self.system
         n = system.n
-        W = self.turns
-        M = system.mass.toarray()
         own = [group for group in system.groups if not group.part.startswith("carriers.")]
         G = assemble(
             own, system.dofs, lambda g: None if g.matrices.gyroscopic is None else g.spin * g.matrices.gyroscopic
@@ -190,23 +201,48 @@ class OnTruePaths:
             S[y, x], S[x, y], S[tilt_y, tilt_x], S[tilt_x, tilt_y] = 1.0, -1.0, 1.0, -1.0
         planets = np.zeros((n, n))
         planets[self.planet_dofs.ravel(), self.planet_dofs.ravel()] = 1.0
-        D = self.speed * G + 2.0 * W * M @ S
-        K = K + W**2 * M @ S @ S + W * self.speed * planets @ G @ S
+        M = system.mass.toarray()
+        return M, G, M @ S, M @ S @ S + planets @ G @ S / self.ratio, K
+
+    def structure(self, W: float, faster: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+        """D and K without contacts and pins at a speed of the carrier and its acceleration, in axes that go round."""
+        _, G, turned, pulled, held = self.parts
+        D = W / self.ratio * G + 2.0 * W * turned
+        K = held + W**2 * pulled + faster * turned
         # The planets pull outwards, with the give of their pins, on a carrier that turns under them.
         mass = BODIES["planet"][0]
-        radius = system.layout.planets[0].radius
+        radius = self.system.layout.planets[0].radius
         pull = W**2 * mass * radius / (1.0 - W**2 * mass / PIN["radial"])
         rotations = self.carrier_dofs[3:]
         K[rotations, rotations] += self.planets * pull * radius * np.array([0.5, 0.5, 1.0])
-        load = np.zeros(n)
-        for name, moment in (("sun", self.torque), ("carrier", -self.torque * self.speed / W)):
+        return D, K
+
+    def loads(self, W: float, faster: float = 0.0) -> np.ndarray:
+        """Torques, the pull of the planets outwards, and what their pins need to accelerate them."""
+        system = self.system
+        mass = BODIES["planet"][0]
+        radius = system.layout.planets[0].radius
+        load = np.zeros(system.n)
+        for name, moment in (("sun", self.torque), ("carrier", -self.torque / self.ratio)):
             node = system.nodes.on_shaft(name)[0]
             load += np.sign(self.speed) * moment * system.dofs.transform.toarray()[6 * node + 5]
         load[self.planet_dofs[:, 0]] += W**2 * mass * radius
+        load[self.planet_dofs[:, 1]] -= mass * radius * faster
+        load[self.carrier_dofs[5]] += self.planets * mass * radius**2 * faster
         # The torques balance on the train, whose free motion the give of the planets has changed in the linear terms.
-        values, vectors = la.eig(K + self.springs(0.0), M)
+        M = self.parts[0]
+        values, vectors = la.eig(self.structure(W)[1] + self.springs(0.0), M)
         R = vectors[:, np.abs(values).argmin()].real
-        return M, D, K, load - M @ R * (R @ load) / (R @ M @ R)
+        return load - M @ R * (R @ load) / (R @ M @ R)
+
+    @cached_property
+    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """M, D and K without contacts and pins, and the load, at the speed of the start."""
+        return self.parts[0], *self.structure(self.turns), self.loads(self.turns)
+
+    def now(self, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """D, K and the load at a time."""
+        return self.matrices[1:]
 
     def springs(self, t: float) -> np.ndarray:
         """Stiffness of the pins and of contacts that all carry."""
@@ -214,19 +250,18 @@ class OnTruePaths:
         P = self.at(self.pins, t)
         return V * self.mesh_stiffness @ V.T + P * self.pin_springs @ P.T
 
-    def motion(self, end: float, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Forces (count, 2 N) of the contacts, and of the pins outwards and onwards (count, N, 2), from rest."""
-        M, D, K, load = self.matrices
-        n = len(load)
-        inverse = np.linalg.inv(M)
+    def motion(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (r, 2 N) of the contacts, and of the pins outwards and onwards (r, N, 2), at times (r,), from rest."""
+        n = self.system.n
+        inverse = np.linalg.inv(self.parts[0])
 
         def slope(t: float, y: np.ndarray) -> np.ndarray:
             q, v = y[:n], y[n:]
+            D, K, load = self.now(t)
             F = self.at(self.contacts, t) @ self.contact_forces(t, q) + self.at(self.pins, t) @ self.pin_forces(t, q, v)
             return np.concatenate([v, inverse @ (load - K @ q - D @ v - F)])
 
-        times = end / count * np.arange(1, count + 1)
-        found = solve_ivp(slope, (0.0, end), np.zeros(2 * n), "DOP853", times, rtol=1e-10, atol=1e-15)
+        found = solve_ivp(slope, (0.0, times[-1]), np.zeros(2 * n), "DOP853", times, rtol=1e-10, atol=1e-15)
         q, v = found.y[:n].T, found.y[n:].T
         return (
             np.array([self.contact_forces(t, x) for t, x in zip(times, q, strict=True)]),
@@ -250,6 +285,35 @@ class OnTruePaths:
         return np.asarray(forces)
 
 
+@dataclass(frozen=True)
+class RunUp(OnTruePaths):
+    """The stage with a sun whose speed stays until `begin` and goes evenly to another one until `end`, in s."""
+
+    to: float = 0.0
+    begin: float = 0.0
+    end: float = 0.0
+
+    def turned(self, t: float) -> tuple[float, float, float]:
+        first = self.ratio * self.speed
+        late = max(t - self.begin, 0.0)
+        faster = self.ratio * (self.to - self.speed) / (self.end - self.begin)
+        return first * t + 0.5 * faster * late**2, first + faster * late, faster if late else 0.0
+
+    @cached_property
+    def _over_speed(self) -> tuple[np.ndarray, np.ndarray]:
+        squares = np.linspace(*sorted((self.ratio * w) ** 2 for w in (self.speed, self.to)), 9)
+        speeds = np.sign(self.turns) * np.sqrt(squares)
+        return squares, np.array([[self.loads(W), self.loads(W, 1.0)] for W in speeds])
+
+    def now(self, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        _, W, faster = self.turned(t)
+        squares, loads = self._over_speed
+        k = min(int((W**2 - squares[0]) / (squares[1] - squares[0])), len(squares) - 2)
+        share = (W**2 - squares[k]) / (squares[1] - squares[0])
+        steady, grown = loads[k] + share * (loads[k + 1] - loads[k])
+        return *self.structure(W, faster), steady + faster * (grown - steady)
+
+
 def periods(own: OnTruePaths, count: float) -> float:
     """Time in s of some mesh periods."""
     return count * 2.0 * np.pi / (TEETH[own.planets][2] * abs(own.turns))
@@ -261,7 +325,7 @@ def six_periods(planets: int, speed: float, torque: float) -> tuple[str, float, 
     text = stage(torque, planets, loss=3e-7, speed=speed)
     own = OnTruePaths(text, planets, speed, torque, 3e-7)
     end = periods(own, 6)
-    return text, end, *own.motion(end, 60)
+    return text, end, *own.motion(end / 60 * np.arange(1, 61))
 
 
 def pin_histories(found: rg.TransientResult, planets: int) -> np.ndarray:
@@ -305,6 +369,47 @@ def test_motions_with_teeth_that_part_are_those_of_true_paths(
     coarse, fine = np.array(off)
     assert np.all(fine < bound * np.array([1.0, 0.2]))
     assert np.all(np.log2(coarse / fine) == pytest.approx(2.0, abs=0.35))
+
+
+@pytest.mark.parametrize(("planets", "speed", "to"), [(4, 0.45 * SPEED, 1.3 * SPEED), (3, -SPEED, -0.3 * SPEED)])
+def test_run_ups_are_those_of_true_paths(planets: int, speed: float, to: float) -> None:
+    """Planets that leave their places ever faster: pins that take them along, matrices that grow, teeth that part."""
+    torque, loss, begin, end = 900.0, 3e-7, 0.001, 0.009
+    text = stage(torque, planets, loss=loss, speed=speed)
+    own = RunUp(text, planets, speed, torque, loss, to=to, begin=begin, end=end)
+    off = []
+    for steps in (500, 1000):
+        found = rg.transient(
+            rg.loads(text),
+            speed=[(begin, speed), (end, to)],
+            time=0.0045,
+            steps=steps,
+            start="rest",
+            error_estimate=False,
+        )
+        which = slice(3, None, 8)
+        if not off:
+            F, pins = own.motion(found.time[which])
+        of_pins = np.abs(pin_histories(found, planets)[which] - pins).max() / np.abs(pins).max()
+        off.append((np.abs(found.mesh_force[which] - F).max() / np.abs(F).max(), of_pins))
+        assert found.energy.share < 1e-4
+    coarse, fine = np.array(off)
+    assert np.all(fine < (8e-3, 1.5e-3))
+    assert np.all(coarse > 2.5 * fine)
+
+
+def test_channels_of_a_run_up_are_those_at_the_speed_of_the_moment() -> None:
+    point = '[points.pin]\nshaft = "planet"\nat = 0\ndirection = "y"\n'
+    task = prepare(rg.loads(stage(900.0, 3, more=point)), [(0.0, -40.0), (0.1, -SPEED)], None)
+    local = task.local.local
+    for t in (0.0, 0.03):
+        there = channels(task.local, float(local.rotation.speed(np.array(t)))).observed(local.n, local.m)
+        now = local.at_time(t).observed
+        for kind in "qvaF":
+            rows = getattr(there, kind)
+            assert getattr(now, kind) == pytest.approx(rows, rel=1e-9, abs=1e-9 * max(np.abs(rows).max(), 1.0))
+    with_speed = task.channels.names.index("points.pin#2 velocity")
+    assert np.abs(now.q[with_speed]).max() > 1.0
 
 
 def test_at_a_crawl_forces_are_those_of_statics_at_each_instant() -> None:
@@ -423,13 +528,10 @@ def test_what_turns_in_axes_of_planets_is_refused_by_name(more: str, words: str)
         rg.transient(rg.loads(stage(900.0, more=more)), time=0.001)
 
 
-def test_run_ups_methods_and_sweeps_are_refused_by_name() -> None:
+def test_methods_and_sweeps_are_refused_by_name() -> None:
     model = rg.loads(stage(900.0))
     for words, asked in (
-        (
-            "carriers.stage: motions in time of planets that go round are built for a constant speed",
-            {"speed_to": 300.0},
-        ),
+        ("method exponential: it needs a constant speed", {"speed_to": 300.0, "method": "exponential"}),
         ("method explicit: it does not take planets that go round", {"method": "explicit"}),
     ):
         with pytest.raises(AnalysisError, match=re.escape(words)):
