@@ -46,9 +46,9 @@ DOCS = Step("docs", (*PYTEST, "tests/docs"))
 # Tests of a file mostly stay together, for they share models and compiled code; a worker without work takes half of another's.
 TESTS = Step("tests", (*PYTEST, "tests", "-n", "2", "--dist", "worksteal"))
 FAST_TESTS = Step("tests", (*PYTEST, "tests/unit", "tests/contract"))
-# On their own: they want an index of packages, or a browser.
+# On their own: they want an index of packages, or a browser. All models on every leaf take minutes, with the long tests.
 WHEEL = Step("wheel", (*PYTEST, "tests/installed", "-m", "long"))
-BROWSER = Step("browser", (*PYTEST, "tests/browser", "-m", "long"))
+BROWSER = Step("browser", (*PYTEST, "tests/browser", "-m", "long", "-k", "not every_leaf"))
 SITE = Step("site", ("docs/build_site.py",))
 LONG_TESTS = Step("long", (*PYTEST, "tests", "-m", "long"))
 

@@ -28,7 +28,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Start": ("index", "first_gearbox", "gallery", "errors", "rotordynamicist", "gear_engineer"),
     "Analyses": ("static", "modal", "response", "transient", "sweep"),
     "Parts": ("mesh", "bevel", "planetary", "bearings", "casings", "model_file"),
-    "Design": ("report", "rig"),
+    "Design": ("app", "report", "rig"),
     "Files and Python": ("commands", "python", "api", "rexs"),
     "Trust": ("accuracy", "validation"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),

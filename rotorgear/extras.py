@@ -18,6 +18,7 @@ EXTRAS = {
     "meshio": ("meshio", "casing"),
     "tomlkit": ("tomlkit", "rig"),
     "jinja2": ("jinja2", "report"),
+    "nicegui": ("nicegui", "app"),
 }
 
 

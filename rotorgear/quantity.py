@@ -123,6 +123,18 @@ def parse_in_unit(value: Any, unit: str) -> float:
     return number if given is None else _sensible(number * _factor_by_pint(given, wanted), wanted)
 
 
+def split_number(text: str) -> tuple[float, str]:
+    """The number that a text begins with, and what follows it: "85 mm" is 85.0 and " mm".
+
+    Raises:
+        ValueError: it begins with none.
+    """
+    found = _NUMBER_AND_UNIT.match(text.strip())
+    if found is None:
+        raise ValueError(f"no number: {text}")
+    return float(found[1]), found[2]
+
+
 def _number_and_unit(value: Any, wanted: Dimension) -> tuple[float, str | None]:
     """A number and its unit; a plain number is one in SI, of no unit, and has a sensible size."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real | str):

@@ -172,6 +172,13 @@ def view(call: Call) -> None:
     rg.view(call.source if call.saved else call.result("modal"), mode=call["mode"] - 1)
 
 
+def app(call: Call) -> None:
+    """A page on this machine in which a model is edited, seen and computed."""
+    from rotorgear.app.page import serve
+
+    serve(call["model"], call["port"], browser=not call["no_browser"], say=say)
+
+
 def new(call: Call) -> None:
     """A model file of one's own, begun as a copy of a shipped one."""
     path = call.source_path

@@ -64,9 +64,25 @@ _GROUPS = {
             ("view", "modal"),
             (),
             body="bodies.view",
-            hidden=("model", "fmax", "only", "pruning", "error_estimate"),
+            hidden=("model", "fmax", "only", "pruning", "error_estimate", "shapes"),
             options={"mode": Option("Mode to begin with, counted from 1.", default=1, least=1)},
             needs={"pyvista": "A window"},
+        ),
+        Command(
+            "app",
+            "A page to click: numbers, modes that move, diagrams, report",
+            (),
+            (),
+            {
+                "model": Option(
+                    "Model file (TOML); its changes are written back by Save.", "path", REQUIRED, shown="MODEL"
+                ),
+                "port": Option("Port on this machine; 0: any that is free.", "int", 0, least=0),
+                "no_browser": Option("Print the address and open no browser.", "flag"),
+            },
+            positional=("model",),
+            needs={"nicegui": "The page", "tomlkit": "The page", "matplotlib": "The page", "jinja2": "The page"},
+            body="bodies.app",
         ),
         Command(
             "report",
@@ -97,7 +113,7 @@ _GROUPS = {
             "modal",
             "Natural frequencies and mode shapes, at rest or at a speed",
             shows=("json", "save", "plot", "vtk", "uff"),
-            hidden=("error_estimate",),
+            hidden=("error_estimate", "shapes"),
             options={
                 "rig": _RIG,
                 "plot": Option(

@@ -88,7 +88,8 @@ def _largest(vectors: np.ndarray) -> float:
 
 
 def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Solids:
-    """Return the surfaces of all parts of a model with the nodes of one of its results."""
+    """Return the surfaces of all parts of a model with the nodes of one of its results; AnalysisError where that has none."""
+    nodes.require()
     frames = display_frames(model)
     skeleton = Skeleton(model, nodes, frames)
     parts = list(part_surfaces(model, skeleton, detail))

@@ -65,6 +65,7 @@ def write_uff(
 
 
 def _modes(result: ModalResult, modes: Sequence[int] | None, rotations: bool | None) -> list[bytes]:
+    result.nodes.require()
     count = len(result.eigenvalues)
     is_complex = result.speed is not None
     six = not is_complex if rotations is None else rotations

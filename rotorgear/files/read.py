@@ -55,6 +55,17 @@ def noting_inputs() -> Iterator[dict[tuple[int, int], Path]]:
         _inputs.remove(known)
 
 
+@contextmanager
+def noting_nothing() -> Iterator[None]:
+    """Within it nothing is noted: for an editor, which writes the file that it has read."""
+    kept = list(_inputs)
+    _inputs.clear()
+    try:
+        yield
+    finally:
+        _inputs[:] = kept
+
+
 def noted_inputs() -> dict[tuple[int, int], Path]:
     """The files that this run has read, by device and number."""
     return {key: path for known in _inputs for key, path in known.items()}

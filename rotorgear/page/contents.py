@@ -26,7 +26,7 @@ from rotorgear.analysis.static.static import static
 from rotorgear.analysis.teeth.gear_sheet import gear
 from rotorgear.analysis.teeth.mesh import mesh
 from rotorgear.cpu import compiling_seconds, cpu_seconds
-from rotorgear.errors import RotorgearError
+from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.critical import CriticalResult
@@ -40,11 +40,27 @@ MESH_ORDERS_OF_RUN_UP = 3
 _ABOVE_RIG = 1.15
 _LOADED = "tooth_fe"
 _NO_SPEED = "the model has no operating speed"
+# Sections of a page, and the analyses behind each.
+SECTIONS = {
+    "model": ("check", "gear", "modal"),
+    "statics": ("static",),
+    "modes": ("modal",),
+    "campbell": ("campbell",),
+    "critical": ("critical", "critical_map"),
+    "standards": ("critical", "standards"),
+    "run-up": ("response",),
+    "teeth": ("mesh",),
+    "casings": ("casing",),
+    "rig": ("modal", "rig"),
+}
 
 
 @dataclass
 class Contents:
-    """Results by the name they have in the page's numbers, their CPU seconds, and what was not computed and why."""
+    """Results by the name they have in the page's numbers, their CPU seconds, and what was not computed and why.
+
+    `only`: names of sections; all where there are none.
+    """
 
     model: Model
     progress: Progress = silent
@@ -53,9 +69,27 @@ class Contents:
     seconds: dict[str, float] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
     seconds_of_all: float = 0.0
+    only: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.only if name not in SECTIONS]
+        if unknown:
+            raise AnalysisError(f"only: got '{unknown[0]}', expected sections among {', '.join(SECTIONS)}")
+
+    def wants(self, name: str) -> bool:
+        """Whether an analysis stands behind a section that was asked for."""
+        kind = name.partition(" ")[0]
+        return not self.only or any(kind in SECTIONS[section] for section in self.only)
+
+    def lacks(self, name: str, reason: str) -> None:
+        """Keep why an analysis that was asked for is not there."""
+        if self.wants(name):
+            self.missing[name] = reason
 
     def run(self, name: str, begins: float, analysis: Callable[[], Any]) -> Any:
         """Run an analysis, which begins at a fraction of the whole; what the model lacks for it is kept as the reason why not."""
+        if not self.wants(name):
+            return None
         self.progress(begins, name.replace("_", " "))
         done = self.piece(partial(_section, analysis))
         if "missing" in done:
@@ -76,9 +110,15 @@ def _section(analysis: Callable[[], Any]) -> dict[str, Any]:
 
 
 def computed(
-    model: Model, rig: Any, grade: float, run_up: dict[str, Any], progress: Progress, piece: Piece
+    model: Model,
+    rig: Any,
+    grade: float,
+    run_up: dict[str, Any],
+    progress: Progress = silent,
+    piece: Piece = unkept,
+    only: tuple[str, ...] = (),
 ) -> Contents:
-    """Run all analyses of a report.
+    """Run the analyses of a report.
 
     Args:
         model: a checked model. rig: measured lines, or none.
@@ -86,8 +126,12 @@ def computed(
         run_up: modal_damping and fmax of `response`; without fmax orders go up to those of `_highest_order`.
         progress: callable that is told fraction and step.
         piece: does the work of a section, or takes it over.
+        only: names of `SECTIONS`; all where there are none.
+
+    Raises:
+        AnalysisError: no such section.
     """
-    found = Contents(model, progress, piece)
+    found = Contents(model, progress, piece, only=only)
     speed = model.operating_speed
     found.run("check", 0.02, lambda: check(model))
     if model.meshes:
@@ -106,16 +150,16 @@ def computed(
         if model.bearings:
             found.run("critical_map", 0.5, lambda: critical_map(model, stiffness=_stiffnesses(model)))
         else:
-            found.missing["critical_map"] = "the model has no bearings"
+            found.lacks("critical_map", "the model has no bearings")
         if speeds is not None:
             found.run("standards", 0.55, lambda: _standards(model, critical_speeds=speeds, grade=grade))
         else:
-            found.missing["standards"] = found.missing["critical"]
+            found.lacks("standards", found.missing.get("critical", ""))
         asked = run_up if run_up["fmax"] is not None else {**run_up, "fmax": _highest_order(model)}
         found.run("response", 0.65, lambda: response(model, **asked))
     else:
-        for name in ("campbell", "critical", "critical_map", "standards"):
-            found.missing[name] = _NO_SPEED
+        for name in ("campbell", "critical", "critical_map", "standards", "response"):
+            found.lacks(name, _NO_SPEED)
     for name in loaded_meshes(model):
         found.run(f"mesh {name}", 0.8, lambda name=name: mesh(model, name))  # type: ignore[misc]
     for name in model.casings:

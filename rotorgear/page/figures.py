@@ -16,23 +16,13 @@ import numpy as np
 from rotorgear.export.solids import Solids
 from rotorgear.page.contents import Contents, error_of
 from rotorgear.page.ticks import settle
+from rotorgear.page.turntable import KIND_COLOURS
 from rotorgear.plots.figure import COLOURS, beside, label, legend_below, name_axes, new_figure, values
 from rotorgear.results.standards import StandardsResult
 
 # Seen from the side of +x, +y and +z: columns are the picture's right, up, and towards the eye.
 _EYE = np.array([-0.85, 0.45, 0.75])
 _LIGHT = np.array([0.2, 0.8, 0.55])
-_COLOURS = {
-    "shaft": "#8d99a6",
-    "stripe": "#6f7b88",
-    "gear": "#c9a25b",
-    "disk": "#a7b5a0",
-    "point mass": "#a7b5a0",
-    "bearing": "#4f7fb5",
-    "support": "#7a6fa8",
-    "coupling": "#7a6fa8",
-    "casing": "#c8cdd3",
-}
 _SHADE = 0.42
 # Letters of an SVG above which a picture is an image.
 _LARGEST = 600_000
@@ -128,7 +118,7 @@ class Painter:
 
         solids = self.solids
         if level is None:
-            return np.array([to_rgb(_COLOURS.get(name, "#999999")) for name in solids.kind_names])[solids.kind]
+            return np.array([to_rgb(KIND_COLOURS[name]) for name in solids.kind_names])[solids.kind]
         shown = np.concatenate([level[solids.quads].mean(axis=1), level[solids.triangles].mean(axis=1)])
         return colormaps["viridis"](shown)[:, :3]
 

@@ -27,6 +27,8 @@ from rotorgear.results.result import Result
 from rotorgear.version import VERSION
 
 _ENDINGS = (".html", ".htm")
+# mm/s, of ISO 21940-11: that of gearboxes and turbines.
+BALANCE_GRADE = 2.5
 
 
 @dataclass(frozen=True)
@@ -69,10 +71,11 @@ def report(
     *,
     rig: str | Path | Sequence[Any] = (),
     study: Sequence[str | Path] = (),
-    grade: float = 2.5,
+    grade: float = BALANCE_GRADE,
     modal_damping: float = 0.0,
     fmax: float | None = None,
     turntable: bool = False,
+    only: Sequence[str] = (),
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> Report:
@@ -88,6 +91,7 @@ def report(
         fmax: leave out orders of the run-up above this many Hz at its highest speed (default: above the third order of the
             fastest mesh).
         turntable: also put the modes into the page as solids that turn and move where a browser runs its script.
+        only: sections, among model, statics, modes, campbell, critical, standards, run-up, teeth, casings and rig (default: all).
         stream: keeps sections while the page is made (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
@@ -124,8 +128,8 @@ def report(
 
     start = cpu_seconds() - compiling_seconds()
     asked = {"modal_damping": modal_damping, "fmax": fmax}
-    piece = pieces(stream, {"model": model_hash(built), "run": f"{lines} {grade} {asked}"})
-    found = computed(built, lines, grade, asked, progress, piece)
+    piece = pieces(stream, {"model": model_hash(built), "run": f"{lines} {grade} {asked} {tuple(only)}"})
+    found = computed(built, lines, grade, asked, progress, piece, tuple(only))
     found.seconds_of_all = cpu_seconds() - compiling_seconds() - start
     about = {
         "analysis": "report",
@@ -137,6 +141,7 @@ def report(
             "grade": grade,
             "modal_damping": modal_damping,
             "fmax": fmax,
+            "only": list(only),
             "rig": setting(rig if isinstance(rig, str | Path) else [str(line) for line in lines]),
         },
         "cpu_seconds": dict(found.seconds),
@@ -170,6 +175,6 @@ def _page(model: Model, about: dict[str, Any], parts: list[Any], turntable: str)
         about=about,
         sections=parts,
         turntable=turntable,
-        script=text_of(folder / "turntable.js") if turntable else "",
+        script=text_of(folder / "turntable.js") + text_of(folder / "turntable_in_report.js") if turntable else "",
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.note import sentences
-from rotorgear.page.contents import MODES, Contents, error_of
+from rotorgear.page.contents import MODES, SECTIONS, Contents, error_of
 from rotorgear.page.figures import Painter, draw_errors, draw_unbalance, svg_of
 from rotorgear.results.casing import CasingRow
 from rotorgear.results.mesh import MeshResult
@@ -56,40 +56,50 @@ class Section:
 
 def sections(found: Contents, studies: list[Any]) -> Iterator[Section]:
     """Yield the sections of a report in the order of the page."""
-    made = found.results
-    painter = None
-    if "modal" in made:
-        painter = Painter(build_solids(found.model, made["modal"].nodes, LIGHT), (9.6, 5.2))
-    if "check" in made:
-        section = Section("model", "The gearbox").show(made["check"].tables(), RESULTS, "check")
-        if painter is not None:
-            seen = "The model, seen obliquely" + ("; casings are transparent." if found.model.casings else ".")
-            section.figures.append({"caption": seen, "markup": painter.image("The gearbox"), "small": False})
-        yield section
-    if "static" in made:
-        section = Section("statics", "Statics").show(made["static"].tables(), RESULTS, "static")
-        yield section.draw("Forces, load sharing and deflections.", made["static"].plot(), "Statics")
-    if "modal" in made:
-        yield _modes(made["modal"], painter)
-    over_speed: dict[str, Callable[[dict[str, Any]], Section]] = {
-        "campbell": _campbell,
-        "critical": _critical,
-        "standards": _standards,
-        "response": _response,
-    }
-    for name, make in over_speed.items():
-        if name in made:
-            yield make(made)
-    teeth = [name for name in made if name.startswith("mesh ")]
-    if teeth:
-        yield _teeth(made, teeth)
-    casings = [name for name in made if name.startswith("casing ")]
-    if casings:
-        yield _casings(made, casings)
-    if "rig" in made:
-        yield _rig(made["rig"])
+    yield from analysed(found)
     yield _costs(found, studies)
-    yield _left_out(found)
+    yield left_out(found)
+
+
+def analysed(found: Contents) -> Iterator[Section]:
+    """Yield the sections that show results, of those that were asked for."""
+    made = found.results
+    wanted = found.only or tuple(SECTIONS)
+    painter = None
+    if "modal" in made and ("model" in wanted or "modes" in wanted):
+        painter = Painter(build_solids(found.model, made["modal"].nodes, LIGHT), (9.6, 5.2))
+    teeth = [name for name in made if name.startswith("mesh ")]
+    casings = [name for name in made if name.startswith("casing ")]
+    makers: dict[str, tuple[bool, Callable[[], Section]]] = {
+        "model": ("check" in made, lambda: _model(found, painter)),
+        "statics": ("static" in made, lambda: _statics(made["static"])),
+        "modes": ("modal" in made, lambda: _modes(made["modal"], painter)),
+        "campbell": ("campbell" in made, lambda: _campbell(made)),
+        "critical": ("critical" in made, lambda: _critical(made)),
+        "standards": ("standards" in made, lambda: _standards(made)),
+        "run-up": ("response" in made, lambda: _response(made)),
+        "teeth": (bool(teeth), lambda: _teeth(made, teeth)),
+        "casings": (bool(casings), lambda: _casings(made, casings)),
+        "rig": ("rig" in made, lambda: _rig(made["rig"])),
+    }
+    for name, (there, make) in makers.items():
+        if there and name in wanted:
+            yield make()
+
+
+def _model(found: Contents, painter: Painter | None) -> Section:
+    """What the model is made of, and a picture of it."""
+    section = Section("model", "The gearbox").show(found.results["check"].tables(), RESULTS, "check")
+    if painter is not None:
+        seen = "The model, seen obliquely" + ("; casings are transparent." if found.model.casings else ".")
+        section.figures.append({"caption": seen, "markup": painter.image("The gearbox"), "small": False})
+    return section
+
+
+def _statics(result: Any) -> Section:
+    """Forces, load sharing and deflections."""
+    section = Section("statics", "Statics").show(result.tables(), RESULTS, "static")
+    return section.draw("Forces, load sharing and deflections.", result.plot(), "Statics")
 
 
 def _modes(result: Any, painter: Painter | None) -> Section:
@@ -258,7 +268,7 @@ def _costs(found: Contents, studies: list[Any]) -> Section:
     return section
 
 
-def _left_out(found: Contents) -> Section:
+def left_out(found: Contents) -> Section:
     """Sections that are not there, and what the analyses left out and warn about, each sentence once."""
     tables = [grid(found.missing.items(), "section", "reason", left=2, caption="Sections that are not there")]
     both = (("left_out", "Left out of the analyses", "what and why"), ("warnings", "Warnings", "warning"))

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.schema import Record, Written, derived, imaginary_part, of, real_part
@@ -40,6 +41,13 @@ class NodeTable(Record):
     on_axis: np.ndarray | None = of(
         "z on its own shaft", "m", "node", note="; `null`: z of the position, where no axis is inclined", default=None
     )
+
+    def require(self) -> None:
+        """AnalysisError where the modes were found without shapes, which is as if there were no nodes."""
+        if not self.shaft:
+            raise AnalysisError(
+                "these modes were found without their shapes (shapes=False): find them with shapes for this"
+            )
 
     @property
     def along(self) -> np.ndarray:
@@ -218,7 +226,8 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         number = Column("mode", lambda k: k + 1)
         # A rigid body has no frequency whose error could be relative to it.
         error = Column("", "error_estimate", where=lambda k: not self.rigid[k])
-        yield table_over(self, "mode", number, "frequency_hz", error, *damped, "description", caption="Modes")
+        words = ("description",) if self.nodes.shaft else ()
+        yield table_over(self, "mode", number, "frequency_hz", error, *damped, *words, caption="Modes")
         if self.mode_class:
             seen = carrier_columns(self.carrier_frequency_hz, self.carrier_frequency_share)
             caption = "Classes of planetary motions"

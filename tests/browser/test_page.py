@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 import rotorgear as rg
+from tests.browser.chromium import CHROMIUM, DRAWING, QUIET
 from tests.paths import ROOT
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 pytestmark = [pytest.mark.long, pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")]
-# Software rendering, so that the turntable's script runs to its end.
-QUIET = ("--no-sandbox", "--disable-background-networking", "--no-first-run", "--disable-component-update")
-DRAWING = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +38,7 @@ def test_the_console_says_nothing_and_the_turntable_comes_up(page: Path) -> None
 def test_an_error_in_a_script_would_be_seen(page: Path) -> None:
     broken = page.with_name("broken.html")
     broken.write_text(
-        page.read_text(encoding="utf-8").replace("(function () {", "none();(function () {"), encoding="utf-8"
+        page.read_text(encoding="utf-8").replace("function turntable(", "none();function turntable("), encoding="utf-8"
     )
     assert re.search(r"CONSOLE.*none is not defined", chromium(broken, "--enable-logging=stderr", "--dump-dom"))
 

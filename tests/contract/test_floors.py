@@ -36,6 +36,7 @@ FLOORS = {
     "plots": 8,
     "plot": 9,
     "page": 9,
+    "app": 9,
     "cli": 10,
 }
 

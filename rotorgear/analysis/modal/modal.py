@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +35,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
 from rotorgear.results.laws import about_state, law_rows
-from rotorgear.results.modal import ModalResult
+from rotorgear.results.modal import ModalResult, NodeTable
 from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.plan import Plan
 from rotorgear.system.planets import turning_carriers
@@ -59,6 +60,7 @@ def modal(
     only: Sequence[str] = (),
     pruning: bool = True,
     error_estimate: bool = True,
+    shapes: bool = True,
     progress: Progress = silent,
 ) -> ModalResult:
     """Return the lowest modes of a model.
@@ -76,13 +78,17 @@ def modal(
             out.
         pruning: solve groups of degrees of freedom that nothing couples apart from each other; False is for comparison.
         error_estimate: False leaves the estimate of the discretisation error out, for timing; only with `elements` or a system.
+        shapes: False gives the same frequencies, damping and errors without shapes, energies, whirl and descriptions, in less
+            time: for many values of a number.
         progress: callable that is told fraction and step.
 
     Raises:
         AnalysisError: nothing to solve, a dof with neither inertia nor stiffness, a speed outside a bearing's table.
         ConvergenceError: a guard of the solver was not met, or the accuracy can't be reached; never a silent loss.
     """
-    asked = ModalRequest(speed_in_si(speed), modes, fmax, elements, accuracy, tuple(only), pruning, error_estimate)
+    asked = ModalRequest(
+        speed_in_si(speed), modes, fmax, elements, accuracy, tuple(only), pruning, error_estimate, shapes
+    )
     return modes_about(model, asked, progress=progress)
 
 
@@ -98,6 +104,7 @@ class ModalRequest:
     only: tuple[str, ...] = ()
     pruning: bool = True
     error_estimate: bool = True
+    shapes: bool = True
 
 
 def modes_about(
@@ -126,13 +133,7 @@ def modes_about(
     progress(0.9, "energies")
     found = separated(system, found)
     s = found.eigenvalues
-    q = system.dofs.expand(found.vectors)
-    nodes, displaced = shapes_at_stations(system, q)
-    shapes = _turned(displaced)
-    energies = mode_energies(system, speed or 0.0, q, found.rigid)
-    whirl = whirl_of(system, shapes[: len(system.nodes)], speed or 0.0)
-    description = describe(system, q, energies, found.rigid, (s.imag == 0.0) & ~found.rigid)
-    classes = classes_of(system, q, energies.kinetic_by_shaft, speed or 0.0)
+    seen = _seen(system, speed or 0.0, found) if asked.shapes else _unseen(len(s))
     clock.lap("energies")
     progress(1.0, "done")
     return ModalResult(
@@ -140,16 +141,7 @@ def modes_about(
         speed=speed,
         eigenvalues=s,
         rigid=found.rigid,
-        shapes=shapes,
-        nodes=nodes,
         error_estimate=estimate + reduction,
-        kinetic_energy=energies.kinetic,
-        strain_energy=energies.strain,
-        kinetic_by_motion=energies.kinetic_by_motion,
-        strain_by_motion=energies.strain_by_motion,
-        whirl=whirl_words(whirl, energies),
-        whirl_by_shaft=whirl.net,
-        description=description,
         backward_error=found.backward_error,
         dofs=system.n,
         discretisation=pieces(system),
@@ -158,17 +150,52 @@ def modes_about(
         left_out=(*left_out(system, "modes", speed), *class_notes(system), *found.groups),
         warnings=(
             *mode_warnings(system, asked.modes, s, asked.fmax),
-            *conditioning_warnings(system, speed, s, found.rigid, energies.strain),
+            *conditioning_warnings(system, speed, s, found.rigid, seen["strain_energy"]),
             *short,
             *casing_warnings(reduction, s),
         ),
         method=found.method + about_state(system.state),
-        point_amplitudes=point_amplitudes(system, nodes, shapes),
-        mode_class=classes.words if classes.energy else (),
-        class_energy=classes.energy,
-        carrier_frequency_hz=classes.seen_hz(s) if speed else {},
-        carrier_frequency_share=classes.seen_share if speed else {},
+        **seen,
     )
+
+
+def _seen(system: System, speed: float, found: Modes) -> dict[str, Any]:
+    """What a result tells of the shapes of modes: displacements, energies, whirl, and what they are in words."""
+    s = found.eigenvalues
+    q = system.dofs.expand(found.vectors)
+    nodes, displaced = shapes_at_stations(system, q)
+    shapes = _turned(displaced)
+    energies = mode_energies(system, speed, q, found.rigid)
+    whirl = whirl_of(system, shapes[: len(system.nodes)], speed)
+    classes = classes_of(system, q, energies.kinetic_by_shaft, speed)
+    return {
+        "shapes": shapes,
+        "nodes": nodes,
+        "kinetic_energy": energies.kinetic,
+        "strain_energy": energies.strain,
+        "kinetic_by_motion": energies.kinetic_by_motion,
+        "strain_by_motion": energies.strain_by_motion,
+        "whirl": whirl_words(whirl, energies),
+        "whirl_by_shaft": whirl.net,
+        "description": describe(system, q, energies, found.rigid, (s.imag == 0.0) & ~found.rigid),
+        "point_amplitudes": point_amplitudes(system, nodes, shapes),
+        "mode_class": classes.words if classes.energy else (),
+        "class_energy": classes.energy,
+        "carrier_frequency_hz": classes.seen_hz(s) if speed else {},
+        "carrier_frequency_share": classes.seen_share if speed else {},
+    }
+
+
+def _unseen(modes: int) -> dict[str, Any]:
+    """The same of modes whose shapes nobody asked for: there are no nodes."""
+    shares = ("kinetic_energy", "strain_energy", "kinetic_by_motion", "strain_by_motion", "whirl_by_shaft")
+    return {
+        **{name: {} for name in shares},
+        "shapes": np.zeros((0, 6, modes), complex),
+        "nodes": NodeTable((), np.zeros((0, 3)), ()),
+        "whirl": ("",) * modes,
+        "description": ("",) * modes,
+    }
 
 
 def _on_fine_mesh(

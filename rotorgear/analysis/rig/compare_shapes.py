@@ -240,6 +240,7 @@ class _Modes:
 
     @classmethod
     def of(cls, result: ModalResult, points: tuple[str, ...]) -> _Modes:
+        result.nodes.require()
         elastic = np.flatnonzero(~result.rigid & (result.natural_frequency_hz > 0.0))
         if not elastic.size:
             raise AnalysisError("there are no elastic modes to compare with")
