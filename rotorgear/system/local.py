@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce, contact_geometry
 from rotorgear.model.parts.carrier import written_name
@@ -190,7 +191,7 @@ def _require_plain_planets(system: System, rotation: Rotation) -> None:
     """Refuse, by name, what motions in time do not take of planets that go round.
 
     Raises:
-        AnalysisError: loaded teeth, laws of bearings and elements, unbalances, loads that vary or differ.
+        AnalysisError: loaded teeth, laws of bearings and elements, unbalances that are accelerated, loads that differ.
     """
     model = system.model
     turning = {planets.shaft: planets for planets in turning_carriers(system.layout)}
@@ -209,23 +210,29 @@ def _require_plain_planets(system: System, rotation: Rotation) -> None:
     for table in ("bearings", "nonlinear_elements", "unbalances"):
         for name, part in getattr(model, table).items():
             planets = round_with.get(part.shaft)
-            if planets is not None and (table != "bearings" or part.has_law):
+            accelerated = not rotation.is_constant or not system.layout.turns(part.shaft)
+            if planets is not None and {"bearings": getattr(part, "has_law", True), "unbalances": accelerated}.get(
+                table, True
+            ):
                 what = {"bearings": "the law of a bearing", "unbalances": "an unbalance"}.get(table, "an element")
+                where = " in a run-up, or where they do not turn on their pins," if table == "unbalances" else ""
                 raise AnalysisError(
-                    f"{table}.{written_name(name)}: {what} on planets that go round is not built in time. "
+                    f"{table}.{written_name(name)}: {what} on planets that go round{where} is not built in time. "
                     f"Leave it out, {hold}{planets.shaft}."
                 )
-    same: dict[str, np.ndarray] = {}
+    same: dict[str, ExternalLoad] = {}
     for load in system.layout.external_loads:
         planets = round_with.get(load.places[0].shaft)
         if planets is None:
             continue
-        name = load.address.removeprefix("loads.")
-        first_of = same.setdefault(written_name(name), load.constant)
-        if load.history is not None or load.amplitude.any() or not np.array_equal(first_of, load.constant):
+        name = written_name(load.address.removeprefix("loads."))
+        first_of = same.setdefault(name, load)
+        # What stays is known to the structure at the place of the start; what varies is a law, of all sisters or of none.
+        varies = [one.history is not None or bool(one.amplitude.any()) for one in (first_of, load)]
+        if varies[0] != varies[1] or not np.array_equal(first_of.constant, load.constant):
             raise AnalysisError(
-                f"loads.{written_name(name)}: a load on planets that go round is built in time where it is constant and the same "
-                f"for all of them. Make it so, {hold}{planets.shaft}."
+                f"loads.{name}: a load on planets that go round is built in time where what stays of it is the same for all of "
+                f"them, and all of them have what varies. Make it so, {hold}{planets.shaft}."
             )
 
 

@@ -14,7 +14,9 @@ import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
 from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.model.layout.state import MeshForce
+from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS
 from rotorgear.model.parts.supports import element_law
@@ -189,9 +191,14 @@ def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
     times, accelerations = rotation.accelerations
     for name, item in system.model.unbalances.items():
         place = system.layout.place(f"unbalances.{name}")
+        # In the axes of a planet, which go round with its carrier, it turns with what is left of the speed.
+        turns = system.layout.turns(item.shaft)
+        size = item.magnitude
+        if turns and turns != system.train.ratio(item.shaft):
+            size *= (system.train.ratio(item.shaft) / turns) ** 2
         law = RotatingForce(
-            item.magnitude,
-            float(system.train.ratio(item.shaft)),
+            size,
+            turns,
             item.phase,
             2.0,
             plane=True,
@@ -234,6 +241,11 @@ def external_parts(system: System) -> Iterator[LocalPart]:
 
     for load in system.layout.external_loads:
         name = load.address.removeprefix("loads.")
+        shaft = load.places[0].shaft
+        # In axes of its own that go round, beside those of its sisters.
+        if system.layout.turns(shaft) != system.train.ratio(shaft):
+            yield from _on_planets(system, load)
+            continue
         if load.history is None:
             size = float(np.linalg.norm(load.amplitude))
             if size:
@@ -247,6 +259,37 @@ def external_parts(system: System) -> Iterator[LocalPart]:
             table = TabulatedForce(load.history.places, values, over_angle, load.ratio, float(load.history.mean[k]))
             column = wrench_load(system, load, load.frame.own(np.eye(6)[k]))[:, None]
             yield LocalPart(load.address, f"{name} {component}", table, column)
+
+
+def _on_planets(system: System, load: ExternalLoad) -> Iterator[LocalPart]:
+    """A load on a planet whose carrier turns: each component in its own axes that varies on one of its sisters.
+
+    What turns with sisters has the same component of each of them.
+    """
+    from rotorgear.forces.rotating_force import RotatingForce
+    from rotorgear.forces.tabulated_force import TabulatedForce
+
+    def own(one: ExternalLoad) -> np.ndarray:
+        """Amplitude (6, 1), or mean and values (6, 1 + p)."""
+        if one.history is None:
+            return one.amplitude[:, None]
+        values = np.zeros((6, 1 + len(one.history.places)))
+        rows = [COMPONENTS.index(component) for component in one.history.components]
+        values[:, 0] = one.history.mean
+        values[rows, 1:] = one.history.values
+        return one.frame.own(values.T).T
+
+    alike = [one for one in system.layout.external_loads if written_name(one.address) == written_name(load.address)]
+    varies = np.any([np.any(own(one) != 0.0, axis=1) for one in alike], axis=0)
+    for k in np.flatnonzero(varies):
+        first, *rest = own(load)[k].tolist()
+        law: RotatingForce | TabulatedForce
+        if load.history is None:
+            law = RotatingForce(first, load.order, load.phase, frequency=load.frequency)
+        else:
+            law = TabulatedForce(load.history.places, tuple(rest), load.history.over == "angle", load.ratio, first)
+        column = wrench_load(system, load, np.eye(6)[k])[:, None]
+        yield LocalPart(load.address, f"{load.address.removeprefix('loads.')} {COMPONENTS[k]}", law, column)
 
 
 # Intervals of all tables of the square of the speed over time, which is linear in between: off by the square of their share.
