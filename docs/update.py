@@ -30,7 +30,17 @@ from types import ModuleType
 from machinery.comparison import difference, texts_agree
 from machinery.made import Made, pictures, record, stale, tables
 from machinery.notebooks import notebooks, run_notebook
-from machinery.snippets import ROOT, Block, SnippetError, marked_blocks, pages, rewritten, run_command, run_page
+from machinery.snippets import (
+    FOLDERS,
+    ROOT,
+    Block,
+    SnippetError,
+    marked_blocks,
+    pages,
+    rewritten,
+    run_command,
+    run_page,
+)
 
 DOCS = Path(__file__).resolve().parent
 
@@ -102,7 +112,8 @@ def draw(wanted: Collection[Made]) -> None:
         runs = [one for one in marked_blocks(block.page) if command in " ".join([one.argument, *one.text.split()])]
         with tempfile.TemporaryDirectory() as directory:
             place = Path(directory)
-            shutil.copytree(ROOT / "models", place / "models")
+            for folder in FOLDERS:
+                shutil.copytree(ROOT / folder, place / folder)
             if runs:  # a later block may change the files that it reads
                 list(run_page(block.page, place, long=runs[0].long))
             for blocks in () if runs else ("none", "quick", "all"):

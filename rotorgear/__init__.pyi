@@ -86,8 +86,13 @@ from rotorgear.analysis.rig.compare_shapes import compare_shapes as compare_shap
 from rotorgear.analysis.rig.compare_responses import compare_frf as compare_frf
 from rotorgear.analysis.rig.measured import read_rig_frf as read_rig_frf
 from rotorgear.analysis.rig.compare_responses import compare_orders as compare_orders
+from rotorgear.analysis.rig.compare_time import compare_time as compare_time
+from rotorgear.records.read import read_record as read_record
+from rotorgear.records.record import TimeRecord as TimeRecord
+from rotorgear.records.record import Channel as Channel
 from rotorgear.analysis.rig.compare_responses import read_order_cuts as read_order_cuts
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
+from rotorgear.analysis.rig.rig_file import write_rig_lines as write_rig_lines
 from rotorgear.analysis.rig.compare_responses import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
 from rotorgear.analysis.rig.sensors import sensors as sensors
@@ -144,6 +149,7 @@ from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
 from rotorgear.results.sensors import SensorPlan as SensorPlan
 from rotorgear.results.correlation import ShapeComparison as ShapeComparison
+from rotorgear.results.time_comparison import TimeComparison as TimeComparison
 from rotorgear.results.frf_comparison import FrfComparison as FrfComparison
 from rotorgear.results.frf_comparison import OrderComparison as OrderComparison
 from rotorgear.results.update import UpdateResult as UpdateResult

@@ -19,6 +19,9 @@ EXTRAS = {
     "tomlkit": ("tomlkit", "rig"),
     "jinja2": ("jinja2", "report"),
     "nicegui": ("nicegui", "app"),
+    "asammdf": ("asammdf", "records"),
+    "nptdms": ("nptdms", "records"),
+    "soundfile": ("soundfile", "records"),
 }
 
 

@@ -13,6 +13,7 @@ import rotorgear as rg
 from rotorgear.elements.gear_mesh import ContactGeometry
 from rotorgear.elements.shaft_section import ShaftElements
 from rotorgear.system.system import System
+from tests.paths import ROOT
 
 E = 210e9
 NU = 0.3
@@ -255,3 +256,14 @@ def pair_file(
             text += f'[bearings.{name}_{end}]\nshaft = "{name}"\nat = "{end}"\n'
             text += 'stiffness = { radial = "1e9 N/m", axial = "1e9 N/m" }\n'
     return text + f'[meshes.pair]\npinion = "pinion"\ngear = "wheel"\n{mesh}\n'
+
+
+def record_beside_a_pair() -> rg.TimeComparison:
+    """A swelling torque on the pinion of the backlash pair, and any acceleration of its wheel."""
+    pair = rg.load(ROOT / "models" / "backlash_pair.toml")
+    points = {name: {"on": f"gears.{name}", "direction": "torsion"} for name in ("pinion", "wheel")}
+    time = 1e-4 * np.arange(60)
+    torque = rg.Channel("pinion", "N m", np.sin(300.0 * time))
+    heard = rg.Channel("wheel", "rad/s^2", 40.0 * np.cos(300.0 * time))
+    record = rg.TimeRecord(time, (torque, heard))
+    return rg.compare_time(pair.with_("points", points), record, steps=40, ring_down="0:5 ms")

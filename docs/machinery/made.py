@@ -156,7 +156,8 @@ def inputs(made: Made, root: Path = ROOT) -> dict[str, str]:
         for file in (start.parent / f"{word}.py" for word in words[3:]):
             found |= _file(file, root) if file.is_file() else {}
     elif words[0] == "rotorgear":
-        found |= _file(root / "rotorgear" / "plots" / f"{_PLOTS.get(words[1], words[1])}.py", root)
+        drawn = "time_comparison" if "--time" in words and words[1] == "compare" else _PLOTS.get(words[1], words[1])
+        found |= _file(root / "rotorgear" / "plots" / f"{drawn}.py", root)
     elif words[0] != "python":  # sheet.plot(), of the block with sheet = rg.bearing(...)
         made_by = re.compile(rf"\b{made.command.partition('.')[0]} = rg\.(\w+)\(")
         code = [block.text for block in marked_blocks(page) if made_by.search(block.text)]

@@ -14,8 +14,8 @@ A mark is an HTML comment on the line before a fenced block:
 
 A reader does not see the marks, so that a command stands in its block.
 
-The blocks of a page run in order, in one directory that starts with a copy of `models/`. Commands are `rotorgear` and
-`python`. How texts are compared stands in `comparison.py`.
+The blocks of a page run in order, in one directory that starts with copies of `models/` and `validation/measured/`. Commands are
+`rotorgear` and `python`. How texts are compared stands in `comparison.py`.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ from machinery.comparison import merged, texts_agree
 from machinery.session import PythonSession
 
 ROOT = Path(__file__).resolve().parents[2]
+# What the directory starts with.
+FOLDERS = ("models", "validation/measured")
 PRINT_WIDTH = 100
 LONGEST_RUN = 300  # seconds
 LONGEST_LONG_RUN = 3600
@@ -166,8 +168,9 @@ def run_page(page: Path, directory: Path, *, long: bool = True) -> Iterator[Outc
     at_first = marked_blocks(page)
     blocks = [block for block in at_first if block.verb != "made" and (long or not block.long)]
     directory.mkdir(parents=True, exist_ok=True)
-    if blocks and (ROOT / "models").is_dir():
-        shutil.copytree(ROOT / "models", directory / "models", dirs_exist_ok=True)
+    for folder in FOLDERS if blocks else ():
+        if (ROOT / folder).is_dir():
+            shutil.copytree(ROOT / folder, directory / folder, dirs_exist_ok=True)
     printed = ""
     with PythonSession(directory, environment()) as session:
         for block in blocks:

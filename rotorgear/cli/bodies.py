@@ -102,23 +102,27 @@ def compare(call: Call) -> None:
     if call["rig"] is not None and call["lines"] is not None:
         raise AnalysisError("the rig is given twice: as RIG and as --rig")
     verbs = {"rig": "compare", "shapes": "compare_shapes", "frf": "compare_frf", "orders": "compare_orders"}
+    verbs |= {"time": "compare_time"}
     given = {name: verb for name, verb in verbs.items() if call[name] or (name == "rig" and call["lines"])}
     if len(given) != 1:
         raise AnalysisError(
-            "give one thing that was measured: rig lines (CSV), --shapes rig.uff, --frf rig.uff or --orders cuts.csv"
+            "give one thing that was measured: rig lines (CSV), --shapes rig.uff, --frf rig.uff, --orders "
+            "cuts.csv or --time record.csv"
         )
     ((what, verb),) = given.items()
     if call["points"] and what == "rig":
-        raise AnalysisError("--points belongs to --shapes, --frf or --orders: lines have no place")
-    if call.saved and what in ("frf", "orders"):
+        raise AnalysisError("--points belongs to --shapes, --frf, --orders or --time: lines have no place")
+    if call.saved and what in ("frf", "orders", "time"):
         raise AnalysisError(f"--{what} needs a model file: a saved result has its own frequencies and speeds")
     choices = call.command.choices
     known = arguments_of(verb)
     for name in call.command.arguments:
         if name in choices and name not in ("source", *known) and call.asked(name) is not None:
             raise AnalysisError(f"{spelling(name)} does not go with {'rig lines' if what == 'rig' else f'--{what}'}")
-    if call["plot"] and what != "shapes":
-        raise AnalysisError("--plot draws the MAC of --shapes")
+    if call["plot"] and what not in ("shapes", "time"):
+        raise AnalysisError("--plot draws the MAC of --shapes, or the record of --time")
+    if call["output"] and not call["ring_down"]:
+        raise AnalysisError("--output takes the frequencies and damping of --ring-down: give the time of one")
     show(call, call.result(verb, **({"rig": call["rig"] or call["lines"]} if what == "rig" else {})))
 
 

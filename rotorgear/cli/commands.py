@@ -280,15 +280,20 @@ _GROUPS = {
         Command(
             "compare",
             "Modes or responses beside those of a rig",
-            ("compare", "compare_shapes", "compare_frf", "compare_orders"),
-            ("json", "plot"),
-            hidden=("known_to_hz", "samples", "seed"),
+            ("compare", "compare_shapes", "compare_frf", "compare_orders", "compare_time"),
+            ("json", "plot", "output"),
+            hidden=("known_to_hz", "samples", "seed", "error_estimate"),
             options={
                 "lines": Option("The same as --rig.", "path", shown="RIG"),
                 "rig": _RIG,
                 "shapes": Option(default=None),
                 "frf": Option(default=None),
                 "orders": Option(default=None),
+                "time": Option(default=None),
+                "start": Option(flags=("--start",)),
+                "output": _written_to(
+                    "Write the frequencies and damping of --ring-down here, as update --rig takes them (CSV)."
+                ),
             },
             positional=("lines",),
             body="bodies.compare",

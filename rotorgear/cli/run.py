@@ -102,11 +102,10 @@ class Call:
 
     def arguments(self, verb: str) -> dict[str, Any]:
         """The arguments of a verb that were given; what was not is left to the verb."""
-        # A command may have an option of its own by the name of an argument that it hides.
-        names = [
-            name for name in arguments_of(verb) if name in self.command.choices and name not in self.command.hidden
-        ]
-        asked = {name: self.asked(name) for name in names[1:]}
+        # The first one is what the verb is about; a command may have an option of its own by the name of one that it hides.
+        _, *names = arguments_of(verb)
+        own = [name for name in names if name in self.command.choices and name not in self.command.hidden]
+        asked = {name: self.asked(name) for name in own}
         return {name: value for name, value in asked.items() if value is not None}
 
     @property

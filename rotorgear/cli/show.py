@@ -71,12 +71,13 @@ def show(
         say(f"wrote {write_csv(_rows_of_a_map(result), call['csv'])}")
     if call["output"]:
         source = call.source_path
-        write: Callable[[Path], Path] = {
+        write: dict[str, Callable[[Path], Path]] = {
             "sensors": partial(rg.write_sensors, result),
             "update": partial(rg.write_updated_model, result, source),
             "optimise": partial(rg.write_optimised_model, result, source),
-        }[result.kind]
-        say(f"wrote {write(call['output'])}")
+            "compare_time": lambda path: rg.write_rig_lines(result.ring_down_lines(), path),
+        }
+        say(f"wrote {write[result.kind](call['output'])}")
     if early:
         say("the run ended early: what it gave so far stands above", err=True)
         raise typer.Exit(1)

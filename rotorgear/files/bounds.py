@@ -19,6 +19,8 @@ MOST_ELEMENTS = 500_000
 MOST_COMPONENTS = 10_000
 # Files in an archive, or members of a relation.
 MOST_MEMBERS = 1000
+# Numbers in all channels of a record over time.
+MOST_SAMPLES = 20_000_000
 # Numbers that a set of a mesh lists.
 MOST_LISTED = 8_000_000
 
@@ -46,6 +48,11 @@ REXS = Bound(
     f"{MOST_MEMBERS} files in the archive; no document type",
 )
 UNIVERSAL = Bound("universal files (UFF)", 500 * _MB, "a set has the values that its header says")
+RECORD = Bound(
+    "records over time (CSV, MDF4, TDMS, WAV)",
+    500 * _MB,
+    f"{MOST_SAMPLES:,} numbers in all channels; formulas in MDF4 are not run",
+)
 MESH = Bound("meshes", 1000 * _MB, f"{MOST_LISTED:,} numbers in a set; formats that name other files are not read")
 MATRICES = Bound(
     "matrices (npz)", 400 * _MB, f"{MOST_MEMBERS} arrays, none larger than its place in the file; no Python objects"
@@ -55,7 +62,7 @@ RESULT = Bound(
     1_000_000 * _MB,
     "no data set larger than the file; no links to other files, no data kept outside of it",
 )
-ALL = (MODEL, TABLE, REXS, UNIVERSAL, MESH, MATRICES, RESULT)
+ALL = (MODEL, TABLE, REXS, UNIVERSAL, RECORD, MESH, MATRICES, RESULT)
 
 
 def printed() -> str:

@@ -20,6 +20,7 @@ from rotorgear.plots.convergence import convergence as convergence
 from rotorgear.plots.convergence import mesh_convergence as mesh_convergence
 from rotorgear.plots.mode_pictures import modal as modal
 from rotorgear.plots.correlation import compare_shapes as compare_shapes
+from rotorgear.plots.time_comparison import compare_time as compare_time
 
 # More of one result.
 from rotorgear.plots.response import waterfall as waterfall

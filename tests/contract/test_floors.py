@@ -23,6 +23,7 @@ FLOORS = {
     "files": 0,
     "solvers": 1,
     "uff": 1,
+    "records": 1,
     "gears": 2,
     "casings": 2,
     "forces": 2,

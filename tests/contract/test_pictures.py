@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.models import pair_file
+from tests.models import pair_file, record_beside_a_pair
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS
 from tests.unit.analysis.static.test_bearing_states import rotor as pulled_rotor
@@ -36,6 +36,7 @@ PICTURES = {
     "scatter": ("scatter",),
     "optimise": ("optimise",),
     "compare_shapes": ("compare_shapes",),
+    "compare_time": ("compare_time",),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
 }
 # Of a stage of pyvista, of a map over two parameters, and of minutes of contact analyses: each has its own test or a long one.
@@ -86,6 +87,7 @@ def results() -> dict[str, Any]:
         ),
         "optimise": rg.optimise(jeffcott, "shafts.*.sections.*.outer_diameter", searches=1, elements=2),
         "compare_shapes": shapes_of_a_jeffcott_rotor(),
+        "compare_time": record_beside_a_pair(),
         "scatter": rg.scatter(jeffcott, "bearings.*.stiffness", samples=8, modes=4, elements=1),
         "orbits": rg.orbits(loose, {"operation.speed": "4000 rpm:4200 rpm"}, step=0.5),
         "sweep": rg.sweep(

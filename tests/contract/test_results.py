@@ -26,7 +26,7 @@ from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.spectrum import SpectralLines
 from rotorgear.results.table import Table, error_words, exact, html_table, written
-from tests.models import pair_file
+from tests.models import pair_file, record_beside_a_pair
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS
 from tests.unit.analysis.static.test_bearing_states import rotor as pulled_rotor
@@ -121,6 +121,7 @@ def example(kind: str) -> Result:
             ),
             [OrderCut("p", float(example("response").ratio[0]), np.array([4000.0, 6000.0]), np.array([0.1, 0.2]))],
         ),
+        "compare_time": record_beside_a_pair,
         "sensors": lambda: rg.sensors(model("geared_pair"), count=4, elements=1),
         "update": lambda: rg.update(model("jeffcott"), [20.0, 126.0], free="bearings.*.stiffness"),
         "scatter": lambda: rg.scatter(

@@ -18,6 +18,7 @@ from pathlib import Path
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.files.bounds import LONGEST_TEXT, MOST_ROWS, TABLE
 from rotorgear.files.read import UnreadableError, read_text
+from rotorgear.files.write import written
 from rotorgear.quantity import QuantityError, did_you_mean, parse_quantity
 from rotorgear.results.comparison import RigLine
 
@@ -197,6 +198,32 @@ def _columns(header: list[str], where: str, file: Path) -> list[tuple[str, str] 
     if problems:
         raise ModelError(problems, str(file))
     return columns
+
+
+def write_rig_lines(lines: Iterable[RigLine], path: str | Path) -> Path:
+    """Write lines of a rig as `read_rig_lines` reads them.
+
+    Args:
+        lines: to be written.
+        path: of the file (CSV).
+
+    Returns:
+        The path.
+
+    Raises:
+        WriteError: the file can't be written.
+    """
+    rows = ["frequency_hz,uncertainty_hz,damping,label"]
+    for line in lines:
+        label = line.label.replace('"', "'")
+        numbers = (
+            "" if x is None else f"{x:.9g}" for x in (line.frequency_hz, line.uncertainty_hz, line.damping_ratio)
+        )
+        rows.append(",".join([*numbers, f'"{label}"']))
+    target = Path(path)
+    with written(target) as scratch:
+        scratch.write_text("\n".join([*rows, ""]), encoding="utf-8")
+    return target
 
 
 def rig_lines_of(rig: str | Path | Sequence[RigLine | float]) -> tuple[RigLine, ...]:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.request import check_modal_damping, check_whole, needed_speed, quantity
@@ -19,7 +20,7 @@ from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.memory import free_memory
 from rotorgear.model.model import Model
-from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates, sisters_of
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
@@ -100,7 +101,12 @@ def base_frequencies(task: Task) -> list[float]:
 
 
 def grid_of(
-    task: Task, time: float | None, settle: float | None, steps: int | None, records: int | None
+    task: Task,
+    time: float | None,
+    settle: float | None,
+    steps: int | None,
+    records: int | None,
+    interval: float | None = None,
 ) -> tuple[Grid, float]:
     """Lay the times out; with the frequency in Hz of the fastest mesh, in whose periods steps are counted, or 0.
 
@@ -110,13 +116,18 @@ def grid_of(
     for name, count_wanted in (("steps", steps), ("records", records)):
         if count_wanted is not None:
             check_whole(f"the number of {name}", count_wanted)
-    if time is not None and not 0.0 < time < np.inf:
-        raise AnalysisError(f"time: got {time}, expected more than 0")
+    for name, given in (("time", time), ("interval", interval)):
+        if given is not None and not 0.0 < given < np.inf:
+            raise AnalysisError(f"{name}: got {given}, expected more than 0")
+    if interval is not None and records is not None:
+        raise AnalysisError("records and interval (--records, --interval): give one of the two")
     # Highest frequency at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b).
     local = task.local.local
     rates = contact_rates(local.M, local.B.toarray(), local.forces.reference_stiffness)
     contact = float(rates.max(initial=0.0)) / (2.0 * np.pi)
     frequencies = base_frequencies(task)
+    if not frequencies and interval is not None:
+        frequencies = [1.0 / (RECORDS * interval)]
     fastest = max(frequencies, default=0.0)
     slowest = min(frequencies, default=0.0)
     if fastest == 0.0 and (time is None or contact == 0.0):
@@ -126,7 +137,7 @@ def grid_of(
     base = fastest or contact
     settle = settle if settle is not None else (0.0 if time is not None else PERIODS / slowest)
     total = settle + (time if time is not None else PERIODS / slowest)
-    spacing = 1.0 / (base * (records or RECORDS))
+    spacing = interval or 1.0 / (base * (records or RECORDS))
     wanted = 1.0 / (base * steps) if steps else min(1.0 / (base * STEPS), 1.0 / (max(contact, 1e-300) * CONTACT_STEPS))
     every = max(1, int(np.ceil(spacing / wanted * (1.0 - 1e-9))))
     if steps and every * wanted < spacing * (1.0 - 1e-9):
@@ -142,7 +153,7 @@ def grid_of(
             f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
             + ("" if steps else _of_stiff_contact(task, rates))
         )
-    return Grid(spacing, count, round(settle / spacing), every, _kept(task, count, records)), fastest
+    return Grid(spacing, count, round(settle / spacing), every, _kept(task, count, records or interval)), fastest
 
 
 def _of_stiff_contact(task: Task, rates: np.ndarray) -> str:
@@ -162,7 +173,7 @@ def history_bytes(task: Task, records: int) -> float:
     return 8.0 * records * (1 + 2 * local.m + local.watched_vectors.shape[1] + len(task.channels.names))
 
 
-def _kept(task: Task, count: int, asked: int | None) -> int:
+def _kept(task: Task, count: int, asked: float | None) -> int:
     """Of how many of the `count` records one is kept; all of those that were asked for.
 
     Raises:
@@ -336,6 +347,21 @@ def prepare(
     local = replace(local, local=replace(local.local, observed=observed, rates=rates, seen_sisters=seen_sisters))
     meshes = {name: given.layout.mesh_frequency(name, largest) for name in given.model.meshes}
     return Task(local, seen, rest, force, {name: f for name, f in meshes.items() if f}, largest, start, begin)
+
+
+def motions_without_strain(local: LocalSystem, K: sp.csc_array) -> np.ndarray:
+    """Motions R (n, r) that a stiffness leaves free, K R = 0.
+
+    They don't depend on inertia: what has none gets what makes it no slower than the others.
+
+    Raises:
+        ConvergenceError: they are not told apart from the others.
+    """
+    mass = local.M.diagonal()
+    stiffness = local.stiffness_about.diagonal()
+    fastest = float(np.max(stiffness / np.where(mass > 0.0, mass, np.inf)))
+    light = np.where(mass > 0.0, 0.0, stiffness / (fastest or 1.0))
+    return free_motions(sp.csc_array(local.M + sp.diags_array(light)), K)
 
 
 def damped(model: Model | System, modal_damping: float | None) -> Model | System:

@@ -16,7 +16,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse as sp
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed, quantity
@@ -40,6 +39,7 @@ from rotorgear.analysis.transient.request import (
     damped,
     grid_of,
     integrator_of,
+    motions_without_strain,
     prepare,
     run_up,
 )
@@ -51,7 +51,6 @@ from rotorgear.note import Note
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.explicit import Explicit, check_length
 from rotorgear.solvers.time.local_system import Integrator
 from rotorgear.solvers.time.statistics import STATISTICS, Statistics
@@ -72,6 +71,7 @@ def transient(
     discard: float | str | None = None,
     steps: int | None = None,
     records: int | None = None,
+    interval: float | str | None = None,
     accuracy: float | None = None,
     method: str = "auto",
     modes: int | None = None,
@@ -99,6 +99,8 @@ def transient(
             of reach).
         records: number of records in a period of the fastest mesh (default: 40, or fewer where the histories would take more
             than 1 GB).
+        interval: time between two records, in s or with its unit, in place of records; steps are then counted in 40 of it where
+            no mesh turns.
         accuracy: wanted relative accuracy of the statistics (default: 0.01, unless `steps` is given).
         method: auto, newmark, hht, generalised-alpha, exponential or explicit.
         modes: number of modes kept by the exponential method, with residual vectors (default: all).
@@ -131,11 +133,12 @@ def transient(
         check_whole("the number of steps", steps)
     if frames < 0:
         raise AnalysisError(f"frames: got {frames}, expected 0 or more")
-    duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (discard, "discard"))]
+    times = {"time": time, "discard": discard, "interval": interval}
+    *duration, spacing = [None if x is None else quantity(x, "time", name) for name, x in times.items()]
     if speed_to is not None:
         speed = run_up(model, speed, speed_to, *duration)
     task = prepare(damped(model, modal_damping), speed, elements, start)
-    grid, fastest = grid_of(task, duration[0], duration[1], steps, records)
+    grid, fastest = grid_of(task, duration[0], duration[1], steps, records, spacing)
     integrator, reason = integrator_of(task, grid, method, modes, rho_inf, beta, gamma)
     clock.lap("model")
     wanted = accuracy or DEFAULT_ACCURACY
@@ -265,17 +268,12 @@ def off_statics(found: Histories, task: Task, error: np.ndarray) -> Iterator[Not
     steady = local.rotation.is_constant and not list(adrift(task))
     if not (np.all(np.isfinite(force.mean)) and meshes and known and steady):
         return
-    # Motions without strain don't depend on inertia: what has none gets what makes it no slower than the others.
-    mass = local.M.diagonal()
-    stiffness = local.stiffness_about.diagonal()
-    fastest = float(np.max(stiffness / np.where(mass > 0.0, mass, np.inf)))
-    light = np.where(mass > 0.0, 0.0, stiffness / (fastest or 1.0))
     try:
         if local.sisters.planets.size:
             # What planets that go round bring beside their springs is no strain.
             free = rigid_motions(task.local.system, task.local.groups)
         else:
-            free = free_motions(sp.csc_array(local.M + sp.diags_array(light)), local.K)
+            free = motions_without_strain(local, local.K)
         A = free.T @ local.B.toarray()
     except RotorgearError as refusal:
         yield Note("", "mean contact forces are not compared with statics", str(refusal))

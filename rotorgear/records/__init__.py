@@ -1,0 +1,1 @@
+"""Records of measured channels over time, from the files of those who measured them."""
