@@ -30,7 +30,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Parts": ("mesh", "bevel", "planetary", "bearings", "casings", "model_file"),
     "Design": ("app", "report", "rig"),
     "Files and Python": ("commands", "python", "api", "rexs"),
-    "Trust": ("accuracy", "validation"),
+    "Trust": ("accuracy", "validation", "measured"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Development": ("CONTRIBUTING",),
 }

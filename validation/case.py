@@ -1,4 +1,6 @@
-"""Reads the cases: a case is a folder of validation/cases/ with an `expected.csv`, one line a number.
+"""Reads the cases: a case is a folder of validation/cases/ (or of validation/measured/, what others measured).
+
+Its `expected.csv` has one line a number.
 
 Columns of expected.csv:
 
@@ -27,10 +29,17 @@ from pathlib import Path
 from rotorgear.errors import AnalysisError
 from rotorgear.old_names import warn_old
 
-FOLDER = Path(__file__).resolve().parent / "cases"
+FOLDERS = tuple(Path(__file__).resolve().parent / name for name in ("cases", "measured"))
 SHOWN_ONLY = float("inf")
 # What the rows are made from, for docs/machinery/made.py.
-INPUTS = ("validation/cases/*/*.csv", "validation/cases/*/*.toml", "validation/cases/*/*.py")
+INPUTS = (
+    "validation/cases/*/*.csv",
+    "validation/cases/*/*.toml",
+    "validation/cases/*/*.py",
+    "validation/measured/*/*.csv",
+    "validation/measured/*/*.toml",
+    "validation/measured/*/*.py",
+)
 
 
 @dataclass(frozen=True)
@@ -101,17 +110,22 @@ class Case:
     @property
     def folder(self) -> Path:
         """Where its files are."""
-        return FOLDER / self.name
+        return folder_of(self.name)
 
 
 def names() -> list[str]:
-    """Return the names of all cases."""
-    return sorted(path.parent.name for path in FOLDER.glob("*/expected.csv"))
+    """Return the names of all cases, those of measured machines last."""
+    return [name for folder in FOLDERS for name in sorted(path.parent.name for path in folder.glob("*/expected.csv"))]
+
+
+def folder_of(name: str) -> Path:
+    """The folder of a case."""
+    return next(folder / name for folder in FOLDERS if (folder / name / "expected.csv").is_file())
 
 
 def read_case(name: str) -> Case:
     """Read one case from its folder."""
-    folder = FOLDER / name
+    folder = folder_of(name)
     title, _, text = (folder / "README.md").read_text(encoding="utf-8").partition("\n")
     with (folder / "expected.csv").open(encoding="utf-8", newline="") as file:
         lines = tuple(_expectation(row) for row in csv.DictReader(file))

@@ -52,7 +52,7 @@ class Solver:
         file = self.case.folder / line.model
         if line.model.endswith(".py"):
             # A program in the case's folder: its function measure(quantity, mode) returns the number.
-            program = import_module(f"validation.cases.{self.case.name}.{file.stem}")
+            program = import_module(f"validation.{file.parent.parent.name}.{self.case.name}.{file.stem}")
             return Measured(float(program.measure(line.quantity, line.mode)), 0, time.perf_counter() - start)
         if line.quantity.startswith(SHEET):
             return Measured(sheet_number(file, line.quantity), 0, time.perf_counter() - start)

@@ -30,6 +30,8 @@ LONG_CASES = frozenset(
         "tooth_fe_contact",
         "journal_whirl",
         "split_torque_lines",
+        "journal_pressure",
+        "thruster_bench",
     }
 )
 

@@ -105,7 +105,7 @@ def ring_down(step: float, values: NDArray[np.float64], count: int = 1) -> tuple
     unknowns = len(x) + (1 + _DEGREE + len(x)) * values.shape[0]
     noise = 2.0 * end.cost / max(scaled.size - unknowns, 1)
     spread = np.sqrt(np.maximum(np.diag(noise * np.linalg.pinv(end.jac.T @ end.jac)), 0.0))
-    explained = 1.0 - 2.0 * end.cost / float(np.sum((about / size) ** 2))
+    explained = float(1.0 - 2.0 * end.cost / np.sum((about / size) ** 2))
     rows = zip(end.x.reshape(-1, 2).tolist(), spread.reshape(-1, 2).tolist(), strict=True)
     fits = [RingDownFit(f, df, zeta, dz, explained) for (f, zeta), (df, dz) in rows]
     return tuple(sorted(fits, key=lambda fit: fit.natural_hz))
