@@ -31,6 +31,12 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         "`rotorgear compare MODEL --orders FILE --json compare.json`.",
         (("compare_orders", ""),),
     ),
+    (
+        "compare records over time",
+        "`rotorgear compare MODEL --time FILE --json compare.json`. `measured`, `computed` and `baseline` (of a model without "
+        "vibration) go along `channels`, then along `time_s`; `load` along `inputs`.",
+        (("compare_time", ""),),
+    ),
     ("sensors", "`rotorgear sensors MODEL --json sensors.json`.", (("sensors", ""),)),
     (
         "update",
