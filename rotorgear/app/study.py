@@ -87,7 +87,7 @@ class Study:
 
     def fields(self, part: str) -> list[Field]:
         """The keys of a part, those that the file spells first."""
-        node: Any = schema()
+        node: Any = _schema()
         value: Any = tables_of(self.text)
         for key in part.split(".", 1) if part else ():
             value = value[key]
@@ -316,7 +316,7 @@ def _below(node: dict[str, Any], key: str) -> dict[str, Any]:
 def _options(node: dict[str, Any]) -> list[dict[str, Any]]:
     """The kinds of values that a node of the schema allows."""
     if "$ref" in node:
-        return _options(_definitions()[node["$ref"].rpartition("/")[2]])
+        return _options(_schema()["$defs"][node["$ref"].rpartition("/")[2]])
     several = node.get("anyOf") or node.get("oneOf")
     return [kind for one in several for kind in _options(one)] if several else [node]
 
@@ -339,12 +339,12 @@ def _is_table(node: dict[str, Any]) -> bool:
 
 
 @cache
-def _definitions() -> dict[str, Any]:
-    found: dict[str, Any] = schema()["$defs"]
-    return found
+def _schema() -> dict[str, Any]:
+    """Made once: it takes a tenth of a second."""
+    return schema()
 
 
 @cache
 def _tables() -> tuple[str, ...]:
     """The keys above all that are tables."""
-    return tuple(key for key, node in schema()["properties"].items() if key in _SINGLE or _is_table(node))
+    return tuple(key for key, node in _schema()["properties"].items() if key in _SINGLE or _is_table(node))

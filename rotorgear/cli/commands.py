@@ -139,10 +139,11 @@ _GROUPS = {
                 "crossings": Option("Also list all crossings with the lines.", "flag"),
                 "laws": _LAWS,
                 "colour": Option("Colour of branches in --plot: motion, mesh or damping.", "text", "motion"),
+                "log": Option("Logarithmic frequencies in --plot, with all branches.", "flag"),
                 "branch": Option("The branch that --vtk writes.", "int", 1, least=1),
             },
             table=("crossings", "laws"),
-            picture=("colour",),
+            picture=("colour", "log"),
         ),
         Command(
             "critical",

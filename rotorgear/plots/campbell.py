@@ -9,29 +9,36 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.carrier import written_name
 from rotorgear.plots.figure import axes_for, beside, label, legend_below, name_axes
-from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.quantity import RPM_PER_RAD_S, counted
 from rotorgear.results.campbell import CampbellResult, ExcitationOrder
 from rotorgear.results.modal import WHIRL_WORDS
 
 COLOURS = ("motion", "mesh", "damping")
+# Told apart by those who don't see red and green as others do, and in grey by how light they are.
 _MOTION = {
-    "bending": (0.12, 0.37, 0.66),
-    "axial": (0.18, 0.60, 0.25),
-    "torsion": (0.80, 0.23, 0.13),
-    "casing": (0.45, 0.45, 0.45),
-    "gear body": (0.62, 0.42, 0.10),
+    "bending": (0.00, 0.45, 0.70),
+    "axial": (0.90, 0.62, 0.00),
+    "torsion": (0.53, 0.13, 0.33),
+    "casing": (0.60, 0.60, 0.60),
+    "gear body": (0.00, 0.62, 0.45),
 }
 _MARKERS = {"forward": "^", "backward": "v", "mixed": "D", "planar": "_"}
 _LINES = {"shaft": "#555555", "mesh": "#7a3f9d", "sideband": "#b58ccb"}
 _MOST_LABELS = 14
-# A top of so many times the highest shaft order gives a logarithmic axis; below this share of the top a mode is a rigid one.
-_FLAT = 5.0
+# Below this share of the top a mode is a rigid one.
 _RIGID = 1e-4
+# How far above the highest line, and above the first branch beyond it, the picture reaches.
+_ABOVE_LINES = 1.3
+_ABOVE_BRANCH = 1.1
+# A logarithmic decrement below this is no rounding: the motion grows.
+_GROWS = -1e-9
+_UNSTABLE = "#d55e00"
+_MOST_ONSETS = 4
 # More sidebands than that are drawn without names.
 _MOST_SIDEBANDS = 8
 
 
-def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") -> Any:
+def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion", log: bool = False) -> Any:
     """Draw a Campbell diagram: branches over speed with whirl, lines of excitation, and the crossings that are excited.
 
     Args:
@@ -39,9 +46,11 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
         ax: axes to draw on; those of a new figure for None.
         colour: "motion" (bending, axial, torsion, mixed by their shares of the kinetic energy), "mesh" (share of all meshes in
             the strain energy) or "damping" (logarithmic decrement).
+        log: frequencies on a logarithmic axis, with all branches; else lines of excitation are straight from the origin, and
+            branches far above all of them are beyond the picture, which says how many.
 
     Returns:
-        The axes. Frequencies are logarithmic where the diagram reaches more than five times as far as the shaft orders.
+        The axes. Branches are dashed on a broad band where they grow, and crossed where they begin to.
 
     Raises:
         AnalysisError: an unknown colour. MissingExtraError: matplotlib is not installed.
@@ -52,8 +61,9 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
 
     left, right = sorted((float(result.speed_rpm[0]), float(result.speed_rpm[-1])))
     axis.set_xlim(left, right)
-    _set_height(axis, result)
+    _set_height(axis, result, log)
     _branches(axis, result, colour)
+    grows = _instability(axis, result)
     # About eight markers of whirl a branch, each branch beginning elsewhere, so that close branches don't hide each other's.
     step = max(1, len(result.speeds) // 8)
     for word, marker in _MARKERS.items():
@@ -89,21 +99,85 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
         handles.append(
             Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm")
         )
+    if grows:
+        handles.append(
+            Line2D([], [], color=_UNSTABLE, lw=1.6, ls=(0, (3, 1.5)), marker="X", mec="white", ms=8, label="unstable")
+        )
     legend_below(axis, 6, 0.08, handles=handles, fontsize=8)
     return axis
 
 
-def _set_height(axis: Any, result: CampbellResult) -> None:
-    """Linear, but logarithmic where the diagram reaches so far, for the orders of meshes, that shaft orders would lie flat."""
-    top = 1.04 * float(np.nanmax(result.frequency_hz))
+def _set_height(axis: Any, result: CampbellResult, log: bool) -> None:
+    """From 0 to what matters: a bit above all lines, the first branch beyond them and all onsets; or all of it, logarithmic."""
+    highest = float(np.nanmax(result.frequency_hz))
     fastest = float(np.max(np.abs(result.speed_rpm))) / 60.0
-    shafts = max((line.order * fastest for line in result.lines if line.kind == "shaft"), default=top)
-    elastic = result.frequency_hz[result.frequency_hz > _RIGID * top]
-    if elastic.size and top >= _FLAT * shafts:
+    reach = max((line.order * fastest for line in result.lines), default=highest)
+    if log:
+        elastic = result.frequency_hz[result.frequency_hz > _RIGID * highest]
+        shafts = max((line.order * fastest for line in result.lines if line.kind == "shaft"), default=reach)
         axis.set_yscale("log")
-        axis.set_ylim(0.7 * min(float(elastic.min()), shafts), top)
-    else:
-        axis.set_ylim(0.0, top)
+        axis.set_ylim(0.7 * min(float(elastic.min(initial=highest)), shafts), 1.04 * highest)
+        return
+    lowest = np.nanmin(result.frequency_hz, axis=0)
+    next_one = np.argmin(np.where(lowest > reach, lowest, np.inf))
+    beyond = float(np.nanmax(result.frequency_hz[:, next_one])) if (lowest > reach).any() else highest
+    told = [
+        reach * _ABOVE_LINES,
+        beyond * _ABOVE_BRANCH,
+        *(_ABOVE_BRANCH * onset.frequency_hz for onset in result.onsets),
+    ]
+    top = min(1.04 * highest, max(told))
+    axis.set_ylim(0.0, top)
+    above = int(np.count_nonzero(lowest > top))
+    if above:
+        words = f"{counted(above, 'branches')} up to {highest:.4g} Hz above"
+        axis.text(0.008, 0.985, words, transform=axis.transAxes, va="top", fontsize=8, color="#555555", zorder=6)
+
+
+def _followed(result: CampbellResult, b: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """All points of a branch that were solved, in the order of the speeds: rpm, Hz, logarithmic decrement.
+
+    Beside the speeds of the result these are its crossings and onsets, which were found to rounding.
+    """
+    points = [*zip(result.speed_rpm, result.frequency_hz[:, b], result.log_decrement[:, b], strict=True)]
+    for met in result.crossings:
+        if met.branch == b + 1:
+            zeta = met.damping_ratio
+            points.append(
+                (met.speed * RPM_PER_RAD_S, met.frequency_hz, 2.0 * np.pi * zeta / np.sqrt(1.0 - zeta * zeta))
+            )
+    points += [(one.speed * RPM_PER_RAD_S, one.frequency_hz, 0.0) for one in result.onsets if one.branch == b + 1]
+    rpm, hz, decrement = np.array(sorted(points, key=lambda point: point[0]), float).T
+    return rpm, hz, decrement
+
+
+def _instability(axis: Any, result: CampbellResult) -> bool:
+    """Mark the parts of branches that grow: a broad band below white dashes, a cross where they begin; whether there are any."""
+    grows = False
+    for b in range(len(result)):
+        rpm, hz, decrement = _followed(result, b)
+        growing = _mean(decrement) < _GROWS
+        x, y = (np.where(growing, np.stack([v[:-1], v[1:]]), np.nan).T for v in (rpm, hz))
+        if not np.isfinite(y).any():
+            continue
+        grows = True
+        ends = [np.column_stack([v, np.full(len(v), np.nan)]).ravel() for v in (x, y)]
+        axis.plot(*ends, color=_UNSTABLE, lw=6.0, alpha=0.3, solid_capstyle="butt", zorder=2.5)
+        for run in np.split(np.arange(len(growing)), np.flatnonzero(np.diff(growing)) + 1):
+            if growing[run[0]]:
+                among = slice(run[0], run[-1] + 2)
+                axis.plot(rpm[among], hz[among], color="white", lw=1.7, ls=(0, (1.5, 3.0)), zorder=3.5)
+    onsets = [one for one in result.onsets if one.branch]
+    for number, one in enumerate(onsets):
+        at = (one.speed * RPM_PER_RAD_S, one.frequency_hz)
+        axis.plot(*at, "X", color=_UNSTABLE, ms=9, mec="white", mew=0.8, zorder=7, clip_on=False)
+        if number < _MOST_ONSETS:
+            left = at[0] > np.mean(axis.get_xlim())
+            box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.5}
+            name = f"unstable from {at[0]:.0f} rpm"
+            side = "right" if left else "left"
+            beside(axis, name, at, (-8 if left else 8, 9), fontsize=8, color="#8a3b00", bbox=box, zorder=8, ha=side)
+    return grows
 
 
 def _shares(axis: Any, points: list[tuple[float, float]]) -> np.ndarray:
@@ -124,28 +198,44 @@ def require_colour(colour: str) -> None:
 def _branches(axis: Any, result: CampbellResult, colour: str) -> None:
     from matplotlib.collections import LineCollection
 
-    points = np.stack(
-        [np.broadcast_to(result.speed_rpm[:, None], result.frequency_hz.shape), result.frequency_hz], axis=-1
-    )
-    segments = np.stack([points[:-1], points[1:]], axis=2).reshape(-1, 2, 2)
+    followed = [_followed(result, b) for b in range(len(result))]
+    points = [np.stack([rpm, hz], axis=-1) for rpm, hz, _ in followed]
+    segments = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in points])
     there = np.isfinite(segments).all(axis=(1, 2))
+
+    def along(values: np.ndarray) -> np.ndarray:
+        """Means over the segments of what is known at the speeds of the result, (k, b)."""
+        return np.concatenate(
+            [_mean(_interpolated(rpm, result.speed_rpm, values[:, b])) for b, (rpm, _, _) in enumerate(followed)]
+        )
+
     if colour == "motion":
-        shares = np.stack([_mean(result.kinetic_by_motion[name]) for name in result.kinetic_by_motion], axis=-1)
-        colours = np.clip(shares @ np.array([_MOTION[name] for name in result.kinetic_by_motion]), 0.0, 1.0)
+        names = list(result.kinetic_by_motion)
+        shares = np.stack([along(result.kinetic_by_motion[name]) for name in names], axis=-1)
+        colours = np.clip(shares @ np.array([_MOTION[name] for name in names]), 0.0, 1.0)
         # A motion without energy, as of a branch that stands still, has no shares: grey.
         colours = np.where(np.isfinite(colours), colours, 0.5)
-        axis.add_collection(LineCollection(segments[there], colors=colours.reshape(-1, 3)[there], lw=1.5, zorder=3))
+        axis.add_collection(LineCollection(segments[there], colors=colours[there], lw=1.5, zorder=3))
         return
     if colour == "mesh":
         total = sum(result.mesh_strain.values(), np.zeros(result.frequency_hz.shape))
-        values = 100.0 * _mean(total)
+        values = 100.0 * along(total)
         shown = "share of the meshes in the strain energy, %"
     else:
-        values = _mean(result.log_decrement)
+        values = np.concatenate([_mean(decrement) for _, _, decrement in followed])
         shown = label(result, "log_decrement")
-    lines = LineCollection(segments[there], array=values.ravel()[there], cmap="viridis", lw=1.7, zorder=3)
+    lines = LineCollection(segments[there], array=values[there], cmap="viridis", lw=1.7, zorder=3)
     axis.add_collection(lines)
     axis.figure.colorbar(lines, ax=axis, label=shown, pad=0.06, fraction=0.03)
+
+
+def _interpolated(at: np.ndarray, speeds: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values between speeds, which may descend; NaN where none is known."""
+    known = np.isfinite(values)
+    if not known.any():
+        return np.full(len(at), np.nan)
+    order = np.argsort(speeds[known])
+    return np.asarray(np.interp(at, speeds[known][order], values[known][order]))
 
 
 def _mean(values: np.ndarray) -> np.ndarray:
