@@ -14,6 +14,8 @@ import pytest
 
 # numba reads it when it is imported, which no test module does before this file.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(Path.home() / ".cache" / "rotorgear"))
+# Commands that tests start, and the workers, take the bytecode that the first of them has written, as users' do.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -165,8 +165,13 @@ def moved(one: list[np.ndarray], other: list[np.ndarray]) -> bool:
     return False
 
 
-def used(model: rg.Model, verb: str) -> tuple[Any, dict[str, bool]]:
+def used(
+    model: rg.Model, verb: str, doubted: Callable[[Any, str], bool] = lambda result, key: False
+) -> tuple[Any, dict[str, bool]]:
     """The result of a verb, and of each key of the model whether the numbers of that result depend on it.
+
+    Keys of which `doubted(result, key)` says that they are not used are changed all at once first: what does not move then
+    depends on none of them. Where it moves, they are changed one by one, as all others are.
 
     Raises:
         RotorgearError: the verb does not take the model, or has nothing to tell of it.
@@ -176,15 +181,29 @@ def used(model: rg.Model, verb: str) -> tuple[Any, dict[str, bool]]:
     numbers = read(result)
     if not any(array.size for array in numbers):
         raise rg.AnalysisError("the result tells of contacts only, and there is none")
-    found = {}
+    changes = {}
     for key, values in keys_of(model):
         if key == REQUESTED.get(verb):
             continue
         for factor in (1.0 + STEP, 1.0 - STEP):
+            change = {address: factor * value for address, value in values.items()}
             try:
-                other = model.with_({address: factor * value for address, value in values.items()})
+                model.with_(change)
             except rg.ModelError:
                 continue
-            found[key] = moved(numbers, read(run(other)))
+            changes[key] = change
             break
-    return result, found
+    together = {key: change for key, change in changes.items() if doubted(result, key)}
+    found = {}
+    if len(together) > 1:
+        try:
+            other = model.with_({address: value for change in together.values() for address, value in change.items()})
+        except rg.ModelError:
+            pass
+        else:
+            if not moved(numbers, read(run(other))):
+                found = dict.fromkeys(together, False)
+    for key, change in changes.items():
+        if key not in found:
+            found[key] = moved(numbers, read(run(model.with_(change))))
+    return result, {key: found[key] for key in changes}
