@@ -121,7 +121,7 @@ LONG_VERBS: dict[str, Verb] = {
     "sweep": (_sweep, lambda found: [found.section]),
     "orbits": (_orbits, lambda found: [found.approach_extremes, found.force_harmonics, found.place_harmonics]),
     "campbell": (
-        lambda model: rg.campbell(model, modes=8, points=3, elements=1, error_estimate=False),
+        lambda model: rg.campbell(model, modes=8, points=2, elements=1, error_estimate=False),
         lambda found: [_sorted(np.nan_to_num(found.eigenvalues[k])) for k in range(len(found.speeds))],
     ),
 }
