@@ -12,8 +12,14 @@ from tests.extreme.models import rotor_model
 from tests.extreme.references import DIGITS, Rotor, Segment, Spring
 from tests.extreme.undamped_errors import assembled_error
 
+# Long: 40 digits of 123 bodies.
+LONG = ("120 planets that go round",)
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, id=case.name, marks=[pytest.mark.long] if case.name in LONG else []) for case in CASES],
+)
 def test_an_extreme_case_is_accurate(case):
     assert measured(case) < case.bound
 

@@ -65,6 +65,7 @@ def test_a_load_that_reverses_moves_contact_to_the_back_flank(flank: str) -> Non
     assert force[-len(force) // 4 :].min() < 0.0
 
 
+@pytest.mark.long  # steps that resolve such teeth
 def test_a_mesh_of_1e12_newton_a_metre_carries_the_static_force_exactly_and_the_dynamic_one_with_an_estimate() -> None:
     still = transient(
         spur_pair(

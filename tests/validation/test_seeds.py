@@ -253,6 +253,7 @@ def test_a_pair_made_by_the_rules_is_that_of_the_file() -> None:
     np.testing.assert_allclose(first.frequency_hz, second.frequency_hz, rtol=1e-4)
 
 
+@pytest.mark.long  # three sweeps that settle for long
 def test_the_pair_of_24_dofs_goes_from_one_period_over_two_to_chaos() -> None:
     found = pair24.route(pair24.MODEL, (5000.0, 5800.0, 5950.0), 250, 64)
     assert [found.motion_at(p) for p in range(3)] == ["1T", "2T", "chaotic"]

@@ -98,6 +98,7 @@ def test_modes_and_responses_of_a_wide_range_are_those_of_many_modes(model: rg.M
     np.testing.assert_allclose(here, wide, rtol=0.02)
 
 
+@pytest.mark.long  # two motions of a gearbox in its casing
 def test_motions_over_time_say_where_the_modes_of_a_casing_end(model: rg.Model) -> None:
     reach = model.layout.casing("box").left_frequency
     buzz = {"shaft": "rotor", "at": "end", "force": [100.0, 0.0, 0.0]}

@@ -16,11 +16,17 @@ from tests.unit.analysis.left_out.models_used import MODELS
 from tests.unit.analysis.left_out.used import LONG_VERBS, VERBS, used
 
 # Long: a motion of the whole gearbox, or maps of loaded teeth, for each of its keys.
-SLOW = {("split torque", "transient"), ("journal", "transient")}
+SLOW = {
+    ("split torque", "transient"),
+    ("journal", "transient"),
+    ("element with a stiffness", "response"),
+    ("iso", "response"),
+    ("tilting", "response"),
+}
 QUICK = {
     "campbell": ("full", "rotor"),
     "critical": ("full", "rotor"),
-    "state space": ("full", "tilting", "element", "journal"),
+    "state space": ("full", "journal"),
     "sweep": ("plain", "backlash pair"),
     "orbits": ("plain",),
 }

@@ -53,6 +53,7 @@ def test_helices_that_carry_unlike_shares_have_stiffnesses_of_their_own(pair: rg
     assert settled[heavy].contact.stiffness > 1.003 * settled[1 - heavy].contact.stiffness
 
 
+@pytest.mark.long  # flexibilities of a wheel with a web
 def test_a_mesh_between_held_shafts_has_the_tangent_of_the_torque_flow(tmp_path: Path) -> None:
     path = tmp_path / "pair.toml"
     path.write_text(pair_file(mesh=PREVIEW, torque="300 N m"))

@@ -14,7 +14,7 @@ from tests.models import spur_pair
 DRIFT = "do not balance"
 
 
-@pytest.mark.parametrize("first", range(0, 200, 50))
+@pytest.mark.parametrize("first", [0, *(pytest.param(first, marks=pytest.mark.long) for first in (50, 100, 150))])
 def test_two_hundred_random_free_trains_are_answered_and_keep_their_momentum(first: int) -> None:
     for seed in range(first, first + 50):
         model = free_train(seed)
