@@ -129,7 +129,7 @@ def test_a_root_of_another_mode_is_not_taken(monkeypatch: pytest.MonkeyPatch) ->
     assert study.reference.startswith("the same elements, refined to 1e-10")
 
 
-@pytest.mark.parametrize("analysis", ["state-space", "campbell"])
+@pytest.mark.parametrize("analysis", ["state-space", pytest.param("campbell", marks=pytest.mark.long)])
 def test_state_spaces_and_branches_are_compared_with_continuous_shafts(analysis: str) -> None:
     more = {"modes": 5} if analysis == "campbell" else {"speed": 700.0}
     study = study_by_name(analysis)(overhung_disk(), **SHORT, **more)

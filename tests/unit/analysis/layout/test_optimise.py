@@ -147,6 +147,7 @@ def test_the_slope_of_the_penalty_is_its_difference_quotient_where_participation
     assert slopes == pytest.approx(quotients, abs=1e-4 * np.abs(quotients).max())
 
 
+@pytest.mark.long  # a search, then run-ups of what it found
 def test_a_rotor_is_led_away_from_its_unbalance_and_other_analyses_agree(tmp_path):
     rotor = rg.loads(ROTOR)
     # At 9000 rpm, 150 Hz, a forward mode stands at 185 Hz.
