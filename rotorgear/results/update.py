@@ -51,6 +51,12 @@ class UpdatedLine(Record):
     after_hz: float = of("frequency after the update", "Hz", column="after")
     held_out_hz: float = of("frequency predicted from the other lines alone", "Hz", column="held out")
     held_out_sigma: float = of("relative standard deviation of that prediction, noise of the line included")
+    damping_before: float | None = of(
+        "damping ratio of the mode before the update", note="; `null` where none was compared", form=".3g"
+    )
+    damping_after: float | None = of(
+        "damping ratio after the update", note="; `null` where none was compared", form=".3g"
+    )
     mac_before: float | None = of(
         "MAC of the shape before the update", note="; `null` without shapes", form=".3f", column="MAC before"
     )
@@ -179,7 +185,14 @@ class UpdateResult(ModelResult, kind="update"):
             several = ("campaign",) if any(line.campaign for line in self.lines) else ()
             shapes = ("mac_before", "mac_after") if self.points else ()
             rig = Column("rig Hz", "rig.frequency_hz", ".2f")
-            yield table_of(self, "lines", *several, rig, "mode_number", *error, *shapes)
+            percent = "{:.2f} %".format
+            damped = any(line.damping_after is not None for line in self.lines)
+            damping = (
+                Column("damping", lambda line: 100.0 * (line.rig.damping_ratio or float("nan")), percent),
+                Column("before", "damping_before", percent, "%"),
+                Column("after", "damping_after", percent, "%"),
+            )
+            yield table_of(self, "lines", *several, rig, "mode_number", *error, *(damping if damped else ()), *shapes)
         if self.responses:
             if self.lines:
                 yield ""

@@ -21,13 +21,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rotorgear.analysis.common.left_out import GIVE_DAMPING
 from rotorgear.analysis.rig.frf_misfit import FrfMisfit
 from rotorgear.analysis.rig.likeness import pairs_of
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.posterior import Posterior, line_noise
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.analysis.sensitivity.forms import Shapes
-from rotorgear.errors import ConvergenceError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.numbers import FreeNumbers
 from rotorgear.progress import Progress
 
@@ -60,6 +61,11 @@ class CampaignModes:
     def frequency_hz(self) -> NDArray[np.float64]:
         """Natural frequencies in Hz, (m,)."""
         return np.concatenate([part.frequency_hz for part in self.parts])
+
+    @cached_property
+    def damping_ratio(self) -> NDArray[np.float64]:
+        """Damping ratios of light damping, (m,)."""
+        return np.concatenate([part.damping_ratio for part in self.parts])
 
     @cached_property
     def campaign(self) -> NDArray[np.intp]:
@@ -96,7 +102,7 @@ class Fit:
         x: logs of the factors (p,).
         modes: of the model there.
         pairs: lines and modes.
-        residual: measured less computed: of each pair ln f, then its shape; then ln H of the frequency responses (n,).
+        residual: measured less computed: of each pair ln f, ln zeta, then its shape; then ln H of frequency responses (n,).
         noise: standard deviations of the rows (n,).
         owner: line of each row; -1, -2 ... for the first frequency response, the second ... (n,).
         looseness: that of the noise.
@@ -123,6 +129,8 @@ class Misfit:
         owner: campaign of each line (n,).
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
         tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
+        damping_noise: relative standard deviation of a measured damping ratio; None: damping is not compared, since no free
+            number damps.
         responses: frequency responses of some campaigns, by number.
         looseness: what is added to the noise while modes may still be taken for others.
     """
@@ -134,6 +142,7 @@ class Misfit:
     tolerance: float
     responses: Mapping[int, FrfMisfit] = field(default_factory=dict)
     looseness: float = 0.0
+    damping_noise: float | None = None
 
     @cached_property
     def turning(self) -> frozenset[int]:
@@ -187,6 +196,10 @@ class Misfit:
         turns = np.isin(self.owner, list(self.turning))
         return np.where(turns[:, None], self.given.shapes, real)
 
+    def measures_damping(self, line: int) -> bool:
+        """Whether the damping ratio of a line is compared."""
+        return self.damping_noise is not None and bool(self.given.lines[line].damping_ratio)
+
     def parts(self, line: int, values: Shapes) -> NDArray[np.float64]:
         """Real values of a line as they are; of a complex shape the real ones, then the imaginary ones."""
         if self.owner[line] not in self.turning:
@@ -206,6 +219,14 @@ class Misfit:
             rig = self.given.lines[pair.line]
             noise = np.hypot(line_noise(rig), _LOOSE_FREQUENCY * self.looseness)
             rows.append((np.array([np.log(rig.frequency_hz / modes.frequency_hz[pair.mode])]), noise, pair.line))
+            if self.measures_damping(pair.line):
+                zeta = modes.damping_ratio[pair.mode]
+                if not zeta > 0.0:
+                    raise AnalysisError(
+                        f"the line at {rig.frequency_hz:.4g} Hz has a damping ratio, and nothing damps its mode: {GIVE_DAMPING}"
+                    )
+                doubt = np.hypot(float(self.damping_noise or 0.0), self.looseness)
+                rows.append((np.array([np.log(float(rig.damping_ratio or 0.0) / zeta)]), doubt, pair.line))
             points = self.shape_points(pair.line)
             if len(points):
                 y = self.shapes[pair.line, points]
@@ -234,6 +255,11 @@ class Misfit:
         rows: list[NDArray[np.float64]] = []
         for pair in state.pairs:
             rows.append(slopes[place[pair.mode]])
+            if self.measures_damping(pair.line):
+                number = int(modes.campaign[pair.mode])
+                first = int(np.searchsorted(modes.campaign, number))
+                one = np.array([pair.mode - first])
+                rows.append(self.models[number].damping_slopes(state.x, modes.parts[number], one)[0])
             points = self.shape_points(pair.line)
             if len(points):
                 basis = modes.at_points[np.ix_(np.array(pair.near), points)].T

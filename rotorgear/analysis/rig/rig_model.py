@@ -11,7 +11,7 @@ from rotorgear.analysis.common.discretise import cut_of
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.modal.solve import Wanted, solve
-from rotorgear.analysis.sensitivity.derivatives import changes_of, frequency_slopes, shape_slopes
+from rotorgear.analysis.sensitivity.derivatives import STEP, beside, changes_of, frequency_slopes, shape_slopes
 from rotorgear.analysis.sensitivity.forms import Shapes
 from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.model.model import Model
@@ -46,6 +46,13 @@ class RigModes:
     at_points: Shapes
     carriers: Shapes
     numbers: NDArray[np.intp]
+
+    @property
+    def damping_ratio(self) -> NDArray[np.float64]:
+        """Damping ratios X^H C X / (2 w) beside that of all modes, (m,): of light damping, which leaves shapes as they are."""
+        C = self.system.damping(self.speed)
+        lost = np.real(np.sum(self.vectors.conj() * (C @ self.vectors), axis=0))
+        return np.asarray(lost / (2.0 * np.sqrt(self.eigenvalues)) + self.system.model.damping.modal_ratio)
 
     @property
     def frequency_hz(self) -> NDArray[np.float64]:
@@ -114,3 +121,23 @@ class RigModel:
         moved = shape_slopes(system, self.speed, changes, modes.eigenvalues, modes.vectors, chosen)
         at_points = np.tensordot(point_rows(system, self.points).toarray(), moved, axes=(1, 0))
         return slopes, np.transpose(at_points, (1, 0, 2))
+
+    def damping_slopes(self, x: NDArray[np.float64], modes: RigModes, chosen: NDArray[np.intp]) -> NDArray[np.float64]:
+        """d ln zeta / dx (k, p) of the damping ratios of k chosen modes: of shapes, dampers and frequencies."""
+        system = modes.system
+        X = modes.vectors[:, chosen]
+        omega = np.sqrt(modes.eigenvalues[chosen])
+        C = system.damping(self.speed)
+        changes = changes_of(self.numbers, x, system, self.speed, modes.eigenvalues[chosen], X, shapes=True)
+        moved = shape_slopes(system, self.speed, changes, modes.eigenvalues, modes.vectors, chosen)
+        slower = frequency_slopes(system, self.speed, changes, modes.eigenvalues[chosen], X)
+        ratio = modes.damping_ratio[chosen]
+        own = ratio - system.model.damping.modal_ratio
+        found = np.zeros((len(chosen), len(x)))
+        for j in range(len(x)):
+            above, below = beside(self.numbers, x, j, system, self.speed)
+            change = (above.damping(self.speed) - below.damping(self.speed)) / (2.0 * STEP)
+            lost = np.real(np.sum(X.conj() * (change @ X + 2.0 * (C @ moved[:, :, j])), axis=0)) / (2.0 * omega)
+            modal = (above.model.damping.modal_ratio - below.model.damping.modal_ratio) / (2.0 * STEP)
+            found[:, j] = (lost - own * slower[:, j] + modal) / ratio
+        return found

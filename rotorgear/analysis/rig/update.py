@@ -34,6 +34,8 @@ from rotorgear.system.plan import Plan
 
 # Noise of a measured frequency response, as a share of its size.
 FRF_NOISE = 0.05
+# Noise of a measured damping ratio, as a share of it.
+DAMPING_NOISE = 0.1
 # The mesh is finer than the noise by a tenth, within these bounds.
 _MESH_ERROR = (1e-10, 1e-4)
 _BOTH = "its factor is that of both values"
@@ -52,6 +54,7 @@ def update(
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
     shape_noise: float = SHAPE_NOISE,
     frf_noise: float = FRF_NOISE,
+    damping_noise: float = DAMPING_NOISE,
     modal_damping: float = 0.0,
     speed: float | str | None = None,
     campaigns: str | Path | Sequence[Campaign] | None = None,
@@ -77,6 +80,8 @@ def update(
         prior: relative standard deviation of the free numbers before the test; in Python also by address.
         shape_noise: standard deviation of a measured displacement, as a share of the root mean square of its shape.
         frf_noise: standard deviation of a measured frequency response, as a share of its size.
+        damping_noise: relative standard deviation of the damping ratios of lines, such as those of ring-downs; they are compared
+            where a damping is among the free numbers.
         modal_damping: damping ratio added to every elastic mode of the frequency responses.
         speed: speed of the input shaft while it was measured, in rad/s or with its unit (default: standstill).
         campaigns: several campaigns, each at its speed and in its state of the gearbox, in place of all these: their file
@@ -97,6 +102,7 @@ def update(
     """
     shape_noise = share_of(shape_noise, "shape_noise", "0.02")
     frf_noise = share_of(frf_noise, "frf_noise", "0.05")
+    damping_noise = share_of(damping_noise, "damping_noise", "0.1")
     check_modal_damping(modal_damping)
     several: Sequence[Campaign] = (Campaign(rig, shapes, points, speed, frf=frf, frf_motion=frf_motion),)
     if campaigns is not None:
@@ -130,7 +136,8 @@ def update(
         if receptances:
             responses[number] = FrfMisfit(models[-1], receptances, frf_noise, modal_damping)
     every, owner = joined(measured)
-    problem = Misfit(tuple(models), every, owner, shape_noise, tolerance, responses)
+    damps = damping_noise if any("damping" in address for address in numbers.addresses) else None
+    problem = Misfit(tuple(models), every, owner, shape_noise, tolerance, responses, damping_noise=damps)
     start = first_fit(problem)
     if not start.pairs and not responses:
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
@@ -182,6 +189,8 @@ def _result(
                 after_hz=float(after_hz[mode]),
                 held_out_hz=float(after_hz[mode] * np.exp(slope @ (x - state.x))),
                 held_out_sigma=float(np.hypot(p.noise[row], spread)),
+                damping_before=float(start.modes.damping_ratio[old]) if problem.measures_damping(line) else None,
+                damping_after=float(state.modes.damping_ratio[mode]) if problem.measures_damping(line) else None,
                 mac_before=float(before_mac[line, old]) if has_shape else None,
                 mac_after=float(after_mac[line, mode]) if has_shape else None,
             )
@@ -197,6 +206,8 @@ def _result(
     left_out: list[str] = []
     if problem.given.lines:
         what = "damping" if problem.turning else "damping and rotation"
+        if any(row.damping_after is not None for row in lines):
+            what = f"what {what} does to shapes and frequencies"
         where = "at the speeds of the campaigns" if problem.turning else "at standstill"
         left_out.append(Note("", what, f"lines are undamped natural frequencies {where}"))
         left_out.append("the spread of lines predicted from the others is that of the linear model about the estimate")
