@@ -22,7 +22,6 @@ from rotorgear.export.turning import Motion, turning_of
 from rotorgear.files.write import filling, publish
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
-from rotorgear.system.planets import turning_carriers
 
 # Points and colours of frames are rounded to these shares of the model's size: invisible, and they compress to half.
 _POINT_GRID = 2.0**-16
@@ -64,7 +63,9 @@ def write_vtk(
     if frames < 2:
         raise AnalysisError(f"an animation needs at least 2 frames, got {frames}")
     pv, solids, plain = undeformed(result)
-    turning = turning_of(result.model, result.nodes, solids, result.speed)
+    # Modes that are told as a carrier sees them are shown so: the pins stand still.
+    seen_from_rest = bool(result.carrier_frequency_hz)
+    turning = turning_of(result.model, result.nodes, solids, result.speed if seen_from_rest else None)
     target = Path(directory)
     with filling(target) as scratch:
         save_mesh(plain, scratch / "model.vtp")
@@ -195,7 +196,7 @@ def readme(result: ModalResult, modes: Sequence[int], frames: int) -> str:
         f"{result.description[mode]}"
         for mode in modes
     ]
-    turns = _CARRIERS if result.speed and turning_carriers(result.model.layout) else ""
+    turns = _CARRIERS if result.carrier_frequency_hz else ""
     title = result.model.title or "Mode shapes"
     return _README.format(title=title, speed=speed, frames=frames, rows="\n".join(rows), turns=turns)
 

@@ -276,7 +276,8 @@ def _hashed_fields(model: Model) -> dict[str, Any]:
     for casing in fields["casings"].values():
         files = {**casing["mesh"], **({"matrices": casing["matrices"]} if "matrices" in casing else {})}
         casing |= {"files": {name: _digest(Path(path)) for name, path in files.items()}, "mesh": [], "matrices": ""}
-    for gear in fields["gears"].values():
+    # One planet that differs has those keys alone that it has otherwise.
+    for gear in (gear for gear in fields["gears"].values() if "body" in gear):
         body = gear["body"]
         if "mesh" in body:
             body["mesh"] = _digest(Path(body["mesh"]))
@@ -285,7 +286,7 @@ def _hashed_fields(model: Model) -> dict[str, Any]:
     # A model keeps the name that it had before there were keys which it does not give.
     for table, key, usual in (("shafts", "axis", [0.0, 0.0, 1.0]), ("gears", "spiral_angle", 0.0)):
         for part in fields[table].values():
-            if part[key] == usual:
+            if part.get(key) == usual:
                 del part[key]
     if not fields["casings"]:
         del fields["casings"]  # a model without them keeps the name that it had before there were any

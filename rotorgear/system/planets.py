@@ -50,6 +50,8 @@ _TURN[[0, 3], [1, 4]] = -1.0
 _ROTATION = np.eye(6)[None, 3:]
 # Sisters whose matrices differ by more than this are not equal: rounding of their directions leaves less.
 _ALIKE = 1e-9
+# Shafts this near (m) to the axis of a carrier are on it.
+_ON_AXIS = 1e-9
 # Share of the stiffest below which a planet is not held at all.
 _SINGULAR = 1e-13
 
@@ -66,21 +68,105 @@ def require_constant(layout: Layout) -> None:
         AnalysisError: two planets, unequal spacing, or one that differs from its sisters, on a carrier that turns; or damping
             of the model against axes that stand still.
     """
-    damping = layout.model.damping
     for planets in turning_carriers(layout):
-        if damping.rayleigh_alpha or damping.rayleigh_beta:
-            raise AnalysisError(
-                "damping.rayleigh_alpha and rayleigh_beta damp against axes that stand still, which planets on a carrier that "
-                "turns leave: give damping_ratio at the meshes, damping at the bearings or damping.modal_ratio"
-            )
+        _refuse_dampers_of_all(layout)
         if not planets.part.is_regular:
             count = len(planets.planets)
             what = {1: "one planet", 2: "two planets"}.get(count, "planets at unequal angles")
             raise AnalysisError(
                 f"carriers.{planets.carrier}: coefficients of {what} on a carrier that turns change with its angle, which is not "
-                "built. Take three or more planets, equally spaced, or hold the carrier: speed_ratio = 0 of "
+                "built here. Take three or more planets, equally spaced, or hold the carrier: speed_ratio = 0 of "
                 f"shafts.{planets.shaft}."
             )
+
+
+def _refuse_dampers_of_all(layout: Layout) -> None:
+    damping = layout.model.damping
+    if damping.rayleigh_alpha or damping.rayleigh_beta:
+        raise AnalysisError(
+            "damping.rayleigh_alpha and rayleigh_beta damp against axes that stand still, which planets on a carrier that "
+            "turns leave: give damping_ratio at the meshes, damping at the bearings or damping.modal_ratio"
+        )
+
+
+def seen_from_carrier(layout: Layout, groups: Iterable[ElementGroup]) -> list[ElementGroup]:
+    """What a carrier that turns adds to some groups where everything is told in axes that turn with it, D = S for all and T = 0.
+
+    Planets may be two, have unequal meshes, or stand at unequal angles there. Their pulls are equal and balance: others would
+    move the carrier off its axis and stress the meshes, and both would count in K_g.
+
+    Raises:
+        AnalysisError: several carriers turn, pulls that do not balance, a shaft beside the axis of the carrier, or a part with
+            preferred directions at rest.
+    """
+    turning = turning_carriers(layout)
+    if not turning:
+        return []
+    first = turning[0]
+    ratio = layout.train.ratio(first.shaft)
+    frame = layout.model.shafts[first.shaft].frame
+    _refuse_dampers_of_all(layout)
+    if len({planets.shaft for planets in turning}) > 1:
+        others = ", ".join(dict.fromkeys(f"carriers.{planets.carrier}" for planets in turning))
+        raise _changing(layout, first, f"{others} turn, and no axes turn with all of them")
+    for planets in turning:
+        if np.abs(_directions(planets).sum(axis=0)).max() > _ALIKE * len(planets.planets):
+            raise _changing(layout, first, "the pulls of its planets do not balance")
+    every = list(groups)
+    for _, alike in sisters(layout, every):
+        for other in alike[1:]:
+            differs = _difference(alike[0], other)
+            if differs and not other.part.startswith("meshes."):
+                raise _changing(layout, first, f"the {differs} of {other.part} is not that of {alike[0].part}")
+    found = []
+    for group in every:
+        carried = MARK in group.part
+        own = layout.model.shafts[group.shaft].frame if group.shaft in layout.model.shafts else None
+        m = group.matrices
+        S = quarter_turn(group)
+        d = len(S)
+        if not carried:
+            terms = (m.mass, m.stiffness, m.damping, m.circulatory, m.circulatory_per_speed)
+            ahead = own is not None and np.allclose(own.axes[:, 2], frame.axes[:, 2], atol=_ALIKE)
+            across = None if own is None else (own.origin - frame.origin) @ frame.axes[:, :2]
+            straight = ahead and across is not None and float(np.abs(across).max()) < _ON_AXIS
+            if not straight or any(A is not None and not _equal(A @ S, S @ A) for A in terms):
+                why = "has preferred directions at rest" if straight else "is not on its axis"
+                raise _changing(layout, first, f"{group.part} {why}")
+        identity = np.broadcast_to(np.eye(d), (len(group.dofs), d, d))
+
+        def seen(matrices: ElementMatrices, group: ElementGroup = group) -> ElementGroup:
+            part = f"carriers.{first.carrier}"
+            return ElementGroup(part, first.shaft, matrices, group.dofs, ratio, body_motions=group.dof_motions[6:])
+
+        if m.mass is not None:
+            square = m.mass @ S @ S
+            if m.gyroscopic is not None:
+                square = square + group.spin / ratio * (m.gyroscopic @ S)
+            found.append(
+                seen(
+                    ElementMatrices(
+                        strain=identity,
+                        modulus=np.zeros(square.shape),
+                        gyroscopic=_skew(2.0 * m.mass @ S),
+                        modulus_per_square=0.5 * (square + np.swapaxes(square, 1, 2)),
+                    )
+                )
+            )
+        if carried and m.circulation_per_speed is not None:
+            found.append(seen(ElementMatrices(strain=m.strain, circulation_per_speed=-m.circulation_per_speed)))
+        elif not carried and m.damping is not None:
+            found.append(seen(ElementMatrices(strain=identity, circulation_per_speed=m.damping @ S)))
+    return found
+
+
+def _changing(layout: Layout, planets: PlanetSet, why: str) -> AnalysisError:
+    """That coefficients change as a carrier turns, even in axes that turn with it."""
+    return AnalysisError(
+        f"carriers.{planets.carrier}: coefficients of planets that are two, differ or stand at unequal angles change with the "
+        f"angle of a carrier that turns; seen from it they would not, but {why}. Take three or more equal ones, equally spaced, "
+        f"or hold the carrier: speed_ratio = 0 of shafts.{planets.shaft}."
+    )
 
 
 def sister_turn(angles: np.ndarray) -> np.ndarray:
@@ -160,15 +246,12 @@ def _carried(layout: Layout, carrier: str, alike: list[ElementGroup]) -> Iterato
     ratio = layout.train.ratio(part.shaft)
     first = alike[0].matrices
     for other in alike[1:]:
-        for name in ("mass", "modulus", "viscosity"):
-            mine = getattr(first, name)
-            its = getattr(other.matrices, name)
-            if (mine is None) != (its is None) or (mine is not None and not _equal(mine, its)):
-                raise AnalysisError(
-                    f"{other.part}: its {_WORDS[name]} differs from that of {alike[0].part}, and planets that differ have "
-                    "coefficients that change with the angle of their carrier, which is not built. Make them equal, or hold the "
-                    f"carrier: speed_ratio = 0 of shafts.{part.shaft}."
-                )
+        if differs := _difference(alike[0], other):
+            raise AnalysisError(
+                f"{other.part}: its {differs} differs from that of {alike[0].part}, and planets that differ have coefficients "
+                "that change with the angle of their carrier, which is not built here. Make them equal, or hold the carrier: "
+                f"speed_ratio = 0 of shafts.{part.shaft}."
+            )
     dofs = np.hstack([group.dofs for group in alike])
     motions = tuple(motion for group in alike for motion in group.dof_motions)[6:]
 
@@ -201,7 +284,14 @@ def _carried(layout: Layout, carrier: str, alike: list[ElementGroup]) -> Iterato
         yield of_all(ElementMatrices(strain=strain, circulation_per_speed=Z))
 
 
-_WORDS = {"mass": "mass", "modulus": "stiffness", "viscosity": "damping"}
+def _difference(first: ElementGroup, other: ElementGroup) -> str:
+    """In what the elements of two sisters differ, or ""."""
+    for name, word in (("mass", "mass"), ("modulus", "stiffness"), ("viscosity", "damping")):
+        mine = getattr(first.matrices, name)
+        its = getattr(other.matrices, name)
+        if (mine is None) != (its is None) or (mine is not None and not _equal(mine, its)):
+            return word
+    return ""
 
 
 def _equal(mine: np.ndarray, its: np.ndarray) -> bool:
@@ -255,12 +345,14 @@ class PinLoad:
     Attributes:
         planets: those of its kind.
         node: of their carrier.
+        lever: sum of r (1 - e e') over the sisters, (1, 3, 3).
         stiffness: K_p (k, k); inertia: M S S + w G S (k, k).
         pull: M e on the free motions (k,); mass: e' M e in kg.
     """
 
     planets: PlanetSet
     node: int
+    lever: np.ndarray
     stiffness: np.ndarray
     inertia: np.ndarray
     pull: np.ndarray
@@ -294,22 +386,22 @@ class PinLoad:
 
     def group(self, beyond: float) -> ElementGroup:
         """What K_g on the carrier has beyond `group_per_square`, by what f has."""
-        return self._on_carrier(ElementMatrices(strain=_ROTATION, modulus=beyond * self._lever), 0.0)
+        return self._on_carrier(ElementMatrices(strain=_ROTATION, modulus=beyond * self.lever), 0.0)
 
     def group_per_square(self, ratio: float) -> ElementGroup:
         """K_g of the load W^2 m r on the carrier, the sum over all sisters."""
-        square = self.mass * self.planets.radius * self._lever
+        square = self.mass * self.planets.radius * self.lever
         still = np.zeros_like(square)
         return self._on_carrier(ElementMatrices(strain=_ROTATION, modulus=still, modulus_per_square=square), ratio)
-
-    @property
-    def _lever(self) -> np.ndarray:
-        """Sum of r (1 - e e') over the sisters, (1, 3, 3)."""
-        return len(self.planets.planets) * self.planets.radius * np.diag([0.5, 0.5, 1.0])[None]
 
     def _on_carrier(self, matrices: ElementMatrices, spin: float) -> ElementGroup:
         part = f"carriers.{self.planets.carrier}"
         return ElementGroup(part, self.planets.shaft, matrices, node_dofs(self.node), spin)
+
+
+def _directions(planets: PlanetSet) -> np.ndarray:
+    """Directions (N, 3) of the arms of planets in the frame of their carrier's shaft."""
+    return np.column_stack([np.cos(planets.angles), np.sin(planets.angles), np.zeros(len(planets.angles))])
 
 
 def pin_loads(layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[ElementGroup]) -> list[PinLoad]:
@@ -318,6 +410,9 @@ def pin_loads(layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[Eleme
     found = []
     for planets in turning_carriers(layout):
         planet = planets.planets[0]
+        lever = len(planets.planets) * np.diag([0.5, 0.5, 1.0])
+        if not planets.part.is_regular:
+            lever = np.sum([np.eye(3) - np.outer(e, e) for e in _directions(planets)], axis=0)
         ratio = layout.train.ratio(planet) / layout.train.ratio(planets.shaft)
         size = dofs.transform.shape[0]
         K, M, inertia = (np.zeros((size, size)) for _ in "KMI")
@@ -346,5 +441,8 @@ def pin_loads(layout: Layout, nodes: Nodes, dofs: DofMap, groups: Iterable[Eleme
         here = np.ix_(rows, rows)
         pull = M[here] @ e
         node = nodes.at(*layout.at(planets.shaft, planets.part.at))
-        found.append(PinLoad(planets, node, T.T @ K[here] @ T, T.T @ inertia[here] @ T, T.T @ pull, float(e @ pull)))
+        lever = planets.radius * lever[None]
+        found.append(
+            PinLoad(planets, node, lever, T.T @ K[here] @ T, T.T @ inertia[here] @ T, T.T @ pull, float(e @ pull))
+        )
     return found

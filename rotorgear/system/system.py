@@ -21,7 +21,7 @@ from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
-from rotorgear.system.planets import PinLoad, pin_loads, planet_groups, turning_carriers
+from rotorgear.system.planets import PinLoad, pin_loads, planet_groups, seen_from_carrier, turning_carriers
 from rotorgear.system.rigid_members import Conditions, conditions, without_rigid
 
 
@@ -109,6 +109,7 @@ class System:
         # A state may have been found on a model that differs in what it does not depend on, such as modes of its casings.
         self.state = state if state.layout is model.layout else replace(state, layout=model.layout)
         self._last: dict[str, tuple[float, Any]] = {}
+        self.is_seen_from_carrier = False
 
     def require_freedom(self) -> None:
         """Refuse a model in which nothing can move.
@@ -121,11 +122,21 @@ class System:
 
     def with_plan(self, plan: Plan) -> System:
         """The same model under the same load on another mesh."""
-        return type(self)(self.model, plan=plan, state=self.state)
+        return self._alike(type(self)(self.model, plan=plan, state=self.state))
 
     def with_state(self, state: State) -> System:
         """The same mesh about another state."""
-        return type(self)(self.model, plan=self.plan, state=state)
+        return self._alike(type(self)(self.model, plan=self.plan, state=state))
+
+    def seen_from_carrier(self) -> System:
+        """The same in axes that turn with its carrier, where planets that are not alike have constant coefficients."""
+        found = type(self)(self.model, plan=self.plan, state=self.state)
+        found.is_seen_from_carrier = True
+        return found
+
+    def _alike(self, other: System) -> System:
+        other.is_seen_from_carrier = self.is_seen_from_carrier
+        return other
 
     @property
     def load(self) -> State:
@@ -202,6 +213,8 @@ class System:
     @cached_property
     def _going_round(self) -> tuple[list[ElementGroup], AnalysisError | None]:
         """What planets bring where their carriers turn, or why that is not built."""
+        if self.is_seen_from_carrier:
+            return seen_from_carrier(self.layout, self._constant), None
         try:
             return planet_groups(self.layout, self._constant), None
         except AnalysisError as error:
@@ -220,7 +233,8 @@ class System:
         tables = table_groups(self.state, self.nodes, speed)
         if not speed or error is not None or not turning_carriers(self.layout):
             return tables
-        return tables + planet_groups(self.layout, tables) + self._pin_groups(speed, tables)
+        carried = seen_from_carrier if self.is_seen_from_carrier else planet_groups
+        return tables + carried(self.layout, tables) + self._pin_groups(speed, tables)
 
     def of_carriers(self, speed: float) -> list[ElementGroup]:
         """What planets that go round bring at a reference speed in rad/s, beside contacts and elements that are laws."""

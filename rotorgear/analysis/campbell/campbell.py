@@ -115,8 +115,12 @@ def campbell(
     about = linear_system(model, [float(speed) for speed in asked])
     model, few = (about, ()) if isinstance(model, System) else with_casing_modes(model, fmax)
     ends = [float(asked[0]), float(asked[-1])]
-    request = ModalRequest(None, modes, fmax, elements, accuracy, tuple(only))
+    request = ModalRequest(None, modes, fmax, elements, accuracy, tuple(only), from_carrier=True)
     system = system_for_speeds(model, ends, request, about.state, progress)
+    if system.uneven_planets and any(ends):
+        # What turns with a shaft has other orders there; meshes of planets have their own.
+        system = system.seen_from_carrier()
+        shaft_orders, sidebands = (), 0
     clock.lap("mesh")
     reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax)
     drawn = (tuple(shaft_orders), tuple(mesh_orders), sidebands)
@@ -355,6 +359,8 @@ class _Diagram:
         found = self.found
         system = found.system
         notes: list[str] = [*left_out(system, "modes", float(self.grid[-1]))]
+        if system.is_seen_from_carrier:
+            notes.append("lines of shafts and sidebands: seen from a carrier they have other orders")
         rigid = found.snapshots[0].rigid.shape[1]
         if rigid:
             notes.append(f"{rigid} rigid-body mode{'s'[: rigid != 1]} at 0 Hz")

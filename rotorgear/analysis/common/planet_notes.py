@@ -12,6 +12,15 @@ from rotorgear.system.system import System
 def planet_notes(system: System, speed: float | None) -> Iterator[Note]:
     """Of each carrier that turns at a speed of the reference shaft in rad/s, what is neglected (`system/planets.py`)."""
     model = system.model
+    if speed and system.is_seen_from_carrier:
+        # All of these turn with one carrier.
+        carrier = turning_carriers(system.layout)[0].carrier
+        why = (
+            "their coefficients are constant only seen from their carrier, as frequencies and senses of whirl are told"
+        )
+        yield Note(
+            f"carriers.{carrier}", "modes in axes at rest: planets are two, differ or stand at unequal angles", why
+        )
     for planets in turning_carriers(system.layout) if speed else ():
         address = f"carriers.{planets.carrier}"
         if model.operation is not None and (model.operation.torque or model.operation.power):

@@ -87,14 +87,26 @@ def modal(
         ConvergenceError: a guard of the solver was not met, or the accuracy can't be reached; never a silent loss.
     """
     asked = ModalRequest(
-        speed_in_si(speed), modes, fmax, elements, accuracy, tuple(only), pruning, error_estimate, shapes
+        speed_in_si(speed),
+        modes,
+        fmax,
+        elements,
+        accuracy,
+        tuple(only),
+        pruning,
+        error_estimate,
+        shapes,
+        from_carrier=True,
     )
     return modes_about(model, asked, progress=progress)
 
 
 @dataclass(frozen=True)
 class ModalRequest:
-    """What is asked of modes; fields as the arguments of `modal`, the speed in rad/s."""
+    """What is asked of modes; fields as the arguments of `modal`, the speed in rad/s.
+
+    `from_carrier`: planets whose coefficients change with the angle of their carrier may be told as they are seen from it.
+    """
 
     speed: float | None = None
     modes: int | None = None
@@ -105,6 +117,7 @@ class ModalRequest:
     pruning: bool = True
     error_estimate: bool = True
     shapes: bool = True
+    from_carrier: bool = False
 
 
 def modes_about(
@@ -207,6 +220,8 @@ def _on_fine_mesh(
     fixed = isinstance(model, System) or asked.elements is not None
     plan = Plan(asked.elements) if asked.elements else (Plan() if fixed else START)
     system = linear_system(model, [speed], plan, state=state)
+    if speed and asked.from_carrier and system.uneven_planets:
+        system = system.seen_from_carrier()
     system.require_freedom()
     if not (fixed or asked.error_estimate):
         raise AnalysisError("refining to an accuracy needs the error estimate; give elements to do without")

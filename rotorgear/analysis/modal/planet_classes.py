@@ -246,7 +246,7 @@ def classes_of(
         parts = own / np.where(total > 0.0, total, 1.0)
         for number, name in enumerate(MODE_CLASSES):
             energy[f"{stage.carrier} {name}"] = share * parts[number == _CLASS].sum(axis=0)
-        if system.train.ratios[stage.shaft] != 0:
+        if system.train.ratios[stage.shaft] != 0 and not system.is_seen_from_carrier:
             W = np.asarray(speeds) * system.train.ratio(stage.shaft)
             shifts = np.unique(_SHIFT)
             by_shift = np.stack([parts[shift == _SHIFT].sum(axis=0) for shift in shifts])
