@@ -623,7 +623,9 @@ REFUSED += [
     Refused(
         "two planets that go round",
         "coefficients of two planets on a carrier that turns",
-        lambda: rg.frf(Stage(planets=2).model(), ["gears.sun:x"], ["gears.sun:x"], fmax=100.0, speed=100.0),
+        lambda: rg.frf(
+            Stage(planets=2).model(), inputs=["gears.sun:x"], outputs=["gears.sun:x"], fmax=100.0, speed=100.0
+        ),
     ),
 ]
 
