@@ -120,7 +120,7 @@ RULES: dict[type[BaseModel], str] = {
         [conventions](conventions.md#mesh-of-a-parallel-axis-pair).""",
     Bearing: """
         Give `stiffness` (and `damping`), a `table` over speed, `rolling` elements, a `journal` or a `thrust` bearing.
-        A stiffness of one number, `{ radial = "1e8 N/m" }` or that of an address in `--over`, is along x and y alone, not z:
+        A stiffness of one number (`"1e8 N/m"`, `{ radial = "1e8 N/m" }`) is along x and y alone, not z:
         give one bearing of the shaft an `axial` one, too. A bearing holds no torsion unless told to. See
         [Bearings](bearings.md).""",
     TableRow: """
@@ -296,6 +296,8 @@ def _value(kind: dict[str, Any]) -> str:
     options = {option.get("type") for option in kind.get("anyOf", [])} - {"null"}
     if options == {"string", "object"}:
         return "text or table"
+    if options == {"number", "string", None}:
+        return "number or table"
     if options == {"string", "array"}:
         return "text or list of numbers"
     if options == {"string", "number"}:

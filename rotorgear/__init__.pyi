@@ -21,9 +21,13 @@ from rotorgear.model.parts.shaft import Section as Section
 from rotorgear.model.parts.shaft import Disk as Disk
 from rotorgear.model.parts.shaft import PointMass as PointMass
 from rotorgear.model.parts.gear import Gear as Gear
+from rotorgear.model.parts.gear import Flank as Flank
 from rotorgear.model.parts.gear import GearBody as GearBody
 from rotorgear.model.parts.mesh import Mesh as Mesh
 from rotorgear.model.parts.supports import Bearing as Bearing
+from rotorgear.model.parts.bearings.rolling import RollingElements as RollingElements
+from rotorgear.model.parts.bearings.journal import JournalGeometry as JournalGeometry
+from rotorgear.model.parts.bearings.thrust import ThrustGeometry as ThrustGeometry
 from rotorgear.model.parts.supports import TableRow as TableRow
 from rotorgear.model.parts.supports import Pedestal as Pedestal
 from rotorgear.model.parts.supports import Support as Support

@@ -19,6 +19,8 @@ EXTRAS = {
     "tomlkit": ("tomlkit", "rig"),
     "jinja2": ("jinja2", "report"),
     "nicegui": ("nicegui", "app"),
+    "pandas": ("pandas", "xarray"),
+    "openpyxl": ("openpyxl", "xlsx"),
     "asammdf": ("asammdf", "records"),
     "nptdms": ("nptdms", "records"),
     "soundfile": ("soundfile", "records"),

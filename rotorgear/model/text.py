@@ -94,9 +94,13 @@ def changed_text(text: str, values: Mapping[str, Any]) -> str:
     for address, value in values.items():
         *owners, last = re.sub(r"\[(\d+)\]", r".\1", address).split(".")
         owner: Any = document
+        above = owner
         for key in owners:
-            owner = below(owner, key, address)
-        _put(owner, last, value)
+            above, owner = owner, below(owner, key, address)
+        if last == "radial" and isinstance(owner, int | float | str):  # a bearing whose one number is the radial one
+            _put(above, owners[-1], value)
+        else:
+            _put(owner, last, value)
     return tomlkit.dumps(document)
 
 
@@ -149,12 +153,16 @@ def _with_changes(text: str, then: dict[str, Any], now: dict[str, Any], *, in_un
 def _change(node: Any, then: dict[str, Any], now: dict[str, Any], in_units: bool) -> None:
     """Write into a table of a document what differs between the tables that it stands for, then and now."""
     for key in [*then, *(key for key in now if key not in then)]:
-        old = then.get(key)
-        new = now.get(key)
+        old: Any = then.get(key)
+        new: Any = now.get(key)
         if old == new and type(old) is type(new):
             continue
         spelled = node.get(key)
-        if isinstance(old, dict) and isinstance(new, dict) and isinstance(spelled, dict):
+        both = isinstance(old, dict) and isinstance(new, dict)
+        if both and isinstance(spelled, int | float | str) and {*old, *new} == {"radial"}:  # one number of a bearing
+            number = new["radial"]
+            _put(node, key, _in_unit(spelled, old["radial"], number) if in_units else number)
+        elif both and isinstance(spelled, dict):
             _change(spelled, old, new, in_units)
         elif isinstance(new, list) and isinstance(old, list) and isinstance(spelled, list) and len(new) == len(old):
             for place, (was, is_now) in enumerate(zip(old, new, strict=True)):

@@ -25,6 +25,7 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
     Raises:
         AnalysisError: no field is counted by such an axis.
     """
+    axes = axes or main_axes(result)
     declared = result.declarations.get(axes[0]) if len(axes) == 1 else None
     if declared is not None and declared.record is not None and declared.axes:
         # A record is one row; what is itself a list of records stays one.
@@ -47,6 +48,17 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
                 row[name] = _python(values[tuple(at[axis] for axis in along)])
         entries.append(row)
     return entries
+
+
+def main_axes(result: Record) -> tuple[str, ...]:
+    """The axes of the first field that is no label of an axis, or the name of the first list of records."""
+    for declared in result.declarations.values():
+        value = getattr(result, declared.name)
+        if declared.record is not None and declared.axes and value:
+            return (declared.name,)
+        if isinstance(value, np.ndarray) and declared.axes and declared.name not in map("{}s".format, declared.axes):
+            return declared.axes
+    return ()
 
 
 def _python(value: Any) -> Any:

@@ -7,6 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rotorgear.drawing import picture_of
+from rotorgear.extras import require
 from rotorgear.note import NAMED, as_notes, sentences
 from rotorgear.quantity import counted
 from rotorgear.results.schema import Record, Written, derived, of
@@ -217,10 +218,28 @@ class Result(Record):
             return f"<p>{escape(repr(self))}</p>"
 
     def rows(self, *axes: str) -> list[dict[str, Any]]:
-        """One dictionary for each entry along an axis, or along several; see `rotorgear.results.labelled.rows`."""
+        """One dictionary for each entry along an axis, or along several; see `rotorgear.results.labelled.rows`.
+
+        Without axes those of what the result is about, such as "mode", or "speed" and "branch".
+        """
         from rotorgear.results.labelled import rows
 
         return rows(self, *axes)
+
+    def to_pandas(self, *axes: str) -> Any:
+        """The rows as a `pandas.DataFrame`, which is indexed by the axes where they number its rows.
+
+        Raises:
+            MissingExtraError: pandas is not installed. AnalysisError: as `rows`.
+        """
+        require("pandas", "A data frame")
+        from pandas import DataFrame
+
+        from rotorgear.results.labelled import main_axes
+
+        axes = axes or main_axes(self)
+        frame = DataFrame(self.rows(*axes))
+        return frame.set_index(list(axes)) if axes and set(axes) <= set(frame.columns) else frame
 
     def to_xarray(self) -> Any:
         """A labelled data set; see `rotorgear.results.labelled.data_set`. Its attributes say where the result is from.

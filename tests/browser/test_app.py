@@ -39,7 +39,7 @@ MODELS = (
     "herringbone_pair_12dof",
 )
 # Waiting for a process that takes what there is of two cores.
-LONG = 400.0
+LONG = 900.0
 
 
 @contextmanager

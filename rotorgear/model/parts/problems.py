@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from rotorgear.errors import Problem
+from rotorgear.model.parts.synonyms import meant
 from rotorgear.quantity import did_you_mean, nearest
 
 Loc = tuple[int | str, ...]
@@ -101,7 +102,8 @@ def root_causes(error: ValidationError, root: type[BaseModel]) -> list[Any]:
 def guessed_key(item: Any, root: type[BaseModel]) -> str:
     """Return the valid key that is nearest to an unknown one, or ""."""
     owner = class_at(item["loc"][:-1], root)
-    return nearest(str(item["loc"][-1]), list(owner.model_fields)) if owner else ""
+    word = str(item["loc"][-1])
+    return meant(word, owner.model_fields) or nearest(word, list(owner.model_fields)) if owner else ""
 
 
 def _problem(item: Any, root: type[BaseModel]) -> Problem:
@@ -114,8 +116,7 @@ def _problem(item: Any, root: type[BaseModel]) -> Problem:
     description = (field.description if field else None) or ""
     if kind == "extra_forbidden":
         valid = list(owner.model_fields) if owner else []
-        hint = did_you_mean(str(loc[-1]), valid, "valid here: " + ", ".join(valid))
-        return Problem(where, "", "unknown key", hint)
+        return Problem(where, "", "unknown key", _hint(str(loc[-1]), valid, root))
     if kind == "missing":
         return missing(where, description) if description else Problem(where, "", "missing", "required")
     if kind == "literal_error":
@@ -131,6 +132,18 @@ def _problem(item: Any, root: type[BaseModel]) -> Problem:
         words, bound = _BOUNDS[kind]
         return Problem(where, value, f"{words} {item['ctx'][bound]:g}")
     return Problem(where, value, _TYPES.get(kind, str(item["msg"])))
+
+
+def _hint(word: str, valid: list[str], root: type[BaseModel]) -> str:
+    """What an unknown key may have been meant for: a word of the field, a key of a table elsewhere, a misspelling."""
+    guess = meant(word, valid)
+    if guess:
+        return f"here that is '{guess}'"
+    tables = {name: class_at((name,), root) or class_at((name, ""), root) for name in root.model_fields}
+    owners = [name for name, part in tables.items() if part is not None and word in part.model_fields]
+    if owners and not nearest(word, valid):
+        return f"it is a key of {' and of '.join(f'[{name}]' for name in owners[:2])}"
+    return did_you_mean(word, valid, "valid here: " + ", ".join(valid))
 
 
 def class_at(loc: Loc, root: type[BaseModel]) -> type[BaseModel] | None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import fields
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.bearings.geometry import BearingGeometry, Oil
@@ -85,6 +85,16 @@ class DampingMatrix(_SixBySix):
     matrix: si.Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
 
 
+def _radial(value: Any) -> Any:
+    """One number for the stiffness or damping of a bearing is the radial one, as on a drawing."""
+    return {"radial": value} if isinstance(value, int | float | str) and not isinstance(value, bool) else value
+
+
+def _or_one_number(schema: dict[str, Any]) -> None:
+    """Editors are told of the number, too."""
+    schema["anyOf"] = [{"type": "number"}, {"type": "string"}, *schema["anyOf"]]
+
+
 class TableRow(Part):
     """A bearing's matrices at one speed of its shaft."""
 
@@ -106,8 +116,12 @@ class Bearing(Part):
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the bearing")
-    stiffness: StiffnessMatrix | None = Field(None, description="stiffness; or give a table")
-    damping: DampingMatrix | None = Field(None, description="damping")
+    stiffness: Annotated[StiffnessMatrix | None, BeforeValidator(_radial)] = Field(
+        None, description="stiffness; one number is the radial one; or give a table", json_schema_extra=_or_one_number
+    )
+    damping: Annotated[DampingMatrix | None, BeforeValidator(_radial)] = Field(
+        None, description="damping; one number is the radial one", json_schema_extra=_or_one_number
+    )
     table: tuple[TableRow, ...] = Field(
         (), description="rows over speed, linear in between, in place of stiffness and damping"
     )

@@ -37,7 +37,7 @@ def test_a_misspelt_name_is_found_beside_a_broken_part(pair: Data, addresses: Fi
 
 
 def test_names_in_a_part_with_a_wrong_number_are_checked_all_the_same(pair: Data, addresses: Find) -> None:
-    pair["bearings"]["input_left"] |= {"shaft": "inputt", "damping": 5}
+    pair["bearings"]["input_left"] |= {"shaft": "inputt", "damping": [5]}
     assert addresses(pair) == ["bearings.input_left.damping", "bearings.input_left.shaft"]
 
 
