@@ -6,8 +6,8 @@ Between two speeds a and b the matrices are affine, D = D_0 + W D_1 and K = K_0 
 
 which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. A stiffness W^2 K_2, of elastic bodies
 that turn, adds to p^2 M as -K_2. The pencil is inverted at s = i (a + b)/2, so that all speeds between a and b lie in the
-disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
-found from it by a secant, each trial an eigenpair of the pencil at a real W.
+disc around it. Without damping s is imaginary, and Newton's method in s itself ends on it. With damping Re s is not zero, and the
+root of Im lambda(W) = p W is found from it by a secant, each trial an eigenpair of the pencil at a real W.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.solvers.eigen.quadratic import newton, scaled
+from rotorgear.solvers.sparse.entries import scaled_on_both_sides
 from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, single_thread
+from rotorgear.solvers.sparse.sums import SparseSums
 
 _DENSE_UP_TO = 100
 LEAST_SHARE = 1e-6  # of the highest speed, below which a root is not told from a rigid motion at no speed
@@ -31,6 +32,10 @@ _HEAVY = 0.7  # |Re s| / |s| from which on a mode no longer oscillates in a way 
 _BEYOND = 0.15  # of a speed, how far damped roots may move when they are polished
 _MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
 _CONVERGED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
+_FOUND = 1e-12  # the same of a root that was found in s itself, where what is left is rounding
+_LONGEST_STEP = 0.1  # of Newton's method, relative to the eigenvalue: a longer one leads to another one
+_LAST_STEP = 1e-10  # convergence is quadratic: after a step as small as this only rounding is left
+_MOST_STEPS = 5
 _FREE = 1e-9  # stiffness along a motion over that of its terms, below which it is none
 BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
 
@@ -93,19 +98,21 @@ def synchronous_speeds(family: Affine, order: float) -> tuple[list[Synchronous],
         ConvergenceError: a root does not converge to 1e-10, or a count by pivot signs (undamped systems) misses one.
     """
     with single_thread(family.M.shape[0]):
+        pencil = _Pencil(family, order)
+        is_damped = family.is_damped
         # Another centre and another start vector where a count says that one was missed.
         for attempt in range(4):
             s, X = _starts(family, order, attempt)
             # Starts move when they are polished, with damping the further the steeper the matrices grow: some beyond both ends
             # are tried. s near 0 is a rigid motion at no speed.
-            beyond = _BEYOND if family.is_damped else 0.0
+            beyond = _BEYOND if is_damped else 0.0
             inside = s.imag > (1.0 - beyond) * family.low - 1e-3 * family.high
             inside &= s.imag < (1.05 + beyond) * family.high
             inside &= np.abs(s.real) < _HEAVY * np.abs(s)
             inside &= np.abs(s.imag) > LEAST_SHARE * family.high
             roots: list[Synchronous] = []
             for k in np.flatnonzero(inside):
-                root = _polished(family, order, complex(s[k]), X[:, k])
+                root = _polished(pencil, order, complex(s[k]), X[:, k], is_damped)
                 if root is not None and not any(_same(root, other, family.M) for other in roots):
                     roots.append(root)
             roots = sorted((r for r in roots if family.low < r.speed <= family.high), key=lambda root: root.speed)
@@ -172,20 +179,58 @@ def _largest(
     return np.linalg.eig(apply(np.eye(size, dtype=complex)))
 
 
-def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchronous | None:
+class _Pencil:
+    """Q(lambda, W) = lambda^2 M + lambda (D_0 + W D_1) + K_0 + W K_1 + W^2 K_2 in dofs scaled to unit diagonals at the middle."""
+
+    def __init__(self, family: Affine, order: float) -> None:
+        self.family = family
+        middle = order * 0.5 * (family.low + family.high)
+        diagonal = np.abs(family.K0.diagonal()) + middle**2 * np.abs(family.M.diagonal())
+        self.scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        matrices = (family.M, family.D0, family.D1, family.K0, family.K1, family.K2)
+        self._parts = [scaled_on_both_sides(sp.csc_array(A), self.scale) for A in matrices]
+        self._sums = SparseSums(*self._parts)
+
+    def newton(self, z: complex, x: np.ndarray, a: complex, b: complex, c: float) -> tuple[complex, np.ndarray]:
+        """The eigenpair of Q(a z, b z + c) next to a value and vector (n,).
+
+        Inverse iteration: Q u = Q' v, z <- z - (v^H v)/(v^H u). A step that leads away from the start is not taken.
+        Tisseur and Meerbergen, SIAM Review 43 (2001) 235, section 5.
+        """
+        v = x / self.scale
+        for _ in range(_MOST_STEPS):
+            v = v / np.linalg.norm(v)
+            value, speed = a * z, b * z + c
+            try:
+                factor = self._sums.factor((value**2, value, value * speed, 1.0, speed, speed**2))
+            except ConvergenceError:
+                break  # Q is singular to the last bit: z is the eigenvalue
+            slopes = (2.0 * a * value, a, a * speed + b * value, 0.0, b, 2.0 * b * speed)
+            u = factor.solve(
+                sum(slope * (A @ v) for slope, A in zip(slopes, self._parts, strict=True) if slope and A.nnz)
+            )
+            step = 1.0 / np.vdot(v, u)
+            if abs(step) > _LONGEST_STEP * abs(z):
+                break
+            z = z - step
+            v = u
+            if abs(step) <= _LAST_STEP * abs(z):
+                break
+        return complex(z), v * self.scale
+
+
+def _polished(pencil: _Pencil, order: float, s: complex, x: np.ndarray, is_damped: bool) -> Synchronous | None:
     """The root of Im lambda(W) = p W next to a start; None where it leads elsewhere."""
+    if not is_damped:
+        s, x = pencil.newton(s, x, order, -1j, 0.0)
     speed = s.imag
     value = order * s
     v = x
     last: tuple[float, float] | None = None
     for _ in range(12):
-        D, K = family.at(speed)
-        quadratic = scaled(family.M, D, K, order * abs(speed))
-        z, v = newton(quadratic, value / quadratic.w0, v / quadratic.scale)
-        value = z * quadratic.w0
-        v = v * quadratic.scale
+        value, v = pencil.newton(value, v, 1.0, 0.0, speed)
         gap = value.imag - order * speed
-        if abs(gap) <= _CONVERGED * order * speed:
+        if abs(gap) <= (_CONVERGED if is_damped else _FOUND) * order * speed:
             break
         # Secant; the first step takes lambda as constant, and one as long as a third of the speed leads to another root.
         slope = -order if last is None or last[0] == speed else (gap - last[1]) / (speed - last[0])
@@ -198,6 +243,7 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
         speed -= step
     residual = abs(value.imag - order * speed) / (order * speed)
     if residual > BACK_SUBSTITUTED:
+        K = pencil.family.at(speed)[1]
         held = abs(np.vdot(v, K @ v))
         if held <= _FREE * float(np.abs(v) @ (abs(K) @ np.abs(v))):
             return None  # a free motion, whose stiffness is what rounding leaves of terms that cancel
