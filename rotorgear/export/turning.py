@@ -1,9 +1,7 @@
 """A gearbox whose carriers turn, at a moment of its motion: everything stands where the train has taken it.
 
 Where the carrier has gone on by an angle a, each shaft has turned by a times the ratio of their speeds, planets stand round by a,
-and what of their displacements follows the circle of pins is that of their new directions (`system/planets.py`):
-
-    p -> exp(-a T) p = (1 + (1 - cos a) T^2 - sin a T) p.
+and what of their displacements follows the circle of pins is that of their new directions (`solvers/time/sisters.py`).
 
 A vibration passes through all its phases while the pins are at one place, and is shown slower: from picture to picture go
 several periods, and in one that is shown the pins go on to the next place.
@@ -23,7 +21,8 @@ from rotorgear.model.layout.carriers import PlanetSet
 from rotorgear.model.model import Model
 from rotorgear.model.parts.frame import Frame
 from rotorgear.results.modal import NodeTable
-from rotorgear.system.planets import sister_turn, turning_carriers
+from rotorgear.solvers.time.sisters import sister_turn, taken_round
+from rotorgear.system.planets import turning_carriers
 
 # Kinds of parts whose points go round with their shaft; what holds them has a side that stands still.
 _TURNING = ("shaft", "stripe", "gear", "disk", "point mass")
@@ -77,11 +76,9 @@ class Turning:
         train = self.model.layout.train
         moved = np.array(shape)
         for planets in self.sets:
-            T = sister_turn(planets.angles)
-            a = angle * train.ratio(planets.shaft)
-            on = np.eye(len(T)) + (1.0 - math.cos(a)) * (T @ T) - math.sin(a) * T
             numbers = self._numbers(planets)
-            moved[numbers] = np.tensordot(on, shape[numbers], axes=1)
+            a = angle * train.ratio(planets.shaft)
+            moved[numbers] = taken_round(sister_turn(planets.angles), a, shape[numbers])
         return self._turned(angle), moved
 
     def _numbers(self, planets: PlanetSet) -> np.ndarray:

@@ -11,8 +11,9 @@ from rotorgear.elements.gear_mesh import face_strains
 from rotorgear.model.layout.carriers import PlanetSet
 from rotorgear.model.layout.state import MeshForce, contact_geometry
 from rotorgear.model.parts.carrier import MARK, written_name
+from rotorgear.solvers.time.sisters import sister_turn
 from rotorgear.system.groups import face_of
-from rotorgear.system.planets import sister_turn, turning_carriers
+from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import System
 
 

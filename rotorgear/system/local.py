@@ -22,7 +22,8 @@ from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.layout.state import MeshForce, contact_geometry
 from rotorgear.model.parts.carrier import written_name
 from rotorgear.model.parts.mesh import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.solvers.time.local_system import LocalSystem, Rotation, sisters_of
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation
+from rotorgear.solvers.time.sisters import sisters_of
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines, rotation_vector
 from rotorgear.system.groups import ElementGroup, face_of, mesh_damping, mesh_dofs

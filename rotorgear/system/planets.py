@@ -35,6 +35,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.carriers import PlanetSet
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.carrier import MARK, Carrier, written_name
+from rotorgear.solvers.time.sisters import sister_turn
 from rotorgear.system.dofs import DofMap
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.nodes import Nodes
@@ -167,11 +168,6 @@ def _changing(layout: Layout, planets: PlanetSet, why: str) -> AnalysisError:
         f"angle of a carrier that turns; seen from it they would not, but {why}. Take three or more equal ones, equally spaced, "
         f"or hold the carrier: speed_ratio = 0 of shafts.{planets.shaft}."
     )
-
-
-def sister_turn(angles: np.ndarray) -> np.ndarray:
-    """T (N, N), which turns a pattern of the first class over the planets on by a quarter, as the carrier's angle does."""
-    return np.asarray(2.0 / len(angles) * np.sin(angles[:, None] - angles[None, :]))
 
 
 def sister_places(layout: Layout, names: Iterable[str]) -> list[tuple[float, np.ndarray, np.ndarray]]:

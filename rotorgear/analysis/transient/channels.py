@@ -6,7 +6,7 @@ They are rows on q, v and a.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from rotorgear.analysis.common.points import motion_points, point_rows
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.time.arguments import Sisters
-from rotorgear.solvers.time.local_system import Observed, Records, Rotation, sisters_of, turned, turning_of
+from rotorgear.solvers.time.local_system import Observed, Records
+from rotorgear.solvers.time.sisters import sisters_of, turning_matrix
 from rotorgear.system.internal_loads import load_rows, read_loads
 from rotorgear.system.local import LocalModel
 from rotorgear.system.planets import sister_places
@@ -33,10 +34,9 @@ class Channels:
     units: tuple[str, ...]
     rows: dict[str, tuple[np.ndarray, np.ndarray]]
     constant: np.ndarray
-    sisters: Sisters = field(default_factory=sisters_of)
 
-    def values(self, records: Records, rotation: Rotation) -> np.ndarray:
-        """Values (r, p) at the recorded steps; `rotation` of the reference tells where planets that go round are."""
+    def values(self, records: Records) -> np.ndarray:
+        """Values (r, p) at the recorded steps, of planets that go round as if they stood where they began."""
         values = np.tile(self.constant, (len(records.t), 1))
         rows = self.rows
         if records.system.rates is not None:
@@ -45,7 +45,7 @@ class Channels:
             rows = {kind: (np.arange(len(self.names)), getattr(whole, kind)) for kind in "qvaF"}
         for kind, (which, Y) in rows.items():
             values[:, which] += records.F @ Y.T if kind == "F" else records.rows(kind, Y)
-        return turned(self.sisters, rotation.angle(records.t), values) if self.sisters.planets.size else values
+        return values
 
     def observed(self, n: int, m: int) -> Observed:
         """The channels as rows that integrators gather statistics of at every step, for n dofs and m local forces."""
@@ -95,7 +95,7 @@ def channels(local: LocalModel, speed: float) -> Channels:
         if which.size:
             rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
     names, units, _ = zip(*every, strict=True) if every else ((), (), ())
-    return Channels(names, units, rows, np.array([constant.get(name, 0.0) for name in names]), sisters)
+    return Channels(names, units, rows, np.array([constant.get(name, 0.0) for name in names]))
 
 
 def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray], float]]:
@@ -123,7 +123,7 @@ def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.
 
 def _see_where_planets_are(rows: list[dict[str, np.ndarray]], speed: float, sisters: Sisters) -> None:
     """Make the rates in the rows of planets those that they see as they go round: v - W T q, a - 2 W T v + (W T)^2 q."""
-    turning = speed * turning_of(sisters, len(rows))
+    turning = speed * turning_matrix(sisters, len(rows))
     for places, N in zip(sisters.place, sisters.planets, strict=True):
         own = places[:N]
         T = turning[np.ix_(own, own)]

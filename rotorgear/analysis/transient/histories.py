@@ -26,12 +26,10 @@ from rotorgear.solvers.time.local_system import (
     MotionState,
     Records,
     local_values,
-    sisters_of,
     state_at_rest,
-    turned,
 )
 from rotorgear.solvers.time.run import Schedule, run
-from rotorgear.system.planets import sister_places
+from rotorgear.solvers.time.sisters import turned
 
 # Records of a chunk at which stored energies are evaluated.
 _SAMPLES = 4
@@ -175,19 +173,17 @@ def run_task(
         for chunk in stream.begin(settings):
             _take_over(chunk, found, book)
     watched = np.ascontiguousarray(local.watched_vectors.T)
-    of_meshes = sisters_of(sister_places(task.local.system.layout, task.local.watched_names))
 
     def told(fraction: float, step: str) -> None:
         progress(fraction, f"{text}: {step}" if text else step)
 
     def receive(records: Records, state: MotionState) -> None:
-        part = {
-            "t": records.t,
-            "d": records.d,
-            "watched": turned(of_meshes, local.rotation.angle(records.t), records.rows("q", watched)),
-            "F": records.F,
-            "values": task.channels.values(records, local.rotation),
-        }
+        seen = [records.rows("q", watched), task.channels.values(records)]
+        if local.seen_sisters.planets.size:
+            # Planets that go round are told where they are.
+            moved = turned(local.seen_sisters, local.rotation.angle(records.t), np.hstack(seen))
+            seen = np.split(moved, [len(watched)], axis=1)
+        part = {"t": records.t, "d": records.d, "watched": seen[0], "F": records.F, "values": seen[1]}
         if text and found.parts and found.state.step <= boundary:
             # Of what does not count nobody asks.
             del found.parts[:]

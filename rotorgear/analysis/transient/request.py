@@ -22,8 +22,9 @@ from rotorgear.memory import free_memory
 from rotorgear.model.model import Model
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates, sisters_of
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Rotation, contact_rates
 from rotorgear.solvers.time.newmark import Newmark, held_by_contacts
+from rotorgear.solvers.time.sisters import sisters_of
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.planets import sister_places
 from rotorgear.system.system import System, flow_system

@@ -22,8 +22,8 @@ from rotorgear.solvers.time.local_system import (
     Records,
     Stepper,
     contact_rates,
-    turned,
 )
+from rotorgear.solvers.time.sisters import turned
 
 # Modal coordinates y by their parts, motions without stiffness and their rates, and the rest of the local forces, as states
 # name them.

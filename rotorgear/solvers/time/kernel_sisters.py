@@ -1,9 +1,4 @@
-"""Compiled: turns of what equal planets have alike, as their carrier goes round.
-
-Of a set of N sisters at directions psi_i, x(psi) = x_0 + x_c cos psi + x_s sin psi + (further classes) at the directions that the
-pins had at the start becomes what the planets have after the angle a: R(a) x, whose row i is x with its first class at psi_i + a.
-R' = -T R, with T of the first class alone; R(-a) is the transpose of R(a). See system/planets.py.
-"""
+"""Compiled: the turns R(a) and T of `sisters.py`, by the sums of the first class x_c cos psi + x_s sin psi over the sisters."""
 
 from __future__ import annotations
 
@@ -14,22 +9,29 @@ from rotorgear.solvers.time.kernel_time import ENERGIES, POWER_IN
 
 
 @compiled(entry=False)
+def first_class(sisters, k, x, begin):
+    """x_c and x_s of set k among the places of x from `begin` on."""
+    N = sisters.planets[k]
+    of_cosine = 0.0
+    of_sine = 0.0
+    for i in range(N):
+        value = x[begin + sisters.place[k, i]]
+        of_cosine += 2.0 / N * value * sisters.cosine[k, i]
+        of_sine += 2.0 / N * value * sisters.sine[k, i]
+    return of_cosine, of_sine
+
+
+@compiled(entry=False)
 def turn(sisters, angle, x, begin):
     """Turn the places of all sets in x, from `begin` on, by an angle of the reference; nothing else changes."""
     for k in range(sisters.planets.size):
-        N = sisters.planets[k]
         a = sisters.ratio[k] * angle
-        of_cosine = 0.0
-        of_sine = 0.0
-        for i in range(N):
-            value = x[begin + sisters.place[k, i]]
-            of_cosine += 2.0 / N * value * sisters.cosine[k, i]
-            of_sine += 2.0 / N * value * sisters.sine[k, i]
+        of_cosine, of_sine = first_class(sisters, k, x, begin)
         cosine = np.cos(a) - 1.0
         sine = np.sin(a)
         change_cosine = cosine * of_cosine + sine * of_sine
         change_sine = cosine * of_sine - sine * of_cosine
-        for i in range(N):
+        for i in range(sisters.planets[k]):
             x[begin + sisters.place[k, i]] += change_cosine * sisters.cosine[k, i] + change_sine * sisters.sine[k, i]
 
 
@@ -37,15 +39,9 @@ def turn(sisters, angle, x, begin):
 def add_going_round(sisters, speed, x, rate):
     """Subtract W T x from the rate: of the places, the rate that the planets themselves see."""
     for k in range(sisters.planets.size):
-        N = sisters.planets[k]
         W = sisters.ratio[k] * speed
-        of_cosine = 0.0
-        of_sine = 0.0
-        for i in range(N):
-            value = x[sisters.place[k, i]]
-            of_cosine += 2.0 / N * value * sisters.cosine[k, i]
-            of_sine += 2.0 / N * value * sisters.sine[k, i]
-        for i in range(N):
+        of_cosine, of_sine = first_class(sisters, k, x, 0)
+        for i in range(sisters.planets[k]):
             rate[sisters.place[k, i]] -= W * (of_cosine * sisters.sine[k, i] - of_sine * sisters.cosine[k, i])
 
 

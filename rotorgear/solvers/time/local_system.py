@@ -9,7 +9,7 @@ forces act as B R(a)^T F (kernel_sisters.py).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -21,6 +21,7 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.time.arguments import Carried, Gathered, Kept, Sisters
 from rotorgear.solvers.time.local_forces import LocalForces
+from rotorgear.solvers.time.sisters import sisters_of, turned, turning_matrix
 from rotorgear.solvers.time.statistics import blank_gathered
 
 
@@ -108,52 +109,6 @@ class Changes(Protocol):
         """Stiffness (n, n) and constant load (n,) at a speed in rad/s and an acceleration in rad/s^2."""
 
 
-def sisters_of(sets: Iterable[tuple[float, np.ndarray, np.ndarray]] = ()) -> Sisters:
-    """Sets of sisters as compiled loops read them.
-
-    Args:
-        sets: speed of a carrier over that of the reference, directions (N,) of its pins at the start in rad, and places (k, N) in
-            an array, each row the same of all planets.
-    """
-    rows = [(ratio, angles, row) for ratio, angles, places in sets for row in np.reshape(places, (-1, len(angles)))]
-    most = max((len(angles) for _, angles, _ in rows), default=1)
-    place = np.zeros((len(rows), most), dtype=np.int64)
-    cosine = np.zeros((len(rows), most))
-    sine = np.zeros((len(rows), most))
-    for k, (_, angles, row) in enumerate(rows):
-        N = len(angles)
-        place[k, :N] = row
-        cosine[k, :N] = np.cos(angles)
-        sine[k, :N] = np.sin(angles)
-    planets = np.array([len(angles) for _, angles, _ in rows], dtype=np.int64)
-    return Sisters(place, planets, np.array([ratio for ratio, _, _ in rows], dtype=float), cosine, sine)
-
-
-def turned(sisters: Sisters, angle: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """R(a) x of rows x (r, p) at angles (r,) of the reference in rad."""
-    found = np.array(x, dtype=float)
-    for k, N in enumerate(sisters.planets):
-        place = sisters.place[k, :N]
-        cosine = sisters.cosine[k, :N]
-        sine = sisters.sine[k, :N]
-        C, S = (2.0 / N * (x[:, place] @ wave)[:, None] for wave in (cosine, sine))
-        a = sisters.ratio[k] * np.asarray(angle)[:, None]
-        less = np.cos(a) - 1.0
-        found[:, place] += (less * C + np.sin(a) * S) * cosine + (less * S - np.sin(a) * C) * sine
-    return found
-
-
-def turning_of(sisters: Sisters, size: int) -> np.ndarray:
-    """W T (size, size) for unit speed of the reference: what planets see as a rate beside x' is -W T x."""
-    found = np.zeros((size, size))
-    for k, N in enumerate(sisters.planets):
-        place = sisters.place[k, :N]
-        cosine = sisters.cosine[k, :N]
-        sine = sisters.sine[k, :N]
-        found[np.ix_(place, place)] = 2.0 * sisters.ratio[k] / N * (np.outer(sine, cosine) - np.outer(cosine, sine))
-    return found
-
-
 @dataclass(frozen=True)
 class LocalSystem:
     """n degrees of freedom with m local displacements d = B^T q, and p watched ones W^T q that no force acts on.
@@ -233,7 +188,7 @@ class LocalSystem:
         rate = np.asarray(self.B.T @ v, dtype=float)
         if not self.sisters.planets.size:
             return d, rate
-        rate = rate - float(self.rotation.speed(np.array(t))) * turning_of(self.sisters, self.m) @ d
+        rate = rate - float(self.rotation.speed(np.array(t))) * turning_matrix(self.sisters, self.m) @ d
         d, rate = turned(self.sisters, np.full(2, self.rotation.angle(np.array(t))), np.array([d, rate]))
         return d, rate
 

@@ -20,7 +20,8 @@ from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.solvers.time.arguments import Kept, NewmarkStep, SparseRows, Triangles
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper, turning_of
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, MotionState, Stepper
+from rotorgear.solvers.time.sisters import turning_matrix
 
 # Of contacts over a step, the share that dampers to ground have: a smaller one loses the digits to which forces are found.
 _FELT = 1e-5
@@ -113,7 +114,7 @@ class NewmarkStepper(Stepper):
         Ad = by_q * h**2 * condensed
         Av = by_v * h * condensed
         if system.sisters.planets.size:
-            Av = Av - speed * turning_of(system.sisters, system.m) @ Ad
+            Av = Av - speed * turning_matrix(system.sisters, system.m) @ Ad
         first, column, (K, D_nz, M) = on_one_pattern(system.K, D, system.M)
         lu = factor._lu
         observed = system.observed_rows

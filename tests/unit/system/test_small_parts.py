@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.time.sisters import sister_turn
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.damped_range import all_damped, damped_up_to, undamped_above
-from rotorgear.system.planets import PinLoad, sister_turn
+from rotorgear.system.planets import PinLoad
 
 
 def sized(n: int, coarsest: int) -> Any:
@@ -68,22 +69,22 @@ def test_the_load_of_a_planet_on_its_pin_grows_with_its_way_out() -> None:
     """m on a spring k at radius r: (k - m W^2) d = m W^2 r, f = m W^2 (r + d) = k d; none is held above sqrt(k/m)."""
     m, k, r = 2.0, 8e6, 0.15
     planets: Any = SimpleNamespace(radius=r, planets=("p#1", "p#2", "p#3"), carrier="k", shaft="c")
-    load = PinLoad(planets, 4, np.array([[k]]), np.array([[-m]]), np.array([m]), m)
+    # f r (1 - e e') of three arms at 120 deg on the rotations of the carrier.
+    arms = [np.array([np.cos(a), np.sin(a), 0.0]) for a in 2.0 * np.pi * np.arange(3) / 3]
+    lever = np.sum([r * (np.eye(3) - np.outer(e, e)) for e in arms], axis=0)
+    load = PinLoad(planets, 4, lever[None], np.array([[k]]), np.array([[-m]]), np.array([m]), m)
     for W in (10.0, -300.0, 1500.0):
         way = m * W**2 * r / (k - m * W**2)
         assert load.force(W) == pytest.approx(m * W**2 * (r + way), rel=1e-12)
         assert load.force(W) == pytest.approx(k * way, rel=1e-12)
     with pytest.raises(AnalysisError, match="centrifugal load grows faster"):
         load.force(2100.0)
-    # f r (1 - e e') of three arms at 120 deg on the rotations of the carrier.
-    arms = [np.array([np.cos(a), np.sin(a), 0.0]) for a in 2.0 * np.pi * np.arange(3) / 3]
-    lever = sum(r * (np.eye(3) - np.outer(e, e)) for e in arms)
     square = load.group_per_square(0.25).matrices.modulus_per_square
     assert square is not None
     assert square[0] == pytest.approx(m * r * lever, abs=1e-12)
-    beyond = load.group(0.25, 4000.0).matrices.modulus
+    beyond = load.group(load.beyond(0.25 * 4000.0)).matrices.modulus
     assert beyond is not None
     assert beyond[0] == pytest.approx((load.force(1000.0) - m * 1000.0**2 * r) * lever, abs=1e-6)
     # A planet that stays on its pin.
     empty = np.zeros((0, 0))
-    assert PinLoad(planets, 4, empty, empty, np.zeros(0), m).force(-20.0) == pytest.approx(400.0 * m * r)
+    assert PinLoad(planets, 4, lever[None], empty, empty, np.zeros(0), m).force(-20.0) == pytest.approx(400.0 * m * r)
