@@ -155,6 +155,28 @@ class OrbitsResult(ModelResult, kind="orbits"):
         default_factory=partial(np.zeros, (0, 0)),
     )
 
+    load_points: tuple[str, ...] = of("names of the points that read a load", "", "gauge", default=(), kw_only=True)
+    load_unit: tuple[str, ...] = of("unit of the load that a point reads", "", "gauge", default=(), kw_only=True)
+    load_statistics: np.ndarray = of(
+        "mean, rms about it, largest and smallest load inside a shaft or coupling",
+        "N, N m",
+        "point",
+        "gauge",
+        "load_statistic",
+        default_factory=partial(np.zeros, (0, 0, 4)),
+        kw_only=True,
+    )
+    load_error: np.ndarray = of(
+        "estimated errors of these loads",
+        "N, N m",
+        "point",
+        "gauge",
+        "load_statistic",
+        note="; `null` beside a fold",
+        default_factory=partial(np.zeros, (0, 0, 4)),
+        kw_only=True,
+    )
+
     @derived("real part of the Floquet multipliers", "", "point", "multiplier", note=", largest first")
     def multiplier_real(self) -> np.ndarray:
         """Of each point."""
@@ -254,6 +276,22 @@ class OrbitsResult(ModelResult, kind="orbits"):
         forces = ("F mean\nN", "error", "F max\nN", "error", "loss\n%", "error") if self.contact else ()
         heads = (self._head(), "stable", "|mu|", f"p-p\nu{self.shown_unit}", "error", *forces)
         yield grid(rows, *heads, left=0, caption=f"Branch {branch.name}", tight=True)
+        yield from self._loads(number)
+
+    def _loads(self, number: int) -> Iterator[Block]:
+        """Loads inside shafts and couplings along a branch: the mean, rms about it, and the larger end, with its error."""
+        own = np.flatnonzero(self.branch == number)
+        for k, (name, unit) in enumerate(zip(self.load_points, self.load_unit, strict=True)):
+            rows = []
+            for i in own[_spread(len(own))]:
+                mean, rms, largest, smallest = (float(x) for x in self.load_statistics[i, k])
+                end = 2 if abs(largest) >= abs(smallest) else 3
+                error = float(self.load_error[i, k, end]) / (max(abs(largest), abs(smallest)) or np.nan)
+                cells = (f"{x:.5g}" for x in (mean, rms, largest, smallest))
+                rows.append((self._value(float(self.value[i])), *cells, written(error, error_words)))
+            yield from ("", f"Load at {name}")
+            heads = (self._head(), f"mean\n{unit}", f"rms\n{unit}", f"largest\n{unit}", f"smallest\n{unit}", "error")
+            yield grid(rows, *heads, left=0, caption=f"Load at {name}, branch {self.branches[number].name}")
 
     def _error(self, point: int, number: int, what: str, size: float) -> str:
         """Estimated error of a statistic of the contact of that number, or of the place shown, relative to a size, in words."""

@@ -136,6 +136,11 @@ def test_the_keys_of_orbits_are_documented(tmp_path: Path) -> None:
         "place_unit": ["m"],
         "place_extremes": [[[0.0, 1.0]]],
         "place_peak_to_peak": [[1.0]],
+        # Nor does a point read a load.
+        "load_points": ["torque"],
+        "load_unit": ["N m"],
+        "load_statistics": [[[0.0]]],
+        "load_error": [[[0.0]]],
     }
     extremes = {"approach_extremes_m": [[0.0, 1.0]], "place_extremes": [[0.0, 1.0]]}
     point = {"kind": "fold", "value": 1.0, "branch": 0, "period_s": 1.0, "multiplier_real": [1.0]}

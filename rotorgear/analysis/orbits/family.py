@@ -25,6 +25,7 @@ from rotorgear.solvers.periodic.plant import Plant, Plants
 from rotorgear.solvers.periodic.samples import MotionCycle
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
+from rotorgear.system.internal_loads import LoadRows, load_rows, read_loads
 from rotorgear.system.local import LocalModel
 
 # Periods of the fastest mesh that a motion may take at most: unknowns grow with them.
@@ -116,6 +117,9 @@ class SystemFamily:
             or any(column.kind != PRESCRIBED for column in part.law.columns())
         ]
         self.parts = tuple(self.local.parts[i] for i in self._acting)
+        # Points that read a load, with its unit.
+        self.loads = read_loads(first)
+        self._rows = load_rows(self.local.system) if self.loads else None
 
     def _model_at(self, shares: Sequence[float]) -> Model:
         values = [one.at(share) for one, share in zip(self.ranges, shares, strict=True)]
@@ -125,6 +129,15 @@ class SystemFamily:
         local = prepare(self._model_at(shares), None, self._elements).local
         ratio = local.system.model.damping.modal_ratio
         return replace(local, local=with_modal_damping(local.local, ratio)) if ratio else local
+
+    def load_rows(self, p: float) -> LoadRows | None:
+        """The rows of the loads inside shafts and couplings with the first range at p; None where no point reads one."""
+        if self._rows is None:
+            return None
+        shares = self.shares_at(p)
+        turns_alone = self._turning == 0
+        rows = self._rows if turns_alone or not any(shares) else load_rows(self._built(shares).system)
+        return rows.at(self.plant(p).speed)
 
     def system(self, shares: Sequence[float]) -> LocalSystem:
         """The local system at shares of the ranges, what does not excite at its mean."""

@@ -27,8 +27,9 @@ from rotorgear.analysis.orbits.follow import (
     special_curves,
 )
 from rotorgear.analysis.orbits.kept import AnyOrbits, packed, remembering, unpacked
+from rotorgear.analysis.orbits.loads import LOAD_STATISTICS, load_harmonics, load_statistics
 from rotorgear.analysis.orbits.verify import first_node, settled, verified
-from rotorgear.analysis.transient.notes import left_out_in_time, unread_loads
+from rotorgear.analysis.transient.notes import damped_at_nodes, left_out_in_time
 from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model, model_hash
@@ -109,6 +110,7 @@ METHODS = ("auto", "harmonic balance", "shooting")
 # How often harmonics and instants are doubled to reach an accuracy.
 _DOUBLINGS = 2
 # Share of the range behind the first solution where it is told what the branch will take.
+_NO_LOADS = np.zeros((0, len(LOAD_STATISTICS)))
 _SEEN = 0.1
 # What special points, both ends and error estimates take beside the points.
 _BESIDE = 1.25
@@ -222,6 +224,8 @@ def orbits(
         place=outputs.place,
         place_unit=outputs.place_unit,
         statistic=STATISTICS,
+        load_points=tuple(family.loads),
+        load_unit=tuple(family.loads.values()),
         **fields,  # type: ignore[arg-type]
         curves=curves,
         verifications=checks,
@@ -235,7 +239,7 @@ def orbits(
         status=short or "success",
         left_out=(
             *left_out_in_time(family.local, plant.speed, contacts_only=not outputs.place),
-            *unread_loads(model),
+            *damped_at_nodes(model),
             *family.notes,
             *_modes_left_out(problem),
         ),
@@ -433,10 +437,15 @@ def _columns_of(
         better = refined(orbits, finer, node)
         error = np.full(found.values.shape, np.nan)
         place_error = np.full(len(moved), np.nan)
+        rows = family.load_rows(node.p)
+        loads = load_statistics(cycle.period, load_harmonics(plant, rows, cycle)) if rows else _NO_LOADS
+        load_error = np.full(loads.shape, np.nan)
         if better is not None:
             fine = finer.cycle(better, node.p)
             error = compared(found.values, statistics_of(fine, plant, outputs).values, found.scales, 1.0, _LUCK)
             place_error = np.abs(np.ptp(moved, axis=1) - np.ptp(outputs.extremes(fine)[1], axis=1))
+            if rows:
+                load_error = np.abs(load_statistics(fine.period, load_harmonics(plant, rows, fine)) - loads)
         # Harmonics of the base period: of a motion of k periods every k-th.
         force = cycle.force[:: branch.periods][: harmonics + 1]
         displacement = cycle.displacement[:: branch.periods][: harmonics + 1]
@@ -460,6 +469,8 @@ def _columns_of(
                 "place_extremes": moved,
                 "place_error": place_error,
                 "place_harmonics": displacement[:, outputs.place_column],
+                "load_statistics": loads,
+                "load_error": load_error,
             }
         )
     return {name: np.array([point[name] for point in points]) for name in points[0]}
