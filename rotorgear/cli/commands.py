@@ -171,7 +171,13 @@ _GROUPS = {
             shows=("json", "save", "plot", "vtk", "uff"),
             options={
                 "waterfall": Option("Draw spectra over speed to this PNG, SVG or PDF.", "path"),
-                "at": Option("Mesh, bearing or point of --waterfall (default: mesh of the largest force).", "text"),
+                "order_map": Option(
+                    "Draw levels over speed and frequency, and the overall level, to this file.", "path"
+                ),
+                "at": Option(
+                    "Mesh, bearing or point of --waterfall and --order-map (default: mesh of the largest force).",
+                    "text",
+                ),
                 "laws": _LAWS,
             },
             table=("laws",),

@@ -19,7 +19,7 @@ from rotorgear.extras import require
 from rotorgear.files.write import WriteError, check_output
 
 # Options that name what is written: files, and folders where a name has no ending.
-_OUTPUTS = ("json", "save", "plot", "waterfall", "vtk", "uff", "csv", "output", "state_space", "matrices")
+_OUTPUTS = ("json", "save", "plot", "waterfall", "order_map", "vtk", "uff", "csv", "output", "state_space", "matrices")
 
 
 class Call:
@@ -34,9 +34,10 @@ class Call:
             if self["plot"].suffix:
                 self._require_picture(self["plot"])
             require(*(("pyvista", "A picture of a mode") if command.name == "modal" else ("matplotlib", "A plot")))
-        if self["waterfall"] is not None:
-            self._require_picture(self["waterfall"])
-            require("matplotlib", "A plot")
+        for name in ("waterfall", "order_map"):
+            if self[name] is not None:
+                self._require_picture(self[name])
+                require("matplotlib", "A plot")
         if self["vtk"] is not None:
             require("pyvista", "VTK output")
         if self["output"] is not None and command.name in ("update", "optimise"):
@@ -135,7 +136,11 @@ class Call:
     def _check_names(self, model: Any) -> None:
         """Refuse, before anything is computed, names of what is shown of a result that the model has not."""
         names = [*model.meshes, *model.bearings, *model.points]
-        if self["waterfall"] is not None and self["at"] is not None and self["at"].rpartition(".")[2] not in names:
+        if (
+            (self["waterfall"] or self["order_map"])
+            and self["at"] is not None
+            and self["at"].rpartition(".")[2] not in names
+        ):
             known = ", ".join(names) or "none"
             raise AnalysisError(
                 f"--at: '{self['at']}' is no mesh, bearing or point of the model: expected one of {known}"

@@ -60,6 +60,8 @@ def show(
         _draw(call, result if drawn is None else drawn, call["plot"])
     if call["waterfall"]:
         say(f"wrote {rg.plot.save(rg.plot.waterfall(result, at=call['at']), call['waterfall'])}")
+    if call["order_map"]:
+        say(f"wrote {rg.plot.save(rg.plot.order_map(result, at=call['at']), call['order_map'])}")
     if call["vtk"]:
         _write_vtk(call, result, call["vtk"])
     if call["uff"]:

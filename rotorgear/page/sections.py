@@ -12,6 +12,7 @@ from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.note import sentences
 from rotorgear.page.contents import MODES, SECTIONS, Contents, error_of
 from rotorgear.page.figures import Painter, draw_errors, draw_unbalance, svg_of
+from rotorgear.plots.response import order_map
 from rotorgear.results.casing import CasingRow
 from rotorgear.results.mesh import MeshResult
 from rotorgear.results.table import (
@@ -188,7 +189,12 @@ def _response(made: dict[str, Any]) -> Section:
         section.words.append("Damping: that of the model alone.")
     if not result.damping_ratio:
         section.words.append("No modal damping was added: peaks may be far too high. --modal-damping 0.02 adds 2 %.")
-    return section.draw("Amplitudes over speed.", result.plot(), "Run-up")
+    section.draw("Amplitudes over speed.", result.plot(), "Run-up")
+    if len(result.speeds) > 1 and (result.contact_mesh or result.bearings):
+        section.draw(
+            "Levels over speed and frequency, an order a ray; above, the overall level.", order_map(result), "Orders"
+        )
+    return section
 
 
 def _teeth(made: dict[str, Any], names: list[str]) -> Section:

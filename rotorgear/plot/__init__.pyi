@@ -24,6 +24,7 @@ from rotorgear.plots.time_comparison import compare_time as compare_time
 
 # More of one result.
 from rotorgear.plots.response import waterfall as waterfall
+from rotorgear.plots.response import order_map as order_map
 from rotorgear.plots.transient import mesh_forces as mesh_forces
 from rotorgear.plots.transient import transmission_error as transmission_error
 from rotorgear.plots.transient import spectra as spectra

@@ -172,6 +172,76 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
     return axis
 
 
+# Levels of an order map reach so far below the highest, dB.
+_DEEP = 60.0
+# Reference of a level by its unit: ISO 1683 for forces and accelerations; there is none for the others.
+_REFERENCES = {"N": (1e-6, "1 uN"), "m/s$^2$": (1e-6, "1 um/s$^2$")}
+
+
+def order_map(result: ResponseResult, fig: Any = None, *, at: str | None = None) -> np.ndarray:
+    """Draw the levels of one quantity over speed and frequency, an order a ray, and above them the overall level.
+
+    A level is 20 log10 of the effective value, amplitude over the root of two, over the reference that the bar names; the overall
+    level is that of all orders together.
+
+    Args:
+        result: a run-up.
+        fig: figure to draw on; a new one for None.
+        at: as in `waterfall`.
+
+    Returns:
+        Two axes: the overall level, and the map.
+
+    Raises:
+        AnalysisError: no such mesh, bearing or point, or a single speed. MissingExtraError: matplotlib is not installed.
+    """
+    if len(result.speeds) < 2:
+        raise AnalysisError("an order map needs more than one speed")
+    title, unit, size = waterfall_of(result, at)
+    reference, words = _REFERENCES.get(unit, (1.0, f"1 {unit}"))
+    rms = size / np.sqrt(2.0)
+    levels = _decibel(rms, reference)
+    overall = _decibel(np.sqrt(np.sum(rms**2, axis=0)), reference)
+    top = float(levels.max())
+    rpm = np.abs(result.speed_rpm)
+    figure = figure_for(fig, (10.0, 7.4), f"{result.model.title}\n{title}")
+    above, axis = figure.subplots(2, 1, sharex=True, height_ratios=(1, 4))
+    above.plot(rpm, overall, color=COLOURS[0], lw=1.4)
+    above.set_ylabel("overall, dB")
+    plain_axis(above)
+    from matplotlib import colormaps
+    from matplotlib.collections import LineCollection
+
+    points = np.stack([np.broadcast_to(rpm, result.frequency_hz.shape), result.frequency_hz], axis=-1)
+    segments = np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 2)
+    middle = (0.5 * (levels[:, :-1] + levels[:, 1:])).ravel()
+    loudest = np.argsort(middle)  # the strongest orders above the others
+    lines = LineCollection(list(segments[loudest]), array=middle[loudest], cmap="viridis", lw=2.6, capstyle="round")
+    lines.set_clim(top - _DEEP, top)
+    axis.set_facecolor(colormaps["viridis"](0.0))
+    axis.add_collection(lines)
+    shown = levels.max(axis=1) > top - _DEEP
+    axis.set_xlim(float(rpm.min()), float(rpm.max()))
+    axis.set_ylim(0.0, 1.03 * float(result.frequency_hz[shown].max()))
+    operating = result.model.operating_speed
+    for one, colour in ((above, GREY), (axis, "white")):
+        if operating and rpm.min() <= abs(operating) * RPM_PER_RAD_S <= rpm.max():
+            one.axvline(abs(operating) * RPM_PER_RAD_S, color=colour, lw=0.9, ls="--")
+    edge = -np.inf
+    for order in np.flatnonzero(shown)[np.argsort(result.frequency_hz[shown, -1])]:
+        height = float(result.frequency_hz[order, -1]) / axis.get_ylim()[1]
+        if height - edge >= _LABELS_APART:
+            edge = height
+            beside(axis, result.orders[order], (rpm[-1], result.frequency_hz[order, -1]), (4, -2))
+    name_axes(axis, label(result, "speeds"), "frequency, Hz")
+    figure.colorbar(lines, ax=[above, axis], label=f"level in dB re {words} (effective value)", pad=0.02, fraction=0.04)
+    return np.array([above, axis])
+
+
+def _decibel(values: np.ndarray, reference: float) -> np.ndarray:
+    return np.asarray(20.0 * np.log10(np.maximum(values, 1e-30) / reference))
+
+
 def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.ndarray]:
     """Title, unit and amplitudes (o, s) of a mesh, a bearing or a point."""
     if at is None:

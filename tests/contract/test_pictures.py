@@ -23,7 +23,7 @@ PICTURES = {
     "campbell": ("campbell",),
     "critical_map": ("critical_map",),
     "static": ("static",),
-    "response": ("response", "waterfall"),
+    "response": ("response", "waterfall", "order_map"),
     "frf": ("frf",),
     "bearing": ("bearing",),
     "gear": ("gear",),

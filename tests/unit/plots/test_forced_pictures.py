@@ -158,3 +158,25 @@ def test_statics_of_points_alone_have_a_picture_that_says_so() -> None:
     chain = rg.load(ROOT / "models" / "torsion_chain.toml").with_({"loads": twist})
     (axis,) = rg.plot.static(rg.static(chain))
     assert [text.get_text() for text in axis.texts] == ["no meshes, no bearings, and no shaft with a length"]
+
+
+def test_an_order_map_has_the_levels_of_the_orders_and_of_all_together(run_up: rg.ResponseResult) -> None:
+    _, _, size = waterfall_of(run_up, "stage_2a")
+    above, axis = rg.plot.order_map(run_up, at="stage_2a")
+    rms = size / np.sqrt(2.0)
+    assert np.allclose(above.lines[0].get_ydata(), 20.0 * np.log10(np.sqrt((rms**2).sum(axis=0)) / 1e-6))
+    (lines,) = (one for one in axis.collections if hasattr(one, "get_segments"))
+    assert lines.get_clim()[1] == pytest.approx(20.0 * np.log10(rms.max() / 1e-6))
+    # Each piece lies on the ray of its order: its level is the mean of those at its ends.
+    order, at = np.unravel_index(int(np.argmax(size)), size.shape)
+    level = 20.0 * np.log10(rms / 1e-6)
+    found = [
+        value
+        for value, piece in zip(lines.get_array(), lines.get_segments(), strict=True)
+        if np.any(np.all(np.isclose(piece, (abs(run_up.speed_rpm[at]), run_up.frequency_hz[order, at])), axis=1))
+    ]
+    near = [0.5 * (level[order, at] + level[order, k]) for k in (at - 1, at + 1) if 0 <= k < size.shape[1]]
+    assert sorted(found) == pytest.approx(sorted(near))
+    assert any("re 1 uN" in one.get_ylabel() for one in axis.figure.axes)
+    with pytest.raises(rg.AnalysisError, match="no mesh, bearing or point"):
+        rg.plot.order_map(run_up, at="nowhere")
