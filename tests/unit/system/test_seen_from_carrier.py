@@ -122,7 +122,7 @@ def transition(angles: tuple[float, ...], more: str) -> np.ndarray:
     return la.eigvals(found.y[:, -1].reshape(2 * n, 2 * n))
 
 
-@pytest.mark.parametrize(("angles", "more"), [((0.0, np.pi), ""), (UNEVEN, OTHER)])
+@pytest.mark.parametrize(("angles", "more"), [pytest.param((0.0, np.pi), "", marks=pytest.mark.long), (UNEVEN, OTHER)])
 def test_modes_are_those_of_the_state_transition_over_a_turn(angles: tuple[float, ...], more: str) -> None:
     model = rg.loads(stage(angles, more))
     speed = CARRIER / float(model.layout.train.ratio("carrier"))
@@ -138,13 +138,13 @@ def test_modes_are_those_of_the_state_transition_over_a_turn(angles: tuple[float
 
 def test_a_campbell_diagram_has_the_frequencies_of_modes_at_each_speed_and_lines_of_meshes() -> None:
     model = rg.loads(stage((0.0, np.pi), ""))
-    speeds = [300.0, 310.0]
-    diagram = rg.campbell(model, speeds=speeds, modes=12, mesh_orders=(1,), error_estimate=False)
+    speeds = [300.0, 305.0]
+    diagram = rg.campbell(model, speeds=speeds, modes=8, mesh_orders=(1,), error_estimate=False)
     for k, speed in enumerate(speeds):
         found = rg.modal(model, speed=speed, modes=13)
-        own = found.frequency_hz[~found.rigid & (found.frequency_hz > 0.0)][:10]
+        own = found.frequency_hz[~found.rigid & (found.frequency_hz > 0.0)][:7]
         told = np.sort(diagram.frequency_hz[k])
-        assert np.abs(told[:, None] - own[None, :]).min(axis=0) == pytest.approx(np.zeros(10), abs=1e-6 * own[0])
+        assert np.abs(told[:, None] - own[None, :]).min(axis=0) == pytest.approx(np.zeros(7), abs=1e-6 * own[0])
     assert {line.kind for line in diagram.lines} == {"mesh"}
     assert diagram.carrier_frequency_hz == {}
 
