@@ -113,6 +113,7 @@ from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
 from rotorgear.export.uff import write_uff as write_uff
+from rotorgear.export.spreadsheet import write_xlsx as write_xlsx
 from rotorgear.export.matrices import write_state_space as write_state_space
 from rotorgear.export.matrices import write_matrices as write_matrices
 from rotorgear.export.matrices import read_matrices as read_matrices

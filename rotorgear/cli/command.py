@@ -25,6 +25,7 @@ SHOWS = {
     "vtk": Option("Write the result for ParaView (VTK) into this folder.", "path"),
     "uff": Option("Write a universal file (UFF) for modal-test programs.", "path"),
     "csv": Option("Write the points as a table (CSV).", "path"),
+    "xlsx": Option("Write the tables of the result as a workbook (XLSX), a sheet each.", "path"),
     "output": Option("", "path", flags=("-o", "--output")),
 }
 # Arguments of verbs that work in blocks, and the options that stand for them.

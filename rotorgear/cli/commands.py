@@ -112,7 +112,7 @@ _GROUPS = {
         Command(
             "modal",
             "Natural frequencies and mode shapes, at rest or at a speed",
-            shows=("json", "save", "plot", "vtk", "uff"),
+            shows=("json", "xlsx", "save", "plot", "vtk", "uff"),
             hidden=("error_estimate", "shapes"),
             options={
                 "rig": _RIG,
@@ -132,7 +132,7 @@ _GROUPS = {
         Command(
             "campbell",
             "Modes over speed: crossings, margins, whirl, stability",
-            shows=("json", "save", "plot", "vtk"),
+            shows=("json", "xlsx", "save", "plot", "vtk"),
             hidden=("error_estimate",),
             options={
                 "sidebands": Option(least=0),
@@ -148,7 +148,7 @@ _GROUPS = {
         Command(
             "critical",
             "Critical speeds; with --map over support stiffness",
-            shows=("json", "save", "plot"),
+            shows=("json", "xlsx", "save", "plot"),
             options={
                 "damped": Option(flags=("--damped/--undamped",)),
                 "laws": _LAWS,
@@ -161,14 +161,14 @@ _GROUPS = {
         Command(
             "static",
             "Deflections, forces, load sharing at the mean load",
-            shows=("json", "save", "plot", "vtk"),
+            shows=("json", "xlsx", "save", "plot", "vtk"),
             options={"sensitivity": Option("Also list the sensitivities of the load shares of the branches.", "flag")},
             table=("sensitivity",),
         ),
         Command(
             "response",
             "Run-up: forced vibration by order and speed",
-            shows=("json", "save", "plot", "vtk", "uff"),
+            shows=("json", "xlsx", "save", "plot", "vtk", "uff"),
             options={
                 "waterfall": Option("Draw spectra over speed to this PNG, SVG or PDF.", "path"),
                 "order_map": Option(
@@ -185,14 +185,14 @@ _GROUPS = {
         Command(
             "frf",
             "Frequency responses between places",
-            shows=("json", "save", "plot", "uff"),
+            shows=("json", "xlsx", "save", "plot", "uff"),
             options={"quantity": Option("receptance, mobility or accelerance.", "text", "receptance"), "laws": _LAWS},
             table=("quantity", "laws"),
             picture=("quantity",),
             body="bodies.frf",
         ),
-        Command("standards", "Rules of rotor standards with values and verdicts", shows=("json", "save")),
-        Command("scatter", "Bands of frequencies and margins where numbers scatter", shows=("json", "plot")),
+        Command("standards", "Rules of rotor standards with values and verdicts", shows=("json", "xlsx", "save")),
+        Command("scatter", "Bands of frequencies and margins where numbers scatter", shows=("json", "xlsx", "plot")),
         Command(
             "optimise",
             "Change numbers so that excitations stay off the modes",
@@ -242,7 +242,9 @@ _GROUPS = {
         ),
     ),
     "Teeth and parts": (
-        Command("gear", "Gear sheet: geometry, measures, contact ratios", shows=("json", "plot"), picture=("mesh",)),
+        Command(
+            "gear", "Gear sheet: geometry, measures, contact ratios", shows=("json", "xlsx", "plot"), picture=("mesh",)
+        ),
         Command(
             "mesh",
             "Stiffness, transmission error, pressure over a mesh cycle",
@@ -273,7 +275,7 @@ _GROUPS = {
         Command(
             "bearing",
             "Sheet of one bearing at the gearbox's loads",
-            shows=("json", "save", "plot"),
+            shows=("json", "xlsx", "save", "plot"),
             positional=("name",),
         ),
         Command(

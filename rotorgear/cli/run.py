@@ -19,7 +19,20 @@ from rotorgear.extras import require
 from rotorgear.files.write import WriteError, check_output
 
 # Options that name what is written: files, and folders where a name has no ending.
-_OUTPUTS = ("json", "save", "plot", "waterfall", "order_map", "vtk", "uff", "csv", "output", "state_space", "matrices")
+_OUTPUTS = (
+    "json",
+    "save",
+    "plot",
+    "waterfall",
+    "order_map",
+    "vtk",
+    "uff",
+    "csv",
+    "xlsx",
+    "output",
+    "state_space",
+    "matrices",
+)
 
 
 class Call:
@@ -38,6 +51,8 @@ class Call:
             if self[name] is not None:
                 self._require_picture(self[name])
                 require("matplotlib", "A plot")
+        if self["xlsx"] is not None:
+            require("openpyxl", "A workbook")
         if self["vtk"] is not None:
             require("pyvista", "VTK output")
         if self["output"] is not None and command.name in ("update", "optimise"):

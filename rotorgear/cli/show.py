@@ -67,6 +67,8 @@ def show(
     if call["uff"]:
         modes = None if call["shapes"] is None else _shapes(call, result)
         say(f"wrote {rg.write_uff(result, call['uff'], modes=modes)}")
+    if call["xlsx"]:
+        say(f"wrote {rg.write_xlsx(result, call['xlsx'])}")
     if call["csv"]:
         from rotorgear.export.tables import write_csv
 
