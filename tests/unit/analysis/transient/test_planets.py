@@ -418,6 +418,20 @@ def test_channels_of_a_run_up_are_those_at_the_speed_of_the_moment() -> None:
     assert np.abs(now.q[with_speed]).max() > 1.0
 
 
+def test_planets_that_are_accelerated_feel_their_displacements_onwards() -> None:
+    """m W' S p of planets that all move outwards alike, and nothing else but the balance of loads."""
+    task = prepare(rg.loads(stage(900.0, 3)), [(0.0, -40.0), (0.1, -SPEED)], None)
+    changes = task.local.local.changes
+    assert changes is not None
+    system = task.local.system
+    ratio = float(system.train.ratio("carrier"))
+    grown = changes.at(-50.0, 300.0)[0] - changes.at(-50.0, 0.0)[0]
+    nodes = [system.nodes.on_shaft(f"planet#{k}")[0] for k in (1, 2, 3)]
+    T = system.dofs.transform.toarray()
+    outwards, onwards = (np.sum([T[6 * node + k] for node in nodes], axis=0) for k in (0, 1))
+    assert grown @ outwards == pytest.approx(BODIES["planet"][0] * 300.0 * ratio * onwards, abs=1e-9)
+
+
 def test_at_a_crawl_forces_are_those_of_statics_at_each_instant() -> None:
     """A tooth that sits late on one planet takes its load round through unequal surroundings."""
     speed, torque, loss = 0.5, 2400.0, 2e-4
