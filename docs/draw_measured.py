@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/measured.md into docs/pictures/measured_*.png: python docs/draw_measured.py"""
+"""Draws docs/pictures/measured.png, a panel for each machine of docs/measured.md: python docs/draw_measured.py"""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.plots.figure import BLUE, GREY, ORANGE, name_axes, new_figure, plain_axis
+from rotorgear.plots.figure import BLUE, GREY, ORANGE, name_axes, new_figure, panels_of, plain_axis
 from validation.measured.journal_pressure import film
 from validation.measured.split_path import split
 from validation.measured.thruster_shaft import shaft
@@ -55,34 +55,26 @@ def differences(axis: Any, name: str, readings: dict[str, str], tolerance: float
     )
 
 
-def save(figure: Any, name: str) -> None:
-    """Write a picture."""
-    rg.plot.save(figure.axes[0], PICTURES / f"measured_{name}.png")
-    print(f"drew measured_{name}.png")
-
-
 def main() -> None:
     """Draw all of them."""
-    figure = new_figure((6.0, 3.0), "Compressor rotor, free-free: four bending modes")
-    differences(
-        figure.subplots(), "compressor_rotor", {"rotor": "reading of the drawing", "other": "the other reading"}, 3.0
-    )
-    save(figure, "compressor_rotor")
-    figure = new_figure((6.0, 3.0), "Rotor on leaf springs: five modes")
-    differences(figure.subplots(), "leaf_spring_rotor", {"rotor": ""}, 3.0)
-    save(figure, "leaf_spring_rotor")
+    figure = new_figure((11.0, 9.0))
+    panels = iter(panels_of(figure, 5))
+    axis = next(panels)
+    differences(axis, "compressor_rotor", {"rotor": "reading of the drawing", "other": "the other reading"}, 3.0)
+    axis.set_title("Compressor rotor, free-free: four bending modes", fontsize=10)
+    axis = next(panels)
+    differences(axis, "leaf_spring_rotor", {"rotor": ""}, 3.0)
+    axis.set_title("Rotor on leaf springs: five modes", fontsize=10)
 
-    figure = new_figure((6.0, 3.0), "Shaft of 6 mm: torsional stiffness over the length that hubs hold")
-    axis = figure.subplots()
+    axis = next(panels)
     held = np.linspace(0.0, 40.0, 9)
     axis.plot(held, [shaft.measure("", str(x)) for x in held], color=ORANGE, label="model")
     axis.axhline(35.7, color=BLUE, label="measured")
     plain_axis(axis)
-    name_axes(axis, x="rigid length at each end, mm", y="stiffness, N m/rad", legend=2)
-    save(figure, "thruster_shaft")
+    title = "Shaft of 6 mm: torsional stiffness"
+    name_axes(axis, x="rigid length at each end, mm", y="stiffness, N m/rad", title=title, legend=2)
 
-    figure = new_figure((6.0, 3.0), "Journal bearing: largest film pressure")
-    axis = figure.subplots()
+    axis = next(panels)
     for load, colour in (("150", BLUE), ("450", ORANGE)):
         own = [row for row in lines("journal_pressure") if f" {load} N" in row["quantity"]]
         rpm = [float(row["quantity"].split()[2]) for row in own]
@@ -90,17 +82,17 @@ def main() -> None:
         axis.plot(rpm, [float(row["expected"]) for row in own], "o", color=colour, label=f"measured, {load} N")
         axis.plot(rpm, computed, color=colour, label=f"film, {load} N")
     plain_axis(axis)
-    name_axes(axis, x="speed, rpm", y="pressure, kPa", legend=2)
-    save(figure, "journal_pressure")
+    name_axes(axis, x="speed, rpm", y="pressure, kPa", title="Journal bearing: largest film pressure", legend=2)
 
-    figure = new_figure((6.0, 3.0), "Split path: share of the path that is ahead")
-    axis = figure.subplots()
+    axis = next(panels)
     stiffness = np.geomspace(5.0, 60.0, 12)
     axis.axhspan(50.0, 53.0, color=GREY, alpha=0.15, lw=0, label="measured: at most 53 %")
     axis.plot(stiffness, [split.measure("", str(k)) for k in stiffness], color=ORANGE, label="statics, 1.2 mrad")
     plain_axis(axis)
-    name_axes(axis, x="assumed stiffness of a path, kN m/rad", y="share, %", legend=1)
-    save(figure, "split_path")
+    title = "Split path: share of the path that is ahead"
+    name_axes(axis, x="assumed stiffness of a path, kN m/rad", y="share, %", title=title, legend=1)
+    rg.plot.save(figure.axes[0], PICTURES / "measured.png")
+    print("drew measured.png")
 
 
 if __name__ == "__main__":
