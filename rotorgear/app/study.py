@@ -34,7 +34,7 @@ class Field:
     """A key of a part: its value as the file spells it, and what the schema says of it.
 
     `given`: the file spells it; else `text` is empty. `choices`: all values that it may have, where they are words. `bounds`,
-    `unit`, `meaning`: in words. `is_number`: it may be dragged.
+    `unit`, `meaning`: in words. `is_number`: it may be dragged. `is_whole`: in whole numbers.
     """
 
     address: str
@@ -45,6 +45,7 @@ class Field:
     meaning: str = ""
     choices: tuple[str, ...] = ()
     is_number: bool = False
+    is_whole: bool = False
 
     @property
     def key(self) -> str:
@@ -130,6 +131,8 @@ class Study:
     def dragged(self, field: Field, factor: float) -> str:
         """The number of a field times a factor, in four digits and its unit."""
         number, unit = split_number(field.text)
+        if field.is_whole:
+            return str(round(number * factor))
         return f"{float(f'{number * factor:.4g}'):.10g}{unit}"
 
     @property
@@ -286,6 +289,7 @@ def _field(address: str, given: Any, node: dict[str, Any]) -> Field:
         meaning=meaning,
         choices=tuple(map(str, words)) if closed else (),
         is_number=numeric and _is_quantity(given),
+        is_whole=any(one.get("type") == "integer" for one in options),
     )
 
 

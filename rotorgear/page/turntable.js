@@ -46,7 +46,7 @@ function turntable(canvas, heard) {
     gl.vertexAttribPointer(at, size, kind, whole, 0, 0);
   }
   var corners = gl.createBuffer();
-  var scene = null, owner = [], count = 0, mode = null, largest = 1, chosen = -1, bySize = true, colours = [];
+  var scene = null, owner = [], count = 0, mode = null, largest = 1, chosen = [], bySize = true, colours = [];
   var a = -0.85, b = 0.4, near = 1, fitted = false, moving = false, asked = false;
 
   function show(given) {
@@ -91,7 +91,7 @@ function turntable(canvas, heard) {
     for (var i = 0; i < owner.length; i++) {
       var c = colours[owner[i]];
       values[4 * i] = c[0]; values[4 * i + 1] = c[1]; values[4 * i + 2] = c[2];
-      values[4 * i + 3] = owner[i] === chosen ? 255 : 0;
+      values[4 * i + 3] = chosen[owner[i]] ? 255 : 0;
     }
     feed("tint", values, 4, gl.UNSIGNED_BYTE, true);
     wake();
@@ -102,7 +102,11 @@ function turntable(canvas, heard) {
     colours = given || (scene ? scene.colours : []);
     if (scene) { tint(); }
   }
-  function choose(part) { chosen = scene ? scene.parts.indexOf(part) : -1; if (scene) { tint(); } }
+  // Planets stand on every pin, and once in the file: all of a name are chosen.
+  function choose(part) {
+    chosen = scene ? scene.parts.map(function (name) { return name === part || name.split("#")[0] === part; }) : [];
+    if (scene) { tint(); }
+  }
   function run(on) { moving = on; wake(); }
   function size() {
     var dots = window.devicePixelRatio || 1;

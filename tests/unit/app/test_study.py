@@ -133,6 +133,10 @@ def test_a_dragged_number_keeps_its_unit_and_nothing_else_is_kept(study: Study) 
         "40000000 N/m",
         "6667000 N/m",
     ]
+    whole = Study(ROOT / "models" / "planetary.toml")
+    teeth = next(one for one in whole.fields("gears.sun") if one.key == "teeth")
+    assert whole.dragged(teeth, 1.01) == teeth.text
+    assert whole.dragged(teeth, 2.0) == str(2 * int(teeth.text))
     trial = study.trial(field.address, study.dragged(field, 2.0))
     assert trial == study.model.with_("bearings.left.stiffness.radial", 4e7)
     assert (study.text, study.can_undo) == (TEXT, False)
