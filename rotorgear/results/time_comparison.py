@@ -11,8 +11,13 @@ from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Line, table_of
 
+# A share below this is no number to compare.
+_WORST = -9.99
+
 
 def _share(value: float) -> str:
+    if value < _WORST:
+        return f"< {100.0 * _WORST:.0f} %"
     return f"{100.0 * value:.1f} %" if np.isfinite(value) else "-"
 
 

@@ -7,7 +7,7 @@ and in bands of frequencies. Bands are cut by Butterworth filters of order 4, ru
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -41,6 +41,8 @@ _LEAST_PERIODS = 2.0
 # Offsets are looked for up to this share of the record.
 _REACH = 0.25
 _MODES = 10
+# Share of the model's variance above half the sampling rate that is told.
+_FOLDED = 0.01
 
 
 @recorded
@@ -164,6 +166,7 @@ def compare_time(
     warnings = [Note("", text) for text in seen.notes] + [Note("", unknown)] * bool(unknown)
     if abs(best) >= 0.99 * _REACH * (t[-1] - t[0]):
         warnings.append(Note("", "the best clock offset lies at the end of what was looked at", "it may be none"))
+    warnings += _folded(answer, outputs, nyquist)
     rows = []
     shares = []
     banded = [[_in_band(values, step, *limit)[:, counted] for values in (rig, computed, baseline)] for limit in limits]
@@ -340,6 +343,18 @@ def _history(
         )
     own = np.concatenate([[0.0], answer.time])
     return np.interp(t - t[0], own, np.concatenate([[first[one.history]], answer.history(one.history)]))
+
+
+def _folded(answer: TransientResult, outputs: list[Placed], nyquist: float) -> Iterator[Note]:
+    """Channels of which the model moves faster than the record was sampled for: at its instants that looks like slow motion."""
+    for one in outputs:
+        history = answer.history(one.history)
+        power = np.abs(np.fft.rfft(history - history.mean())) ** 2
+        hz = np.fft.rfftfreq(len(history), answer.spacing)
+        share = float(power[hz > nyquist].sum() / (power.sum() or np.nan))
+        if share > _FOLDED:
+            what = f"{100.0 * share:.2g} % of the model's variance lies above {nyquist:.4g} Hz, half of what was sampled with"
+            yield Note(f"channel '{one.name}'", what, "it is folded into the frequencies below: sample faster")
 
 
 def _errors(answer: TransientResult) -> dict[str, float]:

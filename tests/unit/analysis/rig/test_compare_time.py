@@ -270,6 +270,19 @@ def test_requests_without_sense_are_refused(
         rg.compare_time(chain(), file, channels=channels, **options)
 
 
+def test_what_the_record_is_too_coarse_for_is_told(tmp_path: Path, pulse: Any) -> None:
+    """With 40 ms between samples nothing above 12.5 Hz is told, and all modes of the chain lie there."""
+    drive, brake, (first, second) = pulse
+    file = tmp_path / "coarse.csv"
+    rows = np.column_stack([TIME, drive, brake, first, second])[::40]
+    head = "time_s,drive_Nm,brake_Nm,first_Nm,second_Nm"
+    file.write_text("\n".join([head, *(",".join(f"{x:.9g}" for x in row) for row in rows)]), encoding="utf-8")
+    told = rg.compare_time(chain(), file, steps=400, bands=[], error_estimate=False).warnings
+    assert any("lies above 12.5 Hz, half of what was sampled with" in note for note in told)
+    fine = written(tmp_path / "fine.csv", {"drive_Nm": drive, "brake_Nm": brake, "first_Nm": first})
+    assert not any("was sampled with" in note for note in rg.compare_time(chain(), fine, steps=400, bands=[]).warnings)
+
+
 def rotor() -> rg.Model:
     return rg.Model(
         motions=("bending",),
