@@ -87,6 +87,10 @@ def differences(data: dict[str, Any], listed: set[str]) -> tuple[list[str], list
 NONE: tuple[list[str], list[str]] = ([], [])
 
 
+PLANETARY = str(ROOT / "models" / "planetary.toml")
+OF_PLANETS = ("mode_class", "class_energy", "carrier_frequency_hz", "carrier_frequency_share")
+
+
 def written(tmp_path: Path, *arguments: str) -> dict[str, Any]:
     """Run a command with --json and return what it wrote."""
     target = tmp_path / "result.json"
@@ -105,9 +109,8 @@ def rig(tmp_path: Path) -> str:
 def test_the_keys_of_modal_and_of_its_comparison_are_documented(tmp_path: Path, rig: str) -> None:
     data = written(tmp_path, "modal", str(MODEL), "--speed", SPEED, "--fmax", "5000", "--compare", rig)
     comparison = data.pop("comparison")
-    stage = written(tmp_path, "modal", str(ROOT / "models" / "planetary.toml"), "--speed", "1800 rpm", "--modes", "2")
-    of_planets = ("mode_class", "class_energy", "carrier_frequency_hz", "carrier_frequency_share")
-    data |= {key: stage[key] for key in of_planets}  # this model has no planets
+    stage = written(tmp_path, "modal", PLANETARY, "--speed", "1800 rpm", "--modes", "2")
+    data |= {key: stage[key] for key in OF_PLANETS}  # this model has no planets
     assert differences(data, documented("modal")) == NONE
     assert differences(comparison, documented("compare")) == NONE
 
@@ -208,6 +211,8 @@ def test_the_keys_of_mesh_are_documented(tmp_path: Path) -> None:
 def test_the_keys_of_campbell_are_documented(tmp_path: Path) -> None:
     data = written(tmp_path, "campbell", str(MODEL), "--points", "3", "--elements", "1", "--modes", "8")
     data["onsets"] = [{"branch": 1, "speed_rpm": 1.0, "frequency_hz": 1.0}]  # nothing in it is unstable
+    stage = written(tmp_path, "campbell", PLANETARY, "--points", "2", "--elements", "1", "--modes", "2")
+    data |= {key: stage[key] for key in OF_PLANETS}  # nor has it planets
     assert differences(data, documented("campbell")) == NONE
 
 

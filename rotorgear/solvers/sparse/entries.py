@@ -100,8 +100,9 @@ def on_one_pattern(*matrices: sp.csc_array | sp.csr_array) -> tuple[np.ndarray, 
     keys = [one.row.astype(np.int64) * n + one.col for one in entries]
     union = np.unique(np.concatenate(keys))
     first = np.searchsorted(union, n * np.arange(n + 1, dtype=np.int64))
+    # numpy counts nothing in whole numbers, also with weights.
     values = [
-        np.bincount(np.searchsorted(union, key), one.data, minlength=union.size)
+        np.bincount(np.searchsorted(union, key), one.data, minlength=union.size).astype(float)
         for key, one in zip(keys, entries, strict=True)
     ]
     return first.astype(np.int32), (union % n).astype(np.int32), values
