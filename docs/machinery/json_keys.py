@@ -33,8 +33,8 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "compare records over time",
-        "`rotorgear compare MODEL --time FILE --json compare.json`. `measured`, `computed` and `baseline` (of a model without "
-        "vibration) go along `channels`, then along `time_s`; `load` along `inputs`.",
+        "`rotorgear compare MODEL --time FILE --json compare.json`. `rig_values`, `model_values` and `baseline_values` (of a "
+        "model without vibration) go along `channels`, then along `time_s`; `load` along `inputs`.",
         (("compare_time", ""),),
     ),
     ("sensors", "`rotorgear sensors MODEL --json sensors.json`.", (("sensors", ""),)),

@@ -41,7 +41,7 @@ def compare_time(result: TimeComparison, fig: Any = None) -> np.ndarray:
             axis.plot(time, result.load[k][thin], color=colour, lw=1.0, label=result.inputs[k].name)
         name_axes(axis, y=f"load, {unit}", legend=len(of_unit))
     for axis, row, rig, model, static in zip(
-        axes[len(units) :], shown, result.measured, result.computed, result.baseline, strict=False
+        axes[len(units) :], shown, result.rig_values, result.model_values, result.baseline_values, strict=False
     ):
         axis.plot(time, static[thin], color=GREY, lw=1.0, ls="--", label="model without vibration")
         axis.plot(time, model[thin], color=ORANGE, lw=1.2, label="model")

@@ -159,7 +159,7 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     onsets: tuple[Onset, ...] = of("onsets of instability", "", "onset", record=Onset)
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
     mode_class: tuple[str, ...] = of(
-        "classes of a planetary branch",
+        "classes of a planetary mode",
         "",
         "branch",
         note=", at the last speed at which it oscillates, as in a modal result; empty without planets",

@@ -87,14 +87,14 @@ class TimeComparison(ModelResult, kind="compare_time"):
     """A record over time beside the transient of a model under the measured loads."""
 
     time: np.ndarray = of("time", "s", "instant", note=" as the record counts it")
-    measured: np.ndarray = of(
+    rig_values: np.ndarray = of(
         "measured values", "N, N m, m, rad, m/s, rad/s, m/s^2 or rad/s^2", "channel", "instant",
         note=", shifted to the clock of the loads, orders taken out where that was asked for",
     )  # fmt: skip
-    computed: np.ndarray = of(
+    model_values: np.ndarray = of(
         "values of the model", "N, N m, m, rad, m/s, rad/s, m/s^2 or rad/s^2", "channel", "instant"
     )
-    baseline: np.ndarray = of(
+    baseline_values: np.ndarray = of(
         "values of a model without vibration", "N, N m, m, rad, m/s, rad/s, m/s^2 or rad/s^2", "channel", "instant"
     )
     load: np.ndarray = of("measured loads", "N, N m", "input", "instant")

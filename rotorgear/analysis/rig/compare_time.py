@@ -211,9 +211,9 @@ def compare_time(
     return TimeComparison(
         model=model,
         time=t,
-        measured=rig,
-        computed=computed,
-        baseline=baseline,
+        rig_values=rig,
+        model_values=computed,
+        baseline_values=baseline,
         load=np.array([one.values for one in loads]).reshape(-1, len(t)),
         inputs=tuple(
             TimeInput(

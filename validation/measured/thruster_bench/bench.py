@@ -32,7 +32,7 @@ def measure(quantity: str, mode: str) -> float:
         return row.explained if what == "explained" else row.quasi_static
     if what == "torque at the end":
         at_end = (found.time >= 0.25) & (found.time <= 0.475)
-        return float(np.abs(found.computed[channel(found, mode), at_end].mean()))
+        return float(np.abs(found.model_values[channel(found, mode), at_end].mean()))
     if what == "largest torque":
         return found.channels[channel(found, mode)].model_largest
     ring = next(row for row in found.ring_downs if row.name == "all")

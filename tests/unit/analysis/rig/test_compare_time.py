@@ -103,7 +103,7 @@ def test_an_own_integration_is_explained_and_the_baseline_is_that_of_inertia(tmp
     channels = {"Bremse": "-points.brake", "s": "-points.second", "spin": "disks.jb:torsion"}
     result = rg.compare_time(chain(), file, channels=channels, bands=["5:20", "20 Hz:0.1 kHz"], accuracy=1e-4)
     assert [row.place for row in result.inputs] == ["drive", "brake"]
-    for measured, computed, torque in zip(result.measured, result.computed, (first, second), strict=False):
+    for measured, computed, torque in zip(result.rig_values, result.model_values, (first, second), strict=False):
         np.testing.assert_allclose(measured, torque, atol=1e-6)
         np.testing.assert_allclose(computed, torque, atol=1e-3 * np.abs(torque).max())
     # Rigid: all of it turns as one body, and each spring passes on what is behind it. Exact but for 50 parts of a step.
@@ -117,8 +117,8 @@ def test_an_own_integration_is_explained_and_the_baseline_is_that_of_inertia(tmp
             rate[n // 50 + 1] = now
     pace = (drive + brake - GROUND * rate) / J.sum()
     rigid = np.array([brake - J[1:].sum() * pace, brake - J[2] * pace])
-    np.testing.assert_allclose(result.baseline, [*rigid, pace], atol=1e-4 * np.abs(pace).max())
-    np.testing.assert_allclose(result.baseline[:2], rigid, atol=1e-4)
+    np.testing.assert_allclose(result.baseline_values, [*rigid, pace], atol=1e-4 * np.abs(pace).max())
+    np.testing.assert_allclose(result.baseline_values[:2], rigid, atol=1e-4)
     for name, own, still in (("first", first, rigid[0]), ("s", second, rigid[1])):
         row = next(row for row in result.shares if row.name == name and row.part == "variance")
         assert row.explained > 1.0 - 1e-5
@@ -172,8 +172,8 @@ def test_a_torque_of_the_model_is_replaced_by_the_measured_one(tmp_path: Path, p
     torque = K[0] * (q[:, 1] - q[:, 0]) + C[0] * (v[:, 1] - v[:, 0])
     file = written(tmp_path / "motor.csv", {"motor_Nm": 7.0 + drive, "first_Nm": torque - 7.0})
     result = rg.compare_time(chain(loads=loads), file, steps=400, bands=[], error_estimate=False)
-    np.testing.assert_allclose(result.computed[0], torque - 7.0, atol=2e-3)
-    np.testing.assert_allclose(result.baseline[0][0], -7.0, atol=1e-9)
+    np.testing.assert_allclose(result.model_values[0], torque - 7.0, atol=2e-3)
+    np.testing.assert_allclose(result.baseline_values[0][0], -7.0, atol=1e-9)
     assert result.inputs[0].quantity == "torque"
 
 
@@ -311,7 +311,9 @@ def test_functions_over_time_of_a_universal_file_lie_at_its_sensors(tmp_path: Pa
     first = rg.compare_time(rotor(), file, points=table, **options)
     assert [(row.place, row.unit) for row in first.inputs] == [("disks.d:x", "N")]
     assert first.load[0].max() == pytest.approx(40.0 / 1e3, rel=1e-6)  # of the file's units
-    answer = Function(response=(7, -1), reference=(0, 0), values=-1e3 * first.computed[0], numerator=12, **time_axis)
+    answer = Function(
+        response=(7, -1), reference=(0, 0), values=-1e3 * first.model_values[0], numerator=12, **time_axis
+    )
     file.write_bytes(units_set(Units(1e3, 1e3, "mm (N)", 9)) + function_set(hammer) + function_set(answer))
     again = rg.compare_time(rotor(), file, points=table, **options)
     assert again.shares[1].explained > 1.0 - 1e-9
