@@ -419,9 +419,36 @@ _WORDS = {
     "name": ["left", "nobody", "", "box"],
     "analysis": ["modal", "campbell", "nobody", ""],
 }
-_OUTPUTS = ["out.json", "no/x.json", "model.toml", ".", "out.h5", "out.png", "folder", "old.json", "out.npz", "out.uff"]
+_OUTPUTS = [
+    "out.json",
+    "no/x.json",
+    "model.toml",
+    ".",
+    "out.h5",
+    "out.png",
+    "folder",
+    "old.json",
+    "out.npz",
+    "out.uff",
+    "out.xlsx",
+]
 _INPUTS = ["rig.csv", "missing.csv", "model.toml", ".", "/dev/zero", "pipe", "shapes.uff"]
-_WRITTEN = ("json", "save", "plot", "waterfall", "vtk", "uff", "csv", "output", "state_space", "matrices")
+_WRITTEN = (
+    *(
+        "json",
+        "save",
+        "plot",
+        "waterfall",
+        "order_map",
+        "vtk",
+        "uff",
+        "xlsx",
+        "csv",
+        "output",
+        "state_space",
+        "matrices",
+    ),
+)
 # What keeps a long command short where nothing else is drawn.
 _CHEAP = {
     "sweep": {"over": "operation.speed=1000 rpm:1200 rpm:2", "discard": "2", "sample": "9"},

@@ -358,7 +358,8 @@ def test_the_command_prints_80_columns_and_writes_lines_of_a_rig(tmp_path: Path,
     ]
     code, text = run(str(model), *options)
     assert code == 0, text
-    assert max(map(len, text.splitlines())) <= 80
+    # A line that names a file is as long as its path.
+    assert max(len(line) for line in text.splitlines() if str(tmp_path) not in line) <= 80
     assert len(rg.read_rig_lines(tmp_path / "lines.csv")) == 1
     assert json.loads((tmp_path / "r.json").read_text())["channels"][1]["place"] == "second"
     for more, words in (

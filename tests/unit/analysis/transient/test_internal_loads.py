@@ -100,7 +100,7 @@ def test_a_run_up_reads_torques_and_refuses_what_gyroscopic_moments_take_part_in
     assert "points.0_torque_x torque" in rg.transient(torque, error_estimate=False, **options).channel
 
 
-def test_sweeps_and_orbits_say_that_they_tell_no_loads_inside_shafts() -> None:
+def test_sweeps_say_that_they_tell_no_loads_inside_shafts() -> None:
     data = data_of("backlash_pair")
     data["shafts"]["meter"] = {}
     data["disks"] = {**data.get("disks", {}), "meter": {"shaft": "meter", "at": "start", "polar_inertia": 1e-4}}
@@ -109,6 +109,4 @@ def test_sweeps_and_orbits_say_that_they_tell_no_loads_inside_shafts() -> None:
     data["points"] = {"meter": {"on": "couplings.meter", "quantity": "torque"}}
     model = rg.Model(**data)
     swept = rg.sweep(model, {"operation.speed": ["6000 rpm"]}, discard=2, sample=4, exponents=0, workers=1)
-    followed = rg.orbits(model, {"operation.speed": "6000 rpm:6010 rpm"}, harmonics=3)
-    for result in (swept, followed):
-        assert any(note.part == "points.meter.quantity" for note in result.left_out)
+    assert any(note.part == "points.meter.quantity" for note in swept.left_out)
