@@ -224,7 +224,8 @@ class Middle:
 
     def mode(self) -> None:
         """Move in the mode that is chosen."""
-        view, mode = self.desk.view, self.desk.mode
+        view = self.desk.view
+        mode = self.desk.mode
         if view is None or not len(view.result):
             return
         self.headline.text = f"Mode {mode_name(view.result, mode)}"
@@ -233,7 +234,8 @@ class Middle:
         self._paint()
 
     def _paint(self) -> None:
-        view, kind = self.desk.view, self.colouring
+        view = self.desk.view
+        kind = self.colouring
         if view is None:
             return
         colours: Any = kind if kind == "displacement" else None

@@ -272,7 +272,8 @@ def _field(address: str, given: Any, node: dict[str, Any]) -> Field:
     words = [word for one in options for word in one.get("enum", [one["const"]] if "const" in one else [])]
     closed = bool(words) and all("enum" in one or "const" in one or one.get("type") == "null" for one in options)
     if any(one.get("type") == "boolean" for one in options):
-        words, closed = ["true", "false"], True
+        words = ["true", "false"]
+        closed = True
     meaning = node.get("description", "")
     if words and not closed:
         meaning = f"{meaning}; or {', '.join(map(str, words))}"

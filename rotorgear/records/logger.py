@@ -37,7 +37,8 @@ _TITLES = {"asammdf": "MDF4", "nptdms": "TDMS", "soundfile": "WAV"}
 # A packed block of MDF4: head, what it was before, how it is packed, sizes before and after.
 _PACKED = struct.Struct("<4s4xQQ2sBBIQQ")
 _DEFLATE = (0, 1)
-_NO_CONVERSION, _LINEAR = 0, 1
+_NO_CONVERSION = 0
+_LINEAR = 1
 _TIMES = (2, 3)  # types of a channel of MDF4 that is the time itself
 
 

@@ -8,7 +8,14 @@ import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
-from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece, carrier_columns
+from rotorgear.results.modal import WHIRL_WORDS, WRITTEN_WHIRL, NodeTable, Piece
+from rotorgear.results.planets import (
+    carrier_columns,
+    carrier_frequency_over,
+    carrier_share_over,
+    class_energy_over,
+    classes_over,
+)
 from rotorgear.results.schema import Record, derived, of
 from rotorgear.results.table import Block, Column, Line, error_words, exact, table_of, table_over
 
@@ -158,41 +165,12 @@ class CampbellResult(AboutEquilibrium, kind="campbell"):
     margins: tuple[Margin, ...] = of("margins", "", "margin", record=Margin)
     onsets: tuple[Onset, ...] = of("onsets of instability", "", "onset", record=Onset)
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
-    mode_class: tuple[str, ...] = of(
-        "classes of a planetary mode",
-        "",
-        "branch",
-        note=", at the last speed at which it oscillates, as in a modal result; empty without planets",
-        column="class",
-        default=(),
+    mode_class: tuple[str, ...] = classes_over(
+        "branch", note=", at the last speed at which it oscillates, as in a modal result; empty without planets"
     )
-    class_energy: dict[str, np.ndarray] = of(
-        "share of a class in the kinetic energy",
-        "",
-        "CLASS",
-        "speed",
-        "branch",
-        note=" of a planetary stage, such as `stage rotational`",
-        default_factory=dict,
-    )
-    carrier_frequency_hz: dict[str, np.ndarray] = of(
-        "frequency in the frame of a carrier",
-        "Hz",
-        "CARRIER",
-        "speed",
-        "branch",
-        note=" that turns, of the part with the most energy; `null`: its stage rests",
-        default_factory=dict,
-    )
-    carrier_frequency_share: dict[str, np.ndarray] = of(
-        "share of what a carrier sees at that frequency",
-        "",
-        "CARRIER",
-        "speed",
-        "branch",
-        note=", in the kinetic energy of its stage",
-        default_factory=dict,
-    )
+    class_energy: dict[str, np.ndarray] = class_energy_over("speed", "branch")
+    carrier_frequency_hz: dict[str, np.ndarray] = carrier_frequency_over("speed", "branch")
+    carrier_frequency_share: dict[str, np.ndarray] = carrier_share_over("speed", "branch")
 
     def __len__(self) -> int:
         return int(self.eigenvalues.shape[1])

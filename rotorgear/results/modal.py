@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.laws import AboutEquilibrium
+from rotorgear.results.planets import (
+    carrier_columns,
+    carrier_frequency_over,
+    carrier_share_over,
+    class_energy_over,
+    classes_over,
+)
 from rotorgear.results.schema import Record, Written, derived, imaginary_part, of, real_part
 from rotorgear.results.table import Block, Column, Line, error_words, exact, table_over
 
@@ -169,38 +175,13 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         json="point_amplitude",
         default_factory=dict,
     )
-    mode_class: tuple[str, ...] = of(
-        "classes of a planetary mode",
-        "",
+    mode_class: tuple[str, ...] = classes_over(
         "mode",
         note=", in a few words, with shares of the energy of the stage where there are several; empty without planets",
-        column="class",
-        default=(),
     )
-    class_energy: dict[str, np.ndarray] = of(
-        "share of a class in the kinetic energy",
-        "",
-        "CLASS",
-        "mode",
-        note=" of a planetary stage, such as `stage rotational`: what is missing from 1 moves elsewhere",
-        default_factory=dict,
-    )
-    carrier_frequency_hz: dict[str, np.ndarray] = of(
-        "frequency in the frame of a carrier",
-        "Hz",
-        "CARRIER",
-        "mode",
-        note=" that turns, of the part with the most energy; `null`: its stage rests",
-        default_factory=dict,
-    )
-    carrier_frequency_share: dict[str, np.ndarray] = of(
-        "share of what a carrier sees at that frequency",
-        "",
-        "CARRIER",
-        "mode",
-        note=", in the kinetic energy of its stage",
-        default_factory=dict,
-    )
+    class_energy: dict[str, np.ndarray] = class_energy_over("mode")
+    carrier_frequency_hz: dict[str, np.ndarray] = carrier_frequency_over("mode")
+    carrier_frequency_share: dict[str, np.ndarray] = carrier_share_over("mode")
 
     def __len__(self) -> int:
         return len(self.eigenvalues)
@@ -241,16 +222,6 @@ class ModalResult(AboutEquilibrium, kind="modal"):
         if estimates.size:
             yield f"error: estimated relative error of each frequency; largest {error_words(estimates.max(), 1)}"
         yield from (*self.remarks(), "")
-
-
-def carrier_columns(frequency: dict[str, np.ndarray], share: dict[str, np.ndarray]) -> list[Column]:
-    """Columns of the frequencies (m,) of m modes in the frame of each carrier, with the share (m,) where that is not all."""
-
-    def seen(carrier: str, k: int) -> str:
-        text = exact(".4f")(frequency[carrier][k])
-        return f"{text}, {100.0 * share[carrier][k]:.0f} %" if share[carrier][k] < 0.995 else text
-
-    return [Column(f"from {carrier} Hz", partial(seen, carrier), left=False) for carrier in frequency]
 
 
 def _largest(shares: dict[str, np.ndarray], k: int) -> str:

@@ -59,7 +59,8 @@ def _rigid_motion(
         return (force,) * 3
     drag = np.linalg.solve(mass, damping)
     push = np.linalg.solve(mass, force)
-    nothing, one = np.zeros((count, count)), np.eye(count)
+    nothing = np.zeros((count, count))
+    one = np.eye(count)
     # Of (r, r', push, growth of push): its exponential over a step.
     whole = np.block(
         [
@@ -73,5 +74,5 @@ def _rigid_motion(
     state = np.zeros((2 * count, times))
     for k in range(times - 1):
         state[:, k + 1] = over @ np.concatenate([state[:, k], push[:, k], push[:, k + 1] - push[:, k]])
-    r, rate = state[:count], state[count:]
-    return r, rate, push - drag @ rate
+    rate = state[count:]
+    return state[:count], rate, push - drag @ rate

@@ -31,7 +31,9 @@ from rotorgear.records.record import Channel, TimeRecord
 from rotorgear.uff.datasets import AXES, FORCE, MOTIONS
 from rotorgear.uff.read import read_universal
 
-LOAD, OUTPUT, TURNING = "load", "output", "speed"
+LOAD = "load"
+OUTPUT = "output"
+TURNING = "speed"
 # Of a motion: what it is called, its SI unit for a displacement and for a rotation.
 _MOTIONS = (("displacement", "m", "rad"), ("velocity", "m/s", "rad/s"), ("acceleration", "m/s^2", "rad/s^2"))
 _TIME_RESPONSE = 1

@@ -8,6 +8,7 @@ Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3.4 and 5.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -233,19 +234,41 @@ _MOST_STEPS = 5
 
 
 def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[complex, np.ndarray]:
-    """Inverse iteration on Q itself: Q(z) u = Q'(z) v, z <- z - (v^H v)/(v^H u).
+    """The eigenpair of a pencil next to a pair that rounding has blurred; a real pair stays real."""
+    real = value.imag == 0.0
+    return inverse_iteration(
+        value.real if real else value,
+        vector.real if real else vector,
+        lambda z: factor_general(quadratic.at(z)),
+        lambda z, v: 2.0 * z * (quadratic.M @ v) + quadratic.D @ v,
+    )
 
-    Quadratic convergence from a pair blurred by rounding; a real pair stays real. Tisseur and Meerbergen, section 5.
+
+def inverse_iteration(
+    z: complex,
+    v: np.ndarray,
+    factored: Callable[[complex], Factor],
+    slope: Callable[[complex, np.ndarray], np.ndarray],
+) -> tuple[complex, np.ndarray]:
+    """Inverse iteration on a matrix Q over z itself: Q(z) u = Q'(z) v, z <- z - (v^H v)/(v^H u).
+
+    Quadratic convergence. Tisseur and Meerbergen, section 5.
     A step that leads away from the pair that was given is not taken: it belongs to another one.
+
+    Args:
+        z, v: the start, v (n,).
+        factored: factors of Q(z), with a ConvergenceError where it is singular. slope: Q'(z) v, (n,).
+
+    Returns:
+        Eigenvalue and unit vector.
     """
-    z, v = (value.real, vector.real) if (value.imag == 0.0) else (value, vector)
     for _ in range(_MOST_STEPS):
         v = v / np.linalg.norm(v)
         try:
-            factor = factor_general(quadratic.at(z))
+            factor = factored(z)
         except ConvergenceError:
             break  # Q(z) is singular to the last bit: z is the eigenvalue
-        u = factor.solve(2.0 * z * (quadratic.M @ v) + quadratic.D @ v)
+        u = factor.solve(slope(z, v))
         step = 1.0 / np.vdot(v, u)
         if abs(step) > _LONGEST_STEP * abs(z):
             break

@@ -20,8 +20,9 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.solvers.eigen.quadratic import inverse_iteration
 from rotorgear.solvers.sparse.entries import scaled_on_both_sides
-from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, single_thread
+from rotorgear.solvers.sparse.factor import Factor, factor_general, factor_symmetric, single_thread
 from rotorgear.solvers.sparse.sums import SparseSums
 
 _DENSE_UP_TO = 100
@@ -33,9 +34,6 @@ _BEYOND = 0.15  # of a speed, how far damped roots may move when they are polish
 _MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
 _CONVERGED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
 _FOUND = 1e-12  # the same of a root that was found in s itself, where what is left is rounding
-_LONGEST_STEP = 0.1  # of Newton's method, relative to the eigenvalue: a longer one leads to another one
-_LAST_STEP = 1e-10  # convergence is quadratic: after a step as small as this only rounding is left
-_MOST_STEPS = 5
 _FREE = 1e-9  # stiffness along a motion over that of its terms, below which it is none
 BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
 
@@ -192,31 +190,21 @@ class _Pencil:
         self._sums = SparseSums(*self._parts)
 
     def newton(self, z: complex, x: np.ndarray, a: complex, b: complex, c: float) -> tuple[complex, np.ndarray]:
-        """The eigenpair of Q(a z, b z + c) next to a value and vector (n,).
+        """The eigenpair of Q(a z, b z + c) next to a value and vector (n,)."""
 
-        Inverse iteration: Q u = Q' v, z <- z - (v^H v)/(v^H u). A step that leads away from the start is not taken.
-        Tisseur and Meerbergen, SIAM Review 43 (2001) 235, section 5.
-        """
-        v = x / self.scale
-        for _ in range(_MOST_STEPS):
-            v = v / np.linalg.norm(v)
-            value, speed = a * z, b * z + c
-            try:
-                factor = self._sums.factor((value**2, value, value * speed, 1.0, speed, speed**2))
-            except ConvergenceError:
-                break  # Q is singular to the last bit: z is the eigenvalue
-            slopes = (2.0 * a * value, a, a * speed + b * value, 0.0, b, 2.0 * b * speed)
-            u = factor.solve(
-                sum(slope * (A @ v) for slope, A in zip(slopes, self._parts, strict=True) if slope and A.nnz)
-            )
-            step = 1.0 / np.vdot(v, u)
-            if abs(step) > _LONGEST_STEP * abs(z):
-                break
-            z = z - step
-            v = u
-            if abs(step) <= _LAST_STEP * abs(z):
-                break
-        return complex(z), v * self.scale
+        def factored(z: complex) -> Factor:
+            value = a * z
+            speed = b * z + c
+            return self._sums.factor((value**2, value, value * speed, 1.0, speed, speed**2))
+
+        def slope(z: complex, v: np.ndarray) -> np.ndarray:
+            value = a * z
+            speed = b * z + c
+            by_z = (2.0 * a * value, a, a * speed + b * value, 0.0, b, 2.0 * b * speed)
+            return sum((d * (A @ v) for d, A in zip(by_z, self._parts, strict=True) if d and A.nnz), np.zeros_like(v))
+
+        found, v = inverse_iteration(z, x / self.scale, factored, slope)
+        return found, v * self.scale
 
 
 def _polished(pencil: _Pencil, order: float, s: complex, x: np.ndarray, is_damped: bool) -> Synchronous | None:
