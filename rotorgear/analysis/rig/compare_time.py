@@ -114,6 +114,8 @@ def compare_time(
     judged = _between("window", window, t)
     limits = [_band(text, nyquist) for text in bands] if bands is not None else None
     dying = None if ring_down is None else _between("ring_down", ring_down, t)
+    if vibrations < 1:
+        raise AnalysisError(f"vibrations: expected 1 or more of them, got {vibrations}")
     found_offset = offset == "find"
     shift = 0.0 if offset is None or found_offset else quantity(offset, "time", "offset")
     rate = speed if speed is not None else 0.0 if model.operating_speed is None else None
@@ -168,10 +170,7 @@ def compare_time(
         warnings.append(Note("", "the best clock offset lies at the end of what was looked at", "it may be none"))
     warnings += _folded(answer, outputs, nyquist)
     rows = []
-    shares = []
-    banded = [[_in_band(values, step, *limit)[:, counted] for values in (rig, computed, baseline)] for limit in limits]
-    for k, one in enumerate(outputs):
-        a, b, static = (values[k, counted] for values in (rig, computed, baseline))
+    for one, a, b in zip(outputs, rig[:, counted], computed[:, counted], strict=True):
         size = float(np.std(b))
         rows.append(
             TimeMatch(
@@ -186,24 +185,6 @@ def compare_time(
                 error=errors.get(f"rms {one.history}", float("nan")) / size if size > 0.0 else float("nan"),
             )
         )
-        whole = float(np.var(a)) or float("nan")
-        parts = [("size", 0.0, nyquist, (a, b, static)), ("variance", 0.0, nyquist, _about_mean(a, b, static))]
-        for (low, high), three in zip(limits, banded, strict=True):
-            parts.append((f"{low:.4g} - {high:.4g} Hz", low, high, _about_mean(*(values[k] for values in three))))
-        for part, low, high, (own, found, still) in parts:
-            square = float(np.mean(own**2))
-            shares.append(
-                TimeShare(
-                    name=one.name,
-                    part=part,
-                    low_hz=low,
-                    high_hz=high,
-                    of_record=square / whole if part != "size" else float("nan"),
-                    ratio=float(np.sqrt(np.mean(found**2) / square)) if square > 0.0 else float("nan"),
-                    explained=explained_share(own, found),
-                    quasi_static=explained_share(own, still),
-                )
-            )
     fits: tuple[RingDown, ...] = ()
     if dying is not None:
         modes = _damped_modes(model, rate, elements)
@@ -222,7 +203,7 @@ def compare_time(
             for one in loads
         ),
         channels=tuple(rows),
-        shares=tuple(shares),
+        shares=tuple(_shares(outputs, (rig, computed, baseline), counted, limits, step)),
         ring_downs=tuple(fits),
         window_s=(float(t[counted][0]), float(t[counted][-1])),
         offset=shift,
@@ -242,6 +223,39 @@ def explained_share(measured: NDArray[np.float64], computed: NDArray[np.float64]
     """1 - mean((m - c)^2) / mean(m^2); NaN where there is nothing to explain."""
     size = float(np.mean(measured**2))
     return 1.0 - float(np.mean((measured - computed) ** 2)) / size if size > 0.0 else float("nan")
+
+
+def _shares(
+    outputs: list[Placed],
+    three: tuple[NDArray[np.float64], ...],
+    counted: slice,
+    limits: list[tuple[float, float]],
+    step: float,
+) -> Iterator[TimeShare]:
+    """What of each channel is explained: of its size, of its variance, and of that in bands of Hz.
+
+    `three`: record, answer and baseline (c, n); `counted`: the instants that are judged.
+    """
+    nyquist = 0.5 / step
+    banded = [[_in_band(values, step, *limit)[:, counted] for values in three] for limit in limits]
+    for k, one in enumerate(outputs):
+        as_it_is = [values[k, counted] for values in three]
+        whole = float(np.var(as_it_is[0])) or float("nan")
+        parts = [("size", 0.0, nyquist, as_it_is), ("variance", 0.0, nyquist, _about_mean(*as_it_is))]
+        for (low, high), within in zip(limits, banded, strict=True):
+            parts.append((f"{low:.4g} - {high:.4g} Hz", low, high, _about_mean(*(values[k] for values in within))))
+        for part, low, high, (own, found, still) in parts:
+            square = float(np.mean(own**2))
+            yield TimeShare(
+                name=one.name,
+                part=part,
+                low_hz=low,
+                high_hz=high,
+                of_record=square / whole if part != "size" else float("nan"),
+                ratio=float(np.sqrt(np.mean(found**2) / square)) if square > 0.0 else float("nan"),
+                explained=explained_share(own, found),
+                quasi_static=explained_share(own, still),
+            )
 
 
 def _about_mean(*values: NDArray[np.float64]) -> list[NDArray[np.float64]]:

@@ -200,6 +200,19 @@ def test_a_ring_down_has_the_damping_of_its_mode() -> None:
         ring_down(1e-3, noisy[:, :5])
 
 
+def test_what_a_long_record_holds_above_the_rate_that_is_kept_does_not_fold_into_a_ring_down() -> None:
+    step = 1e-5
+    t = step * np.arange(90_000)
+    hz = 41.3
+    ratio = 0.02
+    rings = np.exp(-2.0 * np.pi * hz * ratio * t) * np.cos(2.0 * np.pi * hz * np.sqrt(1.0 - ratio**2) * t + 0.4)
+    # Of each fourth sample alone it would be a vibration of 47 Hz, and the larger one.
+    hum = 3.0 * np.cos(2.0 * np.pi * (0.25 / step - 47.0) * t)
+    (fit,) = ring_down(step, (rings + hum)[None])
+    assert fit.natural_hz == pytest.approx(hz, rel=1e-4)
+    assert fit.damping_ratio == pytest.approx(ratio, rel=2e-3)
+
+
 def test_a_standing_rotor_is_compared_by_the_force_and_acceleration_of_a_sensor(tmp_path: Path) -> None:
     """One mass on a spring, its force a half sine, told in g and in a channel without a unit."""
     m, k, c = 12.0, 4.0e5, 130.0
@@ -260,6 +273,7 @@ def test_a_standing_rotor_is_compared_by_the_force_and_acceleration_of_a_sensor(
         ({}, {"remove": "x:1"}, "no shaft 'x'"),
         ({}, {"remove": "a:0"}, "expected SHAFT:ORDERS"),
         ({}, {"offset": "2 s"}, "leaves nothing"),
+        ({}, {"ring_down": "0.3:0.6", "vibrations": 0}, "expected 1 or more of them, got 0"),
         ({}, {"points": "sensors.csv"}, "the table of sensors of a universal file"),
     ],
 )
