@@ -115,10 +115,12 @@ def _table(rows: list[tuple[int, str]], delimiter: str | None, count: int, file:
         ModelError: the first row that has another number of cells, or a cell that is no number.
     """
     number = NUMBER if delimiter == "," else _COMMA
-    between = r"\s+" if delimiter is None else re.escape(delimiter)
-    line_of = re.compile(
-        rf'\s*"?{number}"?\s*(?:{between}\s*"?{number}"?\s*){{{count - 1}}}{between if delimiter else ""}?'
-    )
+    # Possessive: a long stretch of blanks is gone through once.
+    mark = r"\s" if delimiter is None else re.escape(delimiter)
+    blanks = r"\s*+" if delimiter is None else rf"[^\S{mark}]*+"
+    cell = rf'{blanks}"?{number}"?'
+    gap = mark if delimiter is None else blanks + mark
+    line_of = re.compile(rf"{cell}(?:{gap}{cell}){{{count - 1}}}(?:{gap})?+{blanks}")
     plain = str.maketrans({'"': " ", delimiter or " ": " "} | ({} if delimiter == "," else {",": "."}))
     for where, line in rows:
         if not line_of.fullmatch(line):

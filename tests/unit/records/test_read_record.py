@@ -54,6 +54,8 @@ def test_tables_of_every_kind(
     ("text", "words"),
     [
         ("", "no line of it holds two numbers"),
+        # Minutes to a pattern that goes back and forth over the blanks.
+        ("time a\n0 1\n0.1" + 3000 * " " + "x\n0.2 3\n", "expected a number in each cell"),
         ("hello\nworld", "no line of it holds two numbers"),
         ("0,1\n1,2\n", "no names stand above it"),
         ("a,b\n0,1\n1,2\n", "one column of time, such as 'time_s'"),
