@@ -7,6 +7,7 @@ without a mistake; until then the change waits, with the sentences that the file
 from __future__ import annotations
 
 import difflib
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -247,7 +248,8 @@ def spelled(value: Any) -> str:
 
 
 def _quoted(value: Any) -> str:
-    return f'"{value}"' if isinstance(value, str) else spelled(value)
+    # A text of JSON, with its escapes, is one of TOML.
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else spelled(value)
 
 
 def _fields(address: str, value: dict[str, Any], node: dict[str, Any]) -> Iterator[Field]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
 
 import rotorgear as rg
-from rotorgear.app.study import Study
+from rotorgear.app.study import Study, spelled
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.files.write import WriteError
 from tests.paths import ROOT
@@ -176,3 +177,8 @@ def test_a_file_outside_the_folder_is_not_read_for_the_page(study: Study) -> Non
         ]
         study.undo()
     assert study.text == before
+
+
+def test_texts_in_a_list_are_spelled_as_toml_reads_them() -> None:
+    texts = ['"quoted"', "a\\b", "°C"]
+    assert tomllib.loads(f"value = {spelled(texts)}")["value"] == texts
