@@ -5,6 +5,7 @@ In the user's own everything else, comments and units too, stays as it was writt
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from collections.abc import Mapping
@@ -14,8 +15,10 @@ from typing import Any
 from rotorgear.errors import AnalysisError
 from rotorgear.extras import require
 from rotorgear.files.bounds import MODEL
+from rotorgear.files.own import text_of
 from rotorgear.files.read import read_text
 from rotorgear.files.write import written
+from rotorgear.model.load import schema
 from rotorgear.model.model import Model
 from rotorgear.model.shipped import models, shipped_model
 from rotorgear.model.text import below
@@ -25,12 +28,15 @@ from rotorgear.results.update import UpdateResult
 
 # The model that has every part of a plain gearbox once.
 DEFAULT = "helical_pair"
+# Beside a new model file: editors complete and check keys by it, as the first line of the model says.
+SCHEMA = "model.schema.json"
 
 
 def new(path: str | Path, source: str | None = None, force: bool = False) -> list[Path]:
     """Write a model file with comments, as a copy of one that comes with the package, to change freely.
 
-    Files that it names (meshes of casings, measured flanks) and the lines of its rig are written beside it.
+    Files that it names (meshes of casings, measured flanks) and the lines of its rig are written beside it, and the JSON Schema
+    that its first line names to editors, where none is there.
 
     Args:
         path: file to write, such as "gearbox.toml".
@@ -56,8 +62,16 @@ def new(path: str | Path, source: str | None = None, force: bool = False) -> lis
         raise AnalysisError(f"{' and '.join(there)} would be overwritten: choose another name, or give --force")
     for file, original in copies.items():
         with written(file) as scratch:
-            shutil.copyfile(original, scratch)
-    return list(copies)
+            if file == target:
+                scratch.write_text(f"#:schema ./{SCHEMA}\n{text_of(original)}", encoding="utf-8", newline="\n")
+            else:
+                shutil.copyfile(original, scratch)
+    beside = target.with_name(SCHEMA)
+    if beside.exists() and not force:
+        return list(copies)
+    with written(beside) as scratch:
+        scratch.write_text(json.dumps(schema(), indent=2), encoding="utf-8")
+    return [*copies, beside]
 
 
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
