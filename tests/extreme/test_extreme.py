@@ -12,8 +12,8 @@ from tests.extreme.models import rotor_model
 from tests.extreme.references import DIGITS, Rotor, Segment, Spring
 from tests.extreme.undamped_errors import assembled_error
 
-# Long: 40 digits of 123 bodies.
-LONG = ("120 planets that go round",)
+# Long: 40 digits of 123 bodies; a period of a hundred oscillations.
+LONG = ("120 planets that go round", "orbits: a hundredth of the resonance")
 
 
 @pytest.mark.parametrize(

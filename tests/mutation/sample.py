@@ -13,6 +13,7 @@ model/layout 5 of 6. The other ones became tests.
 from __future__ import annotations
 
 import ast
+import functools
 import random
 from collections.abc import Iterator
 from pathlib import Path
@@ -61,6 +62,7 @@ def packages(root: Path = ROOT) -> list[str]:
     return sorted({file.parent.relative_to(base).as_posix() for file in base.rglob("*.py")} - {"."})
 
 
+@functools.cache  # all tests are read for a file
 def nearest_tests(file: str, root: Path = ROOT) -> tuple[str, ...]:
     """Paths of tests of a file below rotorgear/, the nearest first.
 

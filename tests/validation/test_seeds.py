@@ -277,14 +277,14 @@ def test_load_closes_the_gap_and_damping_calms() -> None:
 def test_transient_and_sweep_agree_on_a_motion_with_loss_of_contact() -> None:
     model = loaded(pair24.MODEL)
     period = 60.0 / (5800.0 * 22.0)
-    sweep = pair24.route(pair24.MODEL, (5800.0,), 250, 64)
+    sweep = pair24.route(pair24.MODEL, (5800.0,), 120, 32)
     run = rg.transient(
         model,
         speed=5800.0 * math.pi / 30.0,
         method="newmark",
         steps=640,
-        discard=250 * period,
-        time=64 * period,
+        discard=120 * period,
+        time=32 * period,
         error_estimate=False,
     )
     assert run.contact_time[0, 1] == pytest.approx(sweep.apart[0, 0, 0], abs=0.01)

@@ -339,7 +339,7 @@ def test_planets_have_one_mesh_however_their_modes_are_combined() -> None:
 
 def test_modes_up_to_a_frequency_are_those_of_a_number() -> None:
     model = rg.load("models/wind_turbine.toml")
-    below = rg.modal(model, speed="16 rpm", fmax=1200.0, elements=2)
-    some = rg.modal(model, speed="16 rpm", modes=len(below) + 3, elements=2)
+    below = rg.modal(model, speed="16 rpm", fmax=1200.0, elements=1)
+    some = rg.modal(model, speed="16 rpm", modes=len(below) + 3, elements=1)
     assert below.frequency_hz[-1] < 1200.0 < some.natural_frequency_hz[len(below)]
     assert some.eigenvalues[1 : len(below)] == pytest.approx(below.eigenvalues[1:], rel=1e-9)

@@ -339,8 +339,8 @@ def pin_histories(found: rg.TransientResult, planets: int) -> np.ndarray:
     ("planets", "speed", "torque", "method", "steps", "bound"),
     [
         (3, -0.8 * SPEED, 500.0, "exponential", 800, 2e-2),
-        (4, SPEED, 900.0, "newmark", 1600, 8e-3),
-        (4, SPEED, 900.0, "generalised-alpha", 1600, 8e-3),
+        pytest.param(4, SPEED, 900.0, "newmark", 1600, 8e-3, marks=pytest.mark.long),
+        pytest.param(4, SPEED, 900.0, "generalised-alpha", 1600, 8e-3, marks=pytest.mark.long),
     ],
 )
 def test_motions_with_teeth_that_part_are_those_of_true_paths(

@@ -92,7 +92,7 @@ def test_bearing_forces_carry_the_mesh_force_in_the_mean() -> None:
 
 def test_the_methods_agree_within_their_error_estimates_while_teeth_part() -> None:
     model = spur_pair(meshes__pair__backlash="40 um", operation__torque="3 N m")
-    found = [transient(model, method=m, time=0.05, discard=0.1, accuracy=2e-3) for m in ("newmark", "exponential")]
+    found = [transient(model, method=m, time=0.02, discard=0.04, accuracy=2e-3) for m in ("newmark", "exponential")]
     assert found[0].contact_losses[0] > 5
     for i, name in enumerate(found[0].quantity):
         (a, b), (ea, eb) = ([getattr(r, key)[i] for r in found] for key in ("quantity_value", "quantity_error"))
