@@ -202,8 +202,9 @@ frame, or `"start"` or `"end"` of the shaft. Signs and axes stand in [convention
 
 **Mistakes** are reported all at once: see [Troubleshooting](errors.md).
 
-**Editors** complete and check keys from a JSON Schema (Taplo; "Even Better TOML" in VS Code). `rotorgear new` writes it beside the
-model, whose first line names it: `#:schema ./model.schema.json`. For any other model, `rotorgear schema --json model.schema.json`.
+**Editors** complete and check keys from a JSON Schema (Taplo; "Even Better TOML" in VS Code). `rotorgear new` writes it beside
+the model, whose first line names it: `#:schema ./model.schema.json`. For any other model,
+`rotorgear schema --json model.schema.json`.
 
 In the tables, a *value* is an example, the choices, or a kind, with its bounds. The SI unit of a plain number follows from the
 example, as [below](#quantities-and-units); a *count* is a whole number from 1 to {COUNT["maximum"]}. A key that is not

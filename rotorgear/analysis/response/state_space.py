@@ -257,8 +257,8 @@ class _Matrices:
         """C Z^-1 B at a frequency in rad/s, (o, i)."""
         Z = self.K + 1j * w * self.D - w**2 * self.M
         try:
-            return np.asarray(self.C.of(np.array([w]), la.solve(Z, self.B.astype(complex))[None])[0])
-        except la.LinAlgError:
+            return np.asarray(self.C.of(np.array([w]), np.linalg.solve(Z, self.B.astype(complex))[None])[0])
+        except np.linalg.LinAlgError:
             raise ConvergenceError(
                 f"the reduced system is singular at {w / 2.0 / np.pi:.6g} Hz, as at a mode without damping: look at the modes "
                 "there, or take the full system"
@@ -350,7 +350,9 @@ def _peaks(made: _Matrices, limit: float) -> np.ndarray:
     A mode without damping has no width, and at its pole nothing can be solved: it is left out.
     """
     n = made.M.shape[0]
-    state = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(made.M, made.K), -la.solve(made.M, made.D)]])
+    state = np.block(
+        [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(made.M, made.K), -np.linalg.solve(made.M, made.D)]]
+    )
     poles = la.eigvals(state)
     near = poles[(poles.imag > _LOWEST * limit) & (poles.imag <= limit) & (np.abs(poles.real) > _NO_WIDTH * poles.imag)]
     return np.stack([near.imag, np.abs(near.real)], axis=1)
