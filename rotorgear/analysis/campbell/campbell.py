@@ -26,6 +26,7 @@ from rotorgear.analysis.campbell.speeds import (
 from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.planet_notes import class_notes
 from rotorgear.analysis.common.recorded import recorded
@@ -181,9 +182,10 @@ class _Diagram:
         new = [speed for speed in extra if np.min(np.abs(asked - speed)) > _SAME_SPEED * max(high - low, 1e-300)]
         grid = merged(sorted([*map(float, asked), *map(float, new)]), high - low)
         grid = grid if abs(asked[-1]) >= abs(asked[0]) and asked[-1] >= 0.0 else grid[::-1]
+        measuring = Forecast("campbell", 0.0, whole="for the modes at the speeds asked for").measuring(progress, 0.8)
         wanted = []  # how many of the lowest modes of each group are asked for at each speed
         for number, speed in enumerate(grid, 1):
-            progress(0.5 + 0.3 * (number - 1) / len(grid), f"speed {number} of {len(grid)}")
+            measuring(0.5 + 0.3 * (number - 1) / len(grid), f"speed {number} of {len(grid)}")
             frequencies = [np.abs(found.damped(part.s)) for part in found.at(speed)]
             together = np.sort(np.concatenate(frequencies))
             count = found.reach.inside(together)

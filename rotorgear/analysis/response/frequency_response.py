@@ -14,6 +14,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.points import moving_rows, rotates
 from rotorgear.analysis.common.recorded import recorded
@@ -226,8 +227,9 @@ def _solved(
     with single_thread(system.n):
         found = FrequencyRange(dynamics, w, f, part_of(progress, 0.05, 0.5), solve)
         rows = []
+        measuring = Forecast("frf", 0.0, whole="for the frequencies").measuring(progress, 0.95)
         for at in found.blocks():
-            progress(0.5 + 0.45 * at[0] / len(hz), f"{hz[at[0]]:.5g} Hz")
+            measuring(0.5 + 0.45 * at[0] / len(hz), f"{hz[at[0]]:.5g} Hz")
             rows.append(
                 piece(partial(_block, system, dynamics, speed, w[at], f, outputs, partial(found.solutions, at)))
             )

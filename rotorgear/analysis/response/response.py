@@ -10,6 +10,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import with_casing_modes
 from rotorgear.analysis.common.discretise import pieces
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.left_out import left_out
 from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.recorded import recorded
@@ -104,8 +105,10 @@ def response(
         names = {order.name for order in orders}
         orders = [order for order in orders_of(setup)[0] if order.name in names]
         how, why = choose_method(method, len(chosen), len(orders), system.n)
+        of_speeds = "for the speeds; the estimate of the error comes on top"
+        measuring = Forecast("response", 0.0, whole=of_speeds).measuring(progress)
         sweep = (
-            direct_sweep(plant, orders, chosen, progress)
+            direct_sweep(plant, orders, chosen, measuring)
             if how == "direct"
             else modal_sweep(plant, orders, chosen, modes, progress, throughout=method == "modal")
         )

@@ -174,8 +174,8 @@ def run_task(
             _take_over(chunk, found, book)
     watched = np.ascontiguousarray(local.watched_vectors.T)
 
-    def told(fraction: float, step: str) -> None:
-        progress(fraction, f"{text}: {step}" if text else step)
+    def told(_: float, step: str) -> None:
+        progress(state.step / steps, f"{text}: {step}" if text else step)
 
     def receive(records: Records, state: MotionState) -> None:
         seen = [records.rows("q", watched), task.channels.values(records)]

@@ -17,6 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.forecast import Forecast
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed, quantity
 from rotorgear.analysis.common.stations import shapes_at_stations
@@ -149,7 +150,9 @@ def transient(
         grid, left = fine_enough(task, integrator, grid, wanted, progress)
     clock.lap("choice of step")
     key = f"{method} {modes} {rho_inf} {beta} {gamma}" + f" {start}" * (start != STARTS[0])
-    found = run_task(task, integrator, grid, progress, stream=stream, frames=frames, key=key)
+    whole = "for the motion; the estimate of its error comes on top" if error_estimate else "in all"
+    measuring = Forecast("transient", clock.worked, whole=whole).measuring(progress)
+    found = run_task(task, integrator, grid, measuring, stream=stream, frames=frames, key=key)
     clock.lap("integration")
     told = stated(found, task, integrator, grid, progress) if error_estimate else None
     clock.lap("error estimate")

@@ -47,6 +47,35 @@ def test_few_pieces_are_measured_by_whoever_does_them_and_told_once() -> None:
     assert told == [("sweep", 27.0, "for all of it")]
 
 
+def test_work_that_tells_its_progress_is_measured_from_its_first_word_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that goes on at 60 % with 2 s for each per cent, after 3 s on its own: 40 times 2 s are left."""
+    clock = iter([100.0, 102.0, 108.0, 110.0])
+    monkeypatch.setattr("rotorgear.analysis.common.forecast.cpu_seconds", lambda: next(clock))
+    told: Told = []
+    steps: list[float] = []
+    with hearing_forecasts(lambda *said: told.append(said)):
+        measuring = Forecast("transient", 3.0).measuring(lambda fraction, step: steps.append(fraction))
+        for fraction in (0.60, 0.61, 0.64, 0.65):
+            measuring(fraction, "step")
+    assert steps == [0.60, 0.61, 0.64, 0.65]
+    assert told == [("transient", pytest.approx(3.0 + 40.0 * 2.0), "in all")]
+
+
+@pytest.mark.parametrize("what", ["transient", "response", "campbell"])
+def test_analyses_of_many_pieces_tell_what_they_take(what: str) -> None:
+    unbalance = {"shaft": "rotor", "at": "0.3 m", "magnitude": "1 kg mm"}
+    model = rg.load("models/jeffcott.toml").with_("unbalances.u", unbalance)
+    run = {
+        "transient": lambda: rg.transient(model, time=2.0, discard=0.0, steps=400, error_estimate=False),
+        "response": lambda: rg.response(model, points=60, method="direct", elements=1),
+        "campbell": lambda: rg.campbell(model, points=60, modes=4, elements=1),
+    }[what]
+    told: Told = []
+    with hearing_forecasts(lambda *said: told.append(said)):
+        run()
+    assert [what for what, seconds, _ in told if what != "compiling, once" and seconds > 0.0] == [what]
+
+
 def test_the_first_blocks_of_a_sweep_are_from_all_over_its_range(monkeypatch: pytest.MonkeyPatch) -> None:
     one: Any = type("Point", (), {"kind": "pair"})()
     monkeypatch.setattr("rotorgear.analysis.sweep.blocks._width", lambda points, steps: 5)
