@@ -19,7 +19,7 @@ from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
 from rotorgear.model.parts.carrier import Carrier
-from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
+from rotorgear.model.parts.casing import Bore, Box, Casing, Feet, Join, Mount, Ribs, Seat
 from rotorgear.model.parts.fields import Whole
 from rotorgear.model.parts.gear import Flank, Gear, GearBody
 from rotorgear.model.parts.load import Load, LoadHistory, Unbalance
@@ -63,6 +63,10 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("stiffness = { ... } of a part", StiffnessMatrix),
     ("damping = { ... } of a part", DampingMatrix),
     ("[casings.NAME]", Casing),
+    ("box = { ... } of a casing", Box),
+    ("bores = { NAME = { ... } } of a box", Bore),
+    ("ribs = { ... } of a box", Ribs),
+    ("feet = { ... } of a box", Feet),
     ("seats = { NAME = { ... } } of a casing", Seat),
     ("mounts = { SET = { ... } } of a casing", Mount),
     ("joins = [{ ... }] of a casing", Join),
@@ -91,7 +95,8 @@ RULES: dict[type[BaseModel], str] = {
     Material: """
         Give `poisson_ratio` or `shear_modulus`, not both.""",
     Casing: """
-        A bearing with `casing = "NAME"` stands on the seat of its name. Give `material`, or E, nu and density.
+        A bearing with `casing = "NAME"` stands on the seat of its name. Give `material`, or E, nu and density; and a `mesh`, a
+        `box` or `matrices`.
         See [Casings](casings.md).""",
     Seat: """
         A text is the name of a set. Else all of `axis`, `center`, `from`, `to` and `radius` say where the bore is.""",
@@ -331,16 +336,19 @@ def _list(kind: dict[str, Any]) -> str:
     if items.get("type") == "string" or any(item.get("type") == "string" for item in kind.get("prefixItems", [])):
         return "list of texts"
     if "prefixItems" in kind:
-        return (
-            "`["
-            + ", ".join(f'"{o["examples"][0]}"' for i in kind["prefixItems"] for o in i["anyOf"] if "examples" in o)
-            + "]`"
-        )
+        return f"`{_example(kind)}`"
     if items.get("type") == "array" and "prefixItems" in items:
         return f'rows of {len(items["prefixItems"])}, such as `["12 um", "0 um"]`'
     if items.get("type") == "array":
         return "6 rows of 6 numbers" if items.get("minItems") == 6 else f"rows of {_plural(items['items'])}"
     return f"list of {_plural(items)}"
+
+
+def _example(kind: dict[str, Any]) -> str:
+    """A list, or a list of lists, of example quantities."""
+    if "prefixItems" in kind:
+        return f"[{', '.join(map(_example, kind['prefixItems']))}]"
+    return next(f'"{option["examples"][0]}"' for option in kind["anyOf"] if "examples" in option)
 
 
 def _plural(kind: dict[str, Any]) -> str:

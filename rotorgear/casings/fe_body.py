@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.casings.assembly import Assembled, assemble
+from rotorgear.casings.box import box_mesh
 from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mechanisms import no_hinges, no_mechanism
@@ -178,6 +179,9 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     for part, path in settings.files:
         where = f"{address}.mesh" if len(settings.files) == 1 else f"{address}.mesh.{part}"
         meshes[part] = solid_mesh(read_mesh(path, where), settings.unit, where)
+    if settings.box is not None:
+        drawn = solid_mesh(box_mesh(settings.box, address), settings.unit, f"{address}.box")
+        meshes["box"] = replace(drawn, notes=())  # bricks of the first order are our own, and so are polygons as bores
     whole = merged(meshes, f"{address}.mesh")
     joined = join(_split(whole, settings) if settings.splits else whole, settings.joins, address)
     mesh = joined.mesh
@@ -229,8 +233,8 @@ def _split(mesh: SolidMesh, settings: CasingSettings) -> SolidMesh:
     """The mesh split as often as the settings say; bores are found before that, on the corners of the file."""
     sets = dict(mesh.sets)
     for name, place in settings.seats:
-        if not isinstance(place, str):
-            address = f"{settings.address}.seats.{name}"
+        address = f"{settings.address}.seats.{name}"
+        if not isinstance(place, str) and address not in sets:
             faces = cylinder_faces(mesh, place, address)
             sets[address] = NamedSet(np.unique(faces), [faces[:, : len(mesh.element.faces[0])]])
     mesh = replace(mesh, sets=sets)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from rotorgear.casings.assembly import Elastic
+    from rotorgear.casings.box import BoxShape
     from rotorgear.casings.patches import Cylinder
 
 Rows = tuple[tuple[float, ...], ...]
@@ -54,6 +55,7 @@ class CasingSettings:
         mass: as stated, in kg; or None.
         mass_tolerance: as a share.
         splits: how often every element is split in eight.
+        box: what is meshed here, in place of files.
         table: of the model file that it stands in.
     """
 
@@ -71,6 +73,7 @@ class CasingSettings:
     mass: float | None = None
     mass_tolerance: float = 0.05
     splits: int = 0
+    box: BoxShape | None = None
     table: str = "casings"
 
     @property

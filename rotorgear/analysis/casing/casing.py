@@ -73,13 +73,13 @@ def casing_names(model: Model, name: str | None) -> list[str]:
     Raises:
         AnalysisError: there is none, or it was reduced elsewhere.
     """
-    names = [name] if name is not None else [one for one, part in model.casings.items() if part.mesh]
+    names = [name] if name is not None else [one for one, part in model.casings.items() if part.matrices is None]
     if not model.casings:
         raise AnalysisError("casing: the model has no casing; give it one under [casings], with its mesh")
     if name is not None and name not in model.casings:
         hint = did_you_mean(name, model.casings, f"the model has: {', '.join(model.casings)}")
         raise AnalysisError(f"casing: the model has no casing {name!r}; {hint}")
-    if not names or not model.casings[names[0]].mesh:
+    if not names or model.casings[names[0]].matrices is not None:
         raise AnalysisError("casing: this casing has no mesh; its matrices come from elsewhere")
     return names
 

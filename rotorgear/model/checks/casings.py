@@ -7,13 +7,15 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem
 from rotorgear.model.checks.names import unknown
 from rotorgear.model.checks.sizes import six_by_six
+from rotorgear.model.layout.casings import bore_sizes, parts_in
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.parts.casing import Seat
+from rotorgear.model.parts.casing import Box, Casing, Seat
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.model.parts.gear import BLANK
 from rotorgear.model.parts.problems import missing, not_default, shown, told
 from rotorgear.model.parts.references import PartName
 from rotorgear.model.parts.tables import Tables
+from rotorgear.quantity import millimetres
 
 # Keys that say something of a casing which was reduced elsewhere; all others are of meshes.
 _OF_MATRICES = ("matrices", "interface", "seats", "damping_ratio")
@@ -21,6 +23,8 @@ _MATERIAL = ("youngs_modulus", "poisson_ratio", "density")
 _PLACE = ("axis", "center", "from", "to", "radius")
 # Keys of a gear body.
 _OF_MESHES = ("unit", "material", "seat", "rim", "connection", "modes_to", "damping_ratio", "mass_tolerance")
+# Keys that say something of a mesh from a file.
+_OF_FILES = ("mesh", "unit", "seats", "joins")
 _UNIT = "files of meshes carry no unit of length; say unit = 'mm' or 'm'"
 
 
@@ -49,19 +53,23 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
         lacking = [key for key in _MATERIAL if key not in given] if given and not named else []
         nu = casing.poisson_ratio or 0.0
         under = "the seats of a mesh stand under seats"
+        body = casing.mesh or casing.box
         yield from told(
             address,
             ("interface", casing.interface, "without matrices", "matrices beside it", under),
-            ("mesh", not casing.mesh, "", "missing", "required: the file of the mesh, such as 'box.msh'"),
+            ("mesh", not body, "", "missing", "required: the file of the mesh, such as 'box.msh'; or give a box"),
             ("unit", casing.mesh and casing.unit is None, "", "missing", f"required: {_UNIT}"),
             ("", named and given, f"material and {these}", "one of the two ways to say what the casing is of"),
-            ("material", casing.mesh and not (named or given), "", "missing", f"required, or {', '.join(_MATERIAL)}"),
+            ("material", body and not (named or given), "", "missing", f"required, or {', '.join(_MATERIAL)}"),
             *((key, True, "", "missing", f"required beside {these}") for key in lacking),
             ("poisson_ratio", not named and nu >= 0.5, f"{nu:.4g}", "one from 0 to below 0.5"),
         )
         for set_name, mount in casing.mounts.items():
             yield from six_by_six(f"{address}.mounts.{set_name}", mount, None)
             yield from six_by_six(f"{address}.mounts.{set_name}", None, mount.damping)
+        if casing.box is not None:
+            yield from _box(model, name, casing, casing.box)
+            continue
         if not casing.seats:
             where = "where bearings sit: seats = { left = 'name of a face set' }"
             yield Problem(f"{address}.seats", "", "missing", where)
@@ -73,7 +81,11 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     for address, part in [*model.parts_of(*tables), *((f"gears.{name}", ring) for name, ring in rings.items())]:
         owner = model.casings.get(part.casing or "")
         name = address.partition(".")[2]
-        if owner is not None and owner.matrices is None and name not in owner.seats:
+        if owner is not None and owner.box is not None and address.startswith("gears."):
+            yield Problem(
+                f"{address}.casing", shown(part.casing), "a casing from a mesh", "a box has seats of bearings only"
+            )
+        elif owner is not None and owner.matrices is None and owner.box is None and name not in owner.seats:
             hint = f"add it: casings.{part.casing}.seats.{name} = 'name of a face set'"
             yield Problem(f"{address}.casing", shown(part.casing), "a casing with a seat of this name", hint)
     for name, holder in model.bearings.items():
@@ -83,6 +95,57 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     for name, element in model.nonlinear_elements.items():
         if element.casing is not None and element.to_shaft is not None:
             yield Problem(f"nonlinear_elements.{name}", "casing and to_shaft", "one of the two")
+
+
+def _box(model: Tables, name: str, casing: Casing, box: Box) -> Iterator[Problem]:
+    """A box is larger than its walls, and holds bearings on axes along z whose outer rings are known."""
+    address = f"casings.{name}.box"
+    for key in not_default(casing, _OF_FILES):
+        yield Problem(
+            f"casings.{name}.{key}", "beside a box", "leave it out", "it says something of a mesh from a file"
+        )
+    inside = [abs(b - a) for a, b in zip(*box.corners, strict=True)]
+    ends = sorted(corner[2] for corner in box.corners)
+    half = 0.5 * box.wall
+    yield from told(
+        address,
+        ("corners", min(inside) <= 0.0, "", "two corners that differ in x, y and z", "the inner space has no volume"),
+        (
+            "wall",
+            0.0 < min(inside) <= 2.0 * box.wall,
+            shown(box.wall),
+            f"less than half of the inner space, which measures {millimetres(min(inside))} there",
+        ),
+    )
+    for number, z in enumerate(box.walls):
+        if not ends[0] + half < z < ends[1] - half:
+            what = f"a place between the ends, {millimetres(ends[0])} and {millimetres(ends[1])}"
+            yield Problem(f"{address}.walls[{number}]", shown(z), what)
+    for number, axis in enumerate("xyz"):
+        low, high = sorted(corner[number] for corner in box.corners)
+        for at, place in enumerate(getattr(box.ribs, axis) if box.ribs else ()):
+            reach = 0.5 * box.ribs.thickness - box.wall if box.ribs else 0.0
+            if not low + reach <= place <= high - reach:
+                what = f"a place on the box, {millimetres(low + reach)} to {millimetres(high - reach)}"
+                yield Problem(f"{address}.ribs.{axis}[{at}]", shown(place), what)
+        if box.feet and axis != box.feet.side[1] and 2.0 * box.feet.size[number] > high - low + 2.0 * box.wall:
+            what = f"at most half of the box, {millimetres(0.5 * (high - low) + box.wall)}"
+            yield Problem(f"{address}.feet.size[{number}]", shown(box.feet.size[number]), what)
+    parts = parts_in(model, name)
+    for bearing in box.bores:
+        if bearing not in parts:
+            yield unknown(f"{address}.bores.{bearing}", bearing, list(parts), "a bearing in this casing")
+    if not parts:
+        yield Problem(address, "", "bearings that stand in it", f"say casing = '{name}' in each of them")
+    for bearing, part in parts.items():
+        table = "bearings" if bearing in model.bearings else "nonlinear_elements"
+        shaft = model.shafts.get(part.shaft)
+        if shaft is not None and shaft.frame.is_turned:
+            hint = "a box has seats on axes along z; use a mesh"
+            yield Problem(f"{table}.{bearing}.casing", f"on shaft '{part.shaft}', which is not along z", "ground", hint)
+        elif bore_sizes(box, bearing, part) is None:
+            what = "required where no designation tells the outer ring: { diameter = '80 mm', width = '18 mm' }"
+            yield Problem(f"{address}.bores.{bearing}", "", "missing", what)
 
 
 def _all_motions(model: Tables, beside: str, why: str) -> Iterator[Problem]:

@@ -15,14 +15,17 @@ import numpy as np
 
 from rotorgear.casings.settings import CasingSettings, JoinSettings, MountSettings
 from rotorgear.errors import AnalysisError
-from rotorgear.model.parts.casing import ONLY_MESH, UNIT_LENGTHS, Seat
+from rotorgear.forces.designations import designated
+from rotorgear.model.parts.casing import ONLY_MESH, UNIT_LENGTHS, Box, Seat
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import LIBRARY, Material, Place
+from rotorgear.model.parts.supports import Bearing, NonlinearElement
 from rotorgear.model.parts.tables import Tables
 from rotorgear.progress import listener
 from rotorgear.quantity import did_you_mean, millimetres
 
 if TYPE_CHECKING:
+    from rotorgear.casings.box import BoxSeat, BoxShape
     from rotorgear.casings.patches import Cylinder
     from rotorgear.casings.reduced_body import ReducedBody
     from rotorgear.casings.wheel import ReducedWheel
@@ -62,7 +65,7 @@ def casing_settings(model: Tables, name: str) -> CasingSettings:
     from rotorgear.casings.assembly import Elastic
 
     casing = model.casings[name]
-    assert casing.unit is not None, "checked: a mesh has a unit"
+    shape = None if casing.box is None else box_shape(model, name)
     # Checked: where there is no material, all three values are given.
     material = Elastic(casing.youngs_modulus or 0.0, casing.poisson_ratio or 0.0, casing.density or 0.0)
     if casing.material is not None:
@@ -72,19 +75,84 @@ def casing_settings(model: Tables, name: str) -> CasingSettings:
     return CasingSettings(
         name=name,
         files=tuple((part, Path(file)) for part, file in casing.mesh.items()),
-        unit=UNIT_LENGTHS[casing.unit],
+        unit=UNIT_LENGTHS[casing.unit or "m"],  # checked: a mesh has one
         material=material,
         held=casing.held,
         mounts=tuple(
             MountSettings(place, mount.as_rows(), mount.damping.as_rows() if mount.damping else none)
             for place, mount in casing.mounts.items()
         ),
-        seats=tuple((bearing, _place(seat)) for bearing, seat in casing.seats.items()),
+        seats=(
+            tuple((bearing, _place(seat)) for bearing, seat in casing.seats.items())
+            if shape is None
+            else tuple((seat.name, _bore(seat)) for seat in shape.seats)
+        ),
+        box=shape,
         joins=tuple(JoinSettings(*one.faces, one.stiffness) for one in casing.joins),
         mass=casing.mass,
         splits=casing.splits,
         **{key: getattr(casing, key) for key in _SAME},
     )
+
+
+def box_shape(model: Tables, name: str) -> BoxShape:
+    """A box in plain values, with a seat for each bearing that names it as its casing; checked: all have bores along z."""
+    from rotorgear.casings.box import BoxSeat, BoxShape
+
+    box = model.casings[name].box
+    assert box is not None, "asked for boxes only"
+    low, high = (_three(edge(box.corners, axis=0)) for edge in (np.min, np.max))
+    longest = max(b - a for a, b in zip(low, high, strict=True)) + 2.0 * box.wall
+    seats = []
+    for part_name, part in parts_in(model, name).items():
+        diameter, width = bore_sizes(box, part_name, part) or (0.0, 0.0)
+        shaft = model.shafts[part.shaft]
+        at = _three(shaft.frame.at(shaft.station(part.at)))
+        seats.append(BoxSeat(part_name, at, 0.5 * diameter, width))
+    ends = [
+        (shaft.frame.at(shaft.station("start")), shaft.frame.at(shaft.station("end")))
+        for shaft in model.shafts.values()
+    ]
+    return BoxShape(
+        low=low,
+        high=high,
+        wall=box.wall,
+        walls=box.walls,
+        boss=box.boss or box.wall,
+        seats=tuple(seats),
+        shafts=tuple((*_three(begin)[:2], float(begin[2]), float(end[2])) for begin, end in ends),
+        ribs=(box.ribs.x, box.ribs.y, box.ribs.z) if box.ribs else ((), (), ()),
+        rib=(box.ribs.thickness, box.ribs.height) if box.ribs else (0.0, 0.0),
+        feet=box.feet.size if box.feet else (),
+        feet_side=box.feet.side if box.feet else "-y",
+        element=box.element or max(0.1 * longest, 4.0 * box.wall),
+    )
+
+
+def parts_in(model: Tables, name: str) -> dict[str, Bearing | NonlinearElement]:
+    """Bearings and nonlinear elements that stand in a casing."""
+    parts: dict[str, Bearing | NonlinearElement] = {**model.bearings, **model.nonlinear_elements}
+    return {part_name: part for part_name, part in parts.items() if part.casing == name}
+
+
+def bore_sizes(box: Box, name: str, part: Bearing | NonlinearElement) -> tuple[float, float] | None:
+    """Diameter and width in m of the outer ring of a bearing: given, or of its designation; None where neither tells them."""
+    if name in box.bores:
+        return box.bores[name].diameter, box.bores[name].width
+    rolling = part.rolling if isinstance(part, Bearing) else None
+    ring = designated(rolling.designation or "") if rolling is not None else None
+    if rolling is None or ring is None or not math.isfinite(ring.outer + ring.width):
+        return None
+    rows = 1 if rolling.arrangement == "single" else 2
+    return ring.outer, ring.width + (rows - 1) * (rolling.row_distance or ring.width)
+
+
+def _bore(seat: BoxSeat) -> Cylinder:
+    """The bore of a seat of a box."""
+    from rotorgear.casings.patches import Cylinder
+
+    x, y, z = seat.at
+    return Cylinder((x, y, z), (0.0, 0.0, 1.0), -0.5 * seat.width, 0.5 * seat.width, seat.radius)
 
 
 def wheel_settings(name: str, gear: Gear, material: Material) -> CasingSettings:

@@ -21,6 +21,8 @@ _CENTER = (
     "the two coordinates across an axis x, y or z, in the order x y z, such as ['-55 mm', '130 mm'], or all three of a point on "
     "an axis of any direction"
 )
+_CORNER = "a corner x y z such as ['-60 mm', '-90 mm', '-40 mm']"
+_EXTENTS = "three lengths along x, y and z such as ['40 mm', '15 mm', '30 mm']"
 _POINT = "the point x y z of the seat such as ['-55 mm', '130 mm', '20 mm']"
 
 
@@ -129,6 +131,59 @@ class Join(Part):
     )
 
 
+class Bore(Part):
+    """The outer ring of a bearing in a box."""
+
+    diameter: si.PositiveLength = Field(description="outer diameter of the bearing")
+    width: si.PositiveLength = Field(description="width of the bearing")
+
+
+class Ribs(Part):
+    """Ribs around the outside of a box, in planes across x, y or z."""
+
+    x: tuple[si.Length, ...] = Field((), description="x of the middle of each rib that runs around in a plane across x")
+    y: tuple[si.Length, ...] = Field((), description="the same across y")
+    z: tuple[si.Length, ...] = Field((), description="the same across z")
+    thickness: si.PositiveLength = Field(description="thickness of each")
+    height: si.PositiveLength = Field(description="how far they stand out of the walls")
+
+
+class Feet(Part):
+    """Four feet at the corners of a face of a box; their soles are the set `feet`."""
+
+    side: Literal["-y", "+y", "-x", "+x"] = Field("-y", description="face of the box that they stand on")
+    size: Annotated[tuple[si.PositiveLength, si.PositiveLength, si.PositiveLength], listed(3, _EXTENTS)] = Field(
+        description="extents of each foot along x, y and z"
+    )
+
+
+class Box(Part):
+    """A casing in numbers, meshed by rotorgear: a box with its edges along x, y and z, and a bored block for each bearing."""
+
+    corners: Annotated[
+        tuple[
+            Annotated[tuple[si.Length, si.Length, si.Length], listed(3, _CORNER)],
+            Annotated[tuple[si.Length, si.Length, si.Length], listed(3, _CORNER)],
+        ],
+        listed(2, "two opposite corners of the inner space"),
+    ] = Field(description="two opposite corners x y z of the inner space")
+    wall: si.PositiveLength = Field(description="thickness of the walls")
+    walls: tuple[si.Length, ...] = Field((), description="z of the middle of each inner wall across the shafts")
+    boss: si.PositiveLength | None = Field(
+        None, description="least thickness of the block around the bore of a bearing; default: that of the walls"
+    )
+    bores: dict[Name, Bore] = Field(
+        default_factory=dict,
+        description="diameter and width of the outer ring by the name of the bearing; default: those of its designation",
+    )
+    ribs: Ribs | None = Field(None, description="ribs on the outside")
+    feet: Feet | None = Field(None, description="feet; without them hold a face: '-x', '+x', '-y', '+y', '-z' or '+z'")
+    element: si.PositiveLength | None = Field(
+        None,
+        description="largest size of an element; default: a tenth of the longest edge, four times the wall at least",
+    )
+
+
 class Casing(Part):
     """An elastic body from a finite-element mesh, reduced to the motions of its bearing seats and a few modes of its own."""
 
@@ -136,6 +191,7 @@ class Casing(Part):
         default_factory=dict,
         description="file of the mesh, beside the model file; or several by name: `{ lower = ..., upper = ... }`",
     )
+    box: Box | None = Field(None, description="walls, ribs and feet in numbers, in place of a mesh")
     matrices: str | None = Field(
         None, description="file of a body that was reduced elsewhere (.npz with stiffness and mass), in place of a mesh"
     )
