@@ -122,6 +122,7 @@ def test_an_own_integration_is_explained_and_the_baseline_is_that_of_inertia(tmp
     for name, own, still in (("first", first, rigid[0]), ("s", second, rigid[1])):
         row = next(row for row in result.shares if row.name == name and row.part == "variance")
         assert row.explained > 1.0 - 1e-5
+        assert row.of_record == pytest.approx(1.0)
         assert row.quasi_static == pytest.approx(1.0 - np.var(own - still) / np.var(own), abs=1e-4)
     assert {row.part for row in result.shares} == {"size", "variance", "5 - 20 Hz", "20 - 100 Hz"}
     assert "spin" in result.verdict

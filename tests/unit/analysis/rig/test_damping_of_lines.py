@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.rig.measured import joined
+from rotorgear.analysis.rig.misfit import Misfit, first_fit
 from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.model.numbers import free_numbers
 from rotorgear.system.plan import Plan
@@ -45,6 +47,26 @@ def test_slopes_of_damping_ratios_are_those_of_differences() -> None:
         step = 1e-4 * np.eye(len(x))[j]
         above, below = (np.log(model.modes(x + s).damping_ratio) for s in (step, -step))
         np.testing.assert_allclose(slopes[:, j], (above - below) / 2e-4, rtol=1e-5, atol=1e-6)
+
+
+def test_slopes_of_a_misfit_of_two_campaigns_are_those_of_differences() -> None:
+    """Lines with damping ratios at rest and of a heavier disk: the second campaign's modes stand behind the first's."""
+    model = held_chain()
+    heavy = {"disks.jb.polar_inertia": 1.5 * model.disks["jb"].polar_inertia}
+    campaigns = [rg.Campaign(lines_of(model)), rg.Campaign(lines_of(model.with_(heavy)), changes=heavy)]
+    free = "couplings.*.stiffness.torsion, couplings.k1.damping.torsion, supports.ground.damping.torsion"
+    every, owner = joined([campaign.measured(model)[0] for campaign in campaigns])
+    there = [RigModel(free_numbers(model.with_(one.changes), free), Plan(1), 500.0) for one in campaigns]
+    misfit = Misfit(tuple(there), every, owner, 1e-3, 0.5, damping_noise=1e-2)
+    x = 0.1 * np.random.default_rng(5).standard_normal(len(misfit.numbers.addresses))
+    pairs = first_fit(misfit).pairs
+    assert {every.lines[pair.line].damping_ratio is None for pair in pairs} == {False}
+    here = misfit.beside(x, misfit.modes(x), pairs)
+    slopes = misfit.linear(here).jacobian
+    for j in range(len(x)):
+        step = 1e-4 * np.eye(len(x))[j]
+        above, below = (misfit.beside(x + s, misfit.modes(x + s), pairs).residual for s in (step, -step))
+        np.testing.assert_allclose(slopes[:, j], (below - above) / 2e-4, rtol=1e-4, atol=1e-6)
 
 
 def test_dampers_and_springs_are_found_from_ring_downs() -> None:

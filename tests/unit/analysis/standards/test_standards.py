@@ -109,6 +109,36 @@ def test_a_response_that_rises_again_has_its_factor_from_the_other_side() -> Non
     assert peak.amplification_factor == pytest.approx(peak.speed / (2.0 * (peak.speed - peak.below)))
 
 
+@pytest.mark.parametrize(("fall", "known"), [(1.4, True), (2.1, False)])
+def test_a_response_that_falls_too_late_has_its_factor_from_the_other_side(fall: float, known: bool) -> None:
+    """A peak at 5 that rises over 1 and falls to 0.707 of itself within 1 or `fall` of its own speed."""
+
+    def response(speed: float) -> float:
+        width = 1.0 if speed < 5.0 else 5.0 * fall
+        return 1.0 - (1.0 - math.sqrt(0.5)) * ((speed - 5.0) / width) ** 2
+
+    peak = rules.response_peak(response, 5.0, 0.3)
+    assert peak is not None
+    assert peak.below == pytest.approx(4.0, rel=1e-6)
+    assert peak.above == pytest.approx(5.0 * (1.0 + fall), rel=1e-6) if known else math.isnan(peak.above)
+
+
+def test_a_peak_is_found_in_few_looks_at_any_speed() -> None:
+    for natural in (1e-2, 1e4):
+        looks = []
+
+        def response(speed: float, natural: float = natural, looks: list[float] = looks) -> float:
+            looks.append(speed)
+            r = speed / natural
+            return abs(1.0 / (1.0 - r * r + 0.06j * r))
+
+        peak = rules.response_peak(response, natural, 0.03)
+        assert peak is not None
+        assert peak.speed == pytest.approx(natural * math.sqrt(1.0 - 2.0 * 0.03**2), rel=1e-6)
+        assert peak.amplification_factor == pytest.approx(0.5 / 0.03, rel=5e-3)
+        assert len(looks) < 100
+
+
 def test_the_orbit_at_the_operating_speed_is_that_of_the_trial_unbalance() -> None:
     zeta = 0.05
     speed = 1.4
