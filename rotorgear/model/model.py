@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import warnings
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from functools import cached_property
 from html import escape
 from operator import is_not
@@ -17,7 +18,7 @@ from pydantic import BaseModel, Field, ValidationError
 from rotorgear.errors import ModelError
 from rotorgear.files.bounds import MESH
 from rotorgear.files.read import UnreadableError, digest_of_named
-from rotorgear.model.address import with_values
+from rotorgear.model.address import value_at, with_values
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
 from rotorgear.model.layout.carriers import repeated
@@ -25,8 +26,7 @@ from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
 from rotorgear.model.parts.carrier import MARK
-from rotorgear.model.parts.fields import MOTIONS, Name
-from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.fields import MOTIONS, Name, Part
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import counted
@@ -212,8 +212,8 @@ def _is_table(parts: Any) -> bool:
 __all__ = ["MOTIONS", "SCHEMA_VERSION", "Model"]
 
 
-# Stands for the operating point while everything else is written; no text of a model holds a null character.
-_ELSEWHERE = "\0operation"
+# Stands for a part while everything else is written, with its number; no text of a model holds a null character.
+_ELSEWHERE = "\0"
 # Keys of a gear body that only a mesh has.
 _OF_MESHES = ("connection", "damping_ratio", "mass_tolerance")
 
@@ -240,22 +240,29 @@ def model_hash(model: Model) -> str:
     return kept[0][1]
 
 
-def hashes_over_operation(model: Model) -> Callable[[Operation], str]:
-    """What gives the `model_hash` of a model with another operating point; what else it is made of is written once.
+def hashes_over(model: Model, places: Sequence[tuple[str, ...]]) -> Callable[[Sequence[Part]], str]:
+    """What gives the `model_hash` of a model with other parts at some places; what else it is made of is written once.
 
-    Everything beside the operating point stays as it is in the model, whose hash is not taken from files again.
+    Everything beside these parts stays as it is in the model, whose hash is not taken from files again.
+
+    Args:
+        model: without planets. places: of parts whose fields a hash takes as they are, such as ("operation",) or
+            ("meshes", "pair").
     """
     fields = _hashed_fields(model)
-    fields["operation"] = _ELSEWHERE
-    before, after = _canonical(fields).split(_canonical(_ELSEWHERE))
+    for number, place in enumerate(places):
+        value_at(fields, place[:-1])[place[-1]] = f"{_ELSEWHERE}{number}"
+    mark = re.escape(_canonical(_ELSEWHERE)[:-1])
+    before, *rest = re.split(f'{mark}([0-9]+)"', _canonical(fields))
     begun = hashlib.sha256(before.encode("utf-8"))
-    rest = after.encode("utf-8")
+    pieces = [(int(number), text.encode("utf-8")) for number, text in zip(rest[::2], rest[1::2], strict=True)]
 
-    def of(operation: Operation) -> str:
+    def of(parts: Sequence[Part]) -> str:
         digest = begun.copy()
-        own = operation.model_dump(mode="json", exclude_none=True)
-        digest.update(_canonical(own).encode("utf-8"))
-        digest.update(rest)
+        for number, text in pieces:
+            own = parts[number].model_dump(mode="json", exclude_none=True)
+            digest.update(_canonical(own).encode("utf-8"))
+            digest.update(text)
         return digest.hexdigest()
 
     return of

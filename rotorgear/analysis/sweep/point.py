@@ -5,7 +5,7 @@ What repeats in a model that turns: orders of all laws, and the period that they
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,18 +21,13 @@ from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, 
 from rotorgear.analysis.transient.notes import left_out_in_time, unread_loads
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.note import Note
 from rotorgear.solvers.batch.columns import OWN_LAW, TABLE_ROWS, Columns
 from rotorgear.solvers.batch.own_laws import OwnLaws, own_laws
 from rotorgear.solvers.batch.small_system import MOST_DOFS, Shapes, SmallSystem, Still, small_system
-from rotorgear.solvers.time.contact_equilibrium import (
-    Equilibrium,
-    equilibrium,
-    forces_at_rest,
-    free_motions,
-    unbalanced,
-)
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, Expanded, unbalanced
 from rotorgear.solvers.time.local_forces import LocalForces
-from rotorgear.solvers.time.local_system import LocalSystem, Rotation
+from rotorgear.solvers.time.local_system import LocalSystem, Rotation, local_tangent
 from rotorgear.system.local import local_model
 from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import flow_system
@@ -200,6 +195,32 @@ class AtRest:
     def _own(self) -> dict[bytes, OwnLaws]:
         return {}
 
+    def about(self, other: AtRest) -> AtRest:
+        """The same, with what it shares with another state of these matrices and this reference stiffness taken from there."""
+        found = replace(self)
+        found.__dict__.update(still=other.still.under(self.local, self.rest), period=other.period)
+        return found
+
+
+@dataclass(frozen=True)
+class Built:
+    """A model as a system with local forces, before anything is solved.
+
+    Attributes:
+        local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
+        left_out: what it leaves out. speed: at which it was built, rad/s. modal_ratio: damping added to every mode.
+        is_large: whether it is to be reduced, to at most `most` coordinates.
+    """
+
+    local: LocalSystem
+    orders: list[Fraction]
+    contact: tuple[str, ...]
+    left_out: tuple[Note, ...]
+    speed: float
+    modal_ratio: float
+    is_large: bool
+    most: int
+
 
 class PointMaker:
     """Makes models ready, and keeps states at rest for models where only the speed is another.
@@ -215,7 +236,7 @@ class PointMaker:
         self._modes = modes
         self._elements = elements
         self._known: dict[str, AtRest | Large] = {}
-        self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
+        self._expanded_last: tuple[bytes, Expanded] | None = None
         self.left_out: list[tuple[str, ...]] = []
 
     def __call__(self, model: Model) -> Point | Large:
@@ -246,7 +267,7 @@ class PointMaker:
             AnalysisError: as for one speed.
         """
         assert model.operation is not None
-        slow = 1.0 if (model.operating_speed or 0.0) > 0.0 else -1.0
+        slow = speed_of_all(model)
         standing = model.operation.model_copy(update={"speed": slow})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
         if key not in self._known:
@@ -257,10 +278,27 @@ class PointMaker:
         known = self._known[key]
         return lambda speed: self._at(known, speed, model.damping.modal_ratio)
 
+    def made(self, built: Built, expanded: Expanded | None = None) -> AtRest | Large:
+        """The state at rest of what was built, made ready for statics as `expanded`; the whole where it is to be reduced."""
+        local, orders, contact = built.local, built.orders, built.contact
+        if self._modes is not None or built.is_large or np.any(local.M.diagonal() <= 0.0):
+            return Large(local, orders, contact, built.speed, built.modal_ratio, built.most)
+        return at_rest(local, orders, contact, expanded or self._expanded(local))
+
     def _at(self, known: AtRest | Large, speed: float, modal_ratio: float) -> Point | Large:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
     def _made(self, model: Model, speed: float) -> AtRest | Large:
+        built = self.built(model, speed)
+        self.left_out.append(built.left_out)
+        return self.made(built)
+
+    def built(self, model: Model, speed: float) -> Built:
+        """The system of a model with local forces, about the state that motions at a speed in rad/s start from.
+
+        Raises:
+            AnalysisError: no mesh that turns, no common period, or forces that sweeps don't take.
+        """
         system = flow_system(model, plan_in_time(self._elements)).with_state(state_in_time(model, speed))
         system.require_freedom()
         for planets in turning_carriers(system.layout):
@@ -273,7 +311,7 @@ class PointMaker:
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
         watched = np.hstack([built.local.watched_vectors, approach])
         built = replace(built, local=replace(built.local, watched=watched))
-        self.left_out.append((*left_out_in_time(built, speed, contacts_only=True), *unread_loads(model)))
+        left_out = (*left_out_in_time(built, speed, contacts_only=True), *unread_loads(model))
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")
@@ -286,43 +324,53 @@ class PointMaker:
         contact = tuple(part.label for part in built.parts if part.is_mesh)
         # Casings and gear bodies bring static shapes at high frequencies, which few of the contacts' motions need.
         bodies = bool(system.model.casings) or bool(system.nodes.bodies)
-        large = system.n > MOST_DOFS or (bodies and system.n > LEAST_DOFS)
-        if self._modes is not None or large or np.any(built.local.M.diagonal() <= 0.0):
-            most = MOST_WITH_BODIES if bodies else MOST_COORDINATES
-            return Large(built.local, orders, contact, speed, model.damping.modal_ratio, most)
-        return at_rest(built.local, orders, contact, self._free_of(built.local))
+        is_large = system.n > MOST_DOFS or (bodies and system.n > LEAST_DOFS)
+        most = MOST_WITH_BODIES if bodies else MOST_COORDINATES
+        return Built(built.local, orders, contact, left_out, speed, model.damping.modal_ratio, is_large, most)
 
-    def _free_of(self, local: LocalSystem) -> np.ndarray:
-        """Motions without strain; those of the point before where inertia and stiffness are the same to the last bit."""
+    def _expanded(self, local: LocalSystem) -> Expanded:
+        """The system made ready for statics; that of the point before where its matrices are the same to the last bit."""
         about = local.stiffness_about
-        key = b"".join(x.tobytes() for A in (local.M, about) for x in (A.data, A.indices, A.indptr))
-        if key != self._free[0]:
-            self._free = key, free_motions(local.M, about)
-        return self._free[1]
+        key = b"".join(x.tobytes() for A in (local.M, about, local.B) for x in (A.data, A.indices, A.indptr))
+        if self._expanded_last is None or key != self._expanded_last[0]:
+            self._expanded_last = key, Expanded(local)
+        return self._expanded_last[1]
+
+
+def speed_of_all(model: Model) -> float:
+    """The speed in rad/s at which models are made whose state at rest serves all speeds of their sense."""
+    return 1.0 if (model.operating_speed or 0.0) > 0.0 else -1.0
 
 
 def at_rest(
-    local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], free: np.ndarray | None = None
+    local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], expanded: Expanded | None = None
 ) -> AtRest:
     """Find the state at rest of a system with local forces.
 
     Args:
         local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
-        free: its motions without strain, where they are known.
+        expanded: the system made ready for statics, where it is.
     """
-    rest = equilibrium(local, free)
-    mean = tuple(law.mean() for law in local.forces.laws)
-    static = forces_at_rest(local, mean, rest.free)
-    if not np.all(np.isfinite(static)):
-        # Contacts that are open at rest: what the driving flanks alone would carry.
-        static = local.forces.reference_stiffness @ (local.B.T @ rest.q)
-    return AtRest(local, orders, contact, rest, static, unbalanced(local, rest.free))
+    expanded = expanded or Expanded(local)
+    rest = expanded.equilibrium(local)
+    mean = replace(local, forces=local.forces.mean)
+    found = expanded.equilibrium(mean)
+    # Contacts that are open at rest: what the driving flanks alone would carry.
+    usable = found.converged and bool(np.all(np.isfinite(found.force)))
+    static = found.force if usable else local.forces.reference_stiffness @ (local.B.T @ rest.q)
+    at_zero, _ = local_tangent(mean, np.zeros(local.m), 0.0)
+    drifts = bool(rest.free.shape[1]) and unbalanced(local, rest.free, at_zero, expanded.separate)
+    return AtRest(local, orders, contact, rest, static, drifts)
 
 
-def ready_reduced(point: Large, local: LocalSystem, shapes: Shapes) -> Point:
-    """Make a point ready that was reduced."""
-    known = replace(at_rest(local, point.orders, point.contact), shapes=shapes)
-    return ready(known, point.speed, point.modal_ratio)
+def ready_reduced(points: Sequence[Large], found: Sequence[tuple[LocalSystem, Shapes]]) -> Iterator[Point]:
+    """Make points ready that share a `key`, each with its system in their common basis."""
+    expanded = Expanded(found[0][0])
+    first: AtRest | None = None
+    for point, (local, shapes) in zip(points, found, strict=True):
+        known = replace(at_rest(local, point.orders, point.contact, expanded), shapes=shapes)
+        first = first or known
+        yield ready(known.about(first), point.speed, point.modal_ratio)
 
 
 def ready(known: AtRest, speed: float, modal_ratio: float = 0.0) -> Point:

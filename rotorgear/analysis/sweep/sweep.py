@@ -18,10 +18,10 @@ from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.stream import Stream
 from rotorgear.analysis.sweep.axes import Axis, along, axis_of, number_in, points_of
+from rotorgear.analysis.sweep.between_ends import BetweenEnds
 from rotorgear.analysis.sweep.blocks import Job, blocks, packed, run_blocks, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, FAILED, TOLERANCE, period_in
 from rotorgear.analysis.sweep.gather import gathered
-from rotorgear.analysis.sweep.over_speed import OverSpeed
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
 from rotorgear.analysis.sweep.reduce import Large, Reducer
 from rotorgear.analysis.sweep.request import Request, start_of, steps_of
@@ -165,7 +165,7 @@ def ready_points(
 ) -> tuple[list[str], list[Point | None], list[str], list[tuple[str, ...]], Reduction | None]:
     """Hashes of the models, points made ready, why a point failed, what is left out of each model, and what was reduced."""
     maker = PointMaker(request.modes, request.elements)
-    one_over_speed = OverSpeed(model, axes, along(model, axes), maker) if change is None else None
+    between = BetweenEnds(model, axes, along(model, axes), maker) if change is None else None
     change = change or along(model, axes)
     values = points_of(axes)
     texts = [repr(value) for value in values]
@@ -175,7 +175,7 @@ def ready_points(
     for i, value in enumerate(values):
         progress(_READY * i / len(values), f"point {i + 1} of {len(values)}")
         try:
-            known = one_over_speed(value) if one_over_speed else None
+            known = between(value) if between else None
             if known is not None:
                 texts[i], make = known
                 made = make()
@@ -198,10 +198,9 @@ def ready_points(
             progress(_READY, f"{text}{size} coordinates, {100.0 * error:.2g} % off")
 
         try:
-            for (i, large), (local, shapes) in zip(
-                members, reducer([large for _, large in members], heard), strict=True
-            ):
-                points[i] = ready_reduced(large, local, shapes)
+            large = [one for _, one in members]
+            for (i, _), point in zip(members, ready_reduced(large, reducer(large, heard)), strict=True):
+                points[i] = point
         except RotorgearError as error:
             for i, _ in members:
                 points[i] = None

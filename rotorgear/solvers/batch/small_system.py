@@ -5,6 +5,7 @@ z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = 
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -112,19 +113,29 @@ class Still:
             self.root = L = np.linalg.cholesky(local.M.toarray())
         except np.linalg.LinAlgError:
             raise AnalysisError("a degree of freedom has no inertia: a sweep needs mass on all of them") from None
-        self.local = local
-        self.equilibrium = rest
         self.shapes = shapes
         self.inverse = inverse = np.linalg.inv(L)
-        self.B = B = inverse @ local.B.toarray()
-        self.clean_B = _clean(B)
+        self.B = inverse @ local.B.toarray()
+        self.clean_B = _clean(self.B)
         self.K = _clean(inverse @ local.K.toarray() @ inverse.T)
-        self.load = inverse @ local.load
         self.W = _clean(inverse @ local.watched_vectors)
         self.about = inverse @ local.stiffness_about.toarray() @ inverse.T
-        self.held = B @ local.forces.reference_damping @ B.T
-        self.rest = L.T @ rest.q
         self._damping = local.D.toarray(), None if local.G is None else local.G.toarray()
+        self._put(local, rest)
+
+    def _put(self, local: LocalSystem, rest: Equilibrium) -> None:
+        self.local = local
+        self.equilibrium = rest
+        self.load = self.inverse @ local.load
+        self.held = self.B @ local.forces.reference_damping @ self.B.T
+        self.rest = self.root.T @ rest.q
+
+    def under(self, local: LocalSystem, rest: Equilibrium) -> Still:
+        """The same matrices under other loads and laws of the same reference stiffness, with their equilibrium."""
+        _ = self.standing, self.modes, self.rigid  # what both have is found once
+        found = copy(self)
+        found._put(local, rest)
+        return found
 
     @cached_property
     def standing(self) -> np.ndarray:

@@ -7,6 +7,7 @@ What the loads do on free motions R is carried by inertia: f - M R (R^T M R)^-1 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,7 +15,6 @@ import scipy.sparse as sp
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.sparse.newton import local_equilibrium
 from rotorgear.solvers.sparse.nullspace import in_comparable_units, inertia_relief, support_dofs
-from rotorgear.solvers.time.local_forces import LocalLaw
 from rotorgear.solvers.time.local_system import LocalSystem, local_tangent
 
 # What of the loads on a free motion may be left, relative to the sum of their absolute parts: torques come with six digits.
@@ -60,35 +60,61 @@ def held_and_unheld(seen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.
     return free @ right[:held].T, free @ right[held:].T
 
 
+class Expanded:
+    """A system about the reference stiffness of its laws, made ready for any loads, and any laws of that reference.
+
+    Args:
+        system: M, K, B and the reference stiffness. free: its free motions (n, r), where they are known.
+    """
+
+    def __init__(self, system: LocalSystem, free: np.ndarray | None = None) -> None:
+        self._about = system.M, system.stiffness_about
+        self.free = free_motions(*self._about) if free is None else free
+        self._static = inertia_relief(system.stiffness_about, system.M, self.free)
+        self._B = B = system.B.toarray()
+        self._X = self._static(B) if system.m else np.zeros((system.n, 0))
+        self._A = B.T @ self._X
+
+    def equilibrium(self, system: LocalSystem) -> Equilibrium:
+        """The static state of a system with these matrices at t = 0, at rest relative to the prescribed rotation."""
+        q0 = self._static(system.load)
+        k = system.forces.reference_stiffness
+        found = local_equilibrium(
+            np.asarray(self._B.T @ q0),
+            self._A,
+            k,
+            lambda d: local_tangent(system, d, 0.0),
+            extents=system.forces.extents,
+        )
+        q = q0 + self._X @ (k @ found.d - found.force) if found.converged else q0
+        return Equilibrium(q, found.converged, self.free, found.force)
+
+    @cached_property
+    def separate(self) -> Separate:
+        """The free motions, body by body."""
+        return separate_motions(self._about, self.free)
+
+
+# Free motions (n, r) of one body by 1 each, with what has to follow, in comparable units, and these units (n, 1).
+Separate = tuple[np.ndarray, np.ndarray]
+
+
+def separate_motions(about: tuple[sp.csc_array, sp.csc_array], R: np.ndarray) -> Separate:
+    """The motions R (n, r) without strain of mass and stiffness (n, n), body by body."""
+    M, K = about
+    units = in_comparable_units(np.ones((len(R), 1)), K, M)
+    motions = R * units
+    return motions @ np.linalg.inv(motions[support_dofs(motions)]), units
+
+
 def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibrium:
     """Return the static state at t = 0, at rest relative to the prescribed rotation; `free`: its free motions, where known."""
-    K = system.stiffness_about
-    M = system.M
-    R = free_motions(M, K) if free is None else free
-    B = system.B.toarray()
-    static = inertia_relief(K, M, R)
-    q0 = static(system.load)
-    X = static(B) if system.m else np.zeros((system.n, 0))
-    forces = system.forces
-    k = forces.reference_stiffness
-    found = local_equilibrium(
-        np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), extents=forces.extents
-    )
-    q = q0 + X @ (k @ found.d - found.force) if found.converged else q0
-    return Equilibrium(q, found.converged, R, found.force)
+    return Expanded(system, free).equilibrium(system)
 
 
-def forces_at_rest(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
-    """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none.
-
-    `free`: the free motions of the system, where they are known. Both are expanded about the same stiffness, on which nothing
-    depends.
-    """
-    found = equilibrium(replace(system, forces=system.forces.with_laws(laws)), free)
-    return found.force if found.converged else np.full(system.m, np.nan)
-
-
-def unbalanced(system: LocalSystem, R: np.ndarray, force: np.ndarray | None = None) -> bool:
+def unbalanced(
+    system: LocalSystem, R: np.ndarray, force: np.ndarray | None = None, separate: Separate | None = None
+) -> bool:
     """Whether loads push a motion that nothing holds: the one criterion, of all analyses in time.
 
     Each motion moves one body by 1, and what has to follow; the work of the loads on it is compared with the sum of its
@@ -98,16 +124,17 @@ def unbalanced(system: LocalSystem, R: np.ndarray, force: np.ndarray | None = No
         system: with its loads.
         R: (n, r), a basis of its motions without strain.
         force: (m,), local forces; None: the mean ones, of what pulses in time its mean.
+        separate: the motions body by body, where they are known.
     """
     if not R.shape[1]:
         return False
     if force is None:
         force, _ = local_tangent(replace(system, forces=system.forces.mean), np.zeros(system.m), 0.0)
-    units = in_comparable_units(np.ones((system.n, 1)), system.stiffness_about, system.M)
-    motions = R * units
-    motions = motions @ np.linalg.inv(motions[support_dofs(motions)])
+    motions, units = separate or separate_motions((system.M, system.stiffness_about), R)
     outer = ~np.any(system.forces.reference_stiffness, axis=1)
-    loads = np.column_stack([system.load, -system.B[:, outer].toarray() * force[outer]]) / units
+    # Without laws of that kind there is nothing to pick out of B, which takes longer than all the rest.
+    laws = -system.B[:, outer].toarray() * force[outer] if outer.any() else np.zeros((system.n, 0))
+    loads = np.column_stack([system.load, laws]) / units
     rounding = _TOUCHED * float(np.linalg.norm(loads))
     work = np.abs((motions.T @ loads).sum(axis=1))
     return bool(np.any(work > _BALANCED * (np.abs(motions.T) @ np.abs(loads)).sum(axis=1) + rounding))

@@ -204,8 +204,6 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
     Raises:
         ValueError: more than MOST_LAWS different kinds.
     """
-    from scipy.linalg import block_diag
-
     from rotorgear.solvers.time.kernel_contact import no_force, no_schedule
 
     kinds: list[tuple[Any, Any]] = []
@@ -217,22 +215,30 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
     filled = kinds + [(no_schedule, no_force)] * (MOST_LAWS - len(kinds))
     sizes = [law.components for law in laws]
     parameters = [np.ascontiguousarray(law.parameters(), dtype=float) for law in laws]
-    m = sum(sizes)
+    first = _starts(sizes)
     return LocalForces(
         laws=laws,
         schedules=tuple(pair[0] for pair in filled),
         forces=tuple(pair[1] for pair in filled),
         kind=np.array([kinds.index(law.functions()) for law in laws], dtype=np.int64),
-        first=_starts(sizes),
+        first=first,
         # Of one law as they are: maps over a long cycle are large.
         parameters=parameters[0] if len(parameters) == 1 else np.concatenate([*parameters, np.zeros(0)]),
         parameters_first=_starts([p.size for p in parameters]),
         state_first=_starts([law.state_size() for law in laws]),
         block_first=_starts([size**2 for size in sizes]),
         conserves=np.array([law.conserves for law in laws], dtype=bool),
-        reference_stiffness=block_diag(*(law.reference_stiffness() for law in laws)).reshape(m, m),
-        reference_damping=block_diag(*(law.reference_damping() for law in laws)).reshape(m, m),
+        reference_stiffness=_side_by_side([law.reference_stiffness() for law in laws], first),
+        reference_damping=_side_by_side([law.reference_damping() for law in laws], first),
     )
+
+
+def _side_by_side(blocks: list[np.ndarray], first: np.ndarray) -> np.ndarray:
+    """Blocks on the diagonal of a matrix (m, m)."""
+    found = np.zeros((first[-1], first[-1]))
+    for block, (a, b) in zip(blocks, pairwise(first.tolist()), strict=True):
+        found[a:b, a:b] = block
+    return found
 
 
 def _starts(sizes: list[int]) -> np.ndarray:

@@ -78,6 +78,8 @@ class Rotation:
     def angle(self, t: np.ndarray) -> np.ndarray:
         """Angle in rad at times (p,)."""
         t = np.asarray(t, dtype=float)
+        if self.times.size == 1:  # the most frequent case, and the same to the last bit
+            return np.asarray(self.speeds[0] * self.times[0] + self.speeds[0] * (t - self.times[0]))
         i = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 1)
         late = t - self.times[i]
         mean = 0.5 * (self.speeds[i] + self.speed(t))

@@ -50,7 +50,7 @@ def large(model: Model, elements: int, modes: int | None = None) -> Large:
 
 def reduced_point(model: Model, elements: int, modes: int) -> Point:
     own = large(model, elements, 1)
-    return ready_reduced(own, *Reducer(modes=modes)([own], lambda size, error: None)[0])
+    return next(ready_reduced([own], Reducer(modes=modes)([own], lambda size, error: None)))
 
 
 def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_contact(tmp_path: Path) -> None:
@@ -153,7 +153,7 @@ def test_all_exponents_of_a_reduced_system_sum_up_to_its_trace(tmp_path: Path) -
 def test_rigid_motions_stay_free_and_the_drive_turns_without_strain(tmp_path: Path) -> None:
     own = large(pair(tmp_path), 6)
     found = Reducer(0.01)([own], lambda size, error: None)[0]
-    rest = ready_reduced(own, *found)
+    rest = next(ready_reduced([own], [found]))
     whole = own.local
     free = found[1].vectors @ np.linalg.solve(rest.system.root.T, rest.system.rigid.T)
     assert free.shape[1] == 1
@@ -165,7 +165,7 @@ def test_continuation_goes_on_in_another_basis(tmp_path: Path) -> None:
     soft = large(pair(tmp_path), 4)
     stiff = large(pair(tmp_path, MESH.replace("8e8", "9e8")), 4)
     reducer = Reducer(0.001)
-    first, second = (ready_reduced(own, *reducer([own], lambda n, e: None)[0]).system for own in (soft, stiff))
+    first, second = (next(ready_reduced([own], reducer([own], lambda n, e: None))).system for own in (soft, stiff))
     start = Start(first.rest, 1e-3 * first.rest)
     moved = start.moved(first, second)
     assert second.B.T @ moved.z == pytest.approx(first.B.T @ start.z, rel=5e-3)
@@ -227,7 +227,9 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
         Still(light.local, None)  # type: ignore[arg-type]
     found = Reducer(0.01)([light], lambda size, error: None)[0]
     assert found[0].n < own.local.n
-    assert ready_reduced(light, *found).static_force == pytest.approx(ready_reduced(own, *found).static_force, rel=1e-6)
+    assert next(ready_reduced([light], [found])).static_force == pytest.approx(
+        next(ready_reduced([own], [found])).static_force, rel=1e-6
+    )
 
 
 def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -> None:
