@@ -31,4 +31,12 @@ _FORMER = {
 }
 __getattr__, __dir__, __all__ = attach(__name__, __file__, _FORMER)
 __all__ += ["__version__"]
-found_by(lambda kind: getattr(__getattr__("plot"), kind, None))
+
+
+def _pages():  # type: ignore[no-untyped-def]
+    from rotorgear.page.notebook import shown
+
+    return shown
+
+
+found_by(lambda kind: getattr(__getattr__("plot"), kind, None), _pages)

@@ -1,4 +1,4 @@
-"""How a result finds its picture, the one on `rotorgear.plot` that is named as its kind.
+"""How a result finds its picture, the one on `rotorgear.plot` that is named as its kind, and the page that a notebook shows.
 
 Results stand below pictures and know none of them. So the face, which stands above both, hands the way up in here.
 """
@@ -10,11 +10,18 @@ from typing import Any
 
 Picture = Callable[..., Any]
 _ways: list[Callable[[str], Picture | None]] = []
+_pages: list[Callable[[], Picture]] = []
 
 
-def found_by(way: Callable[[str], Picture | None]) -> None:
-    """Say how the picture of a kind of result is found; the way answers None for a kind without one."""
+def found_by(way: Callable[[str], Picture | None], page: Callable[[], Picture]) -> None:
+    """Say how the picture of a kind of result is found, None for a kind without one; and what makes a page of a result."""
     _ways[:] = [way]
+    _pages[:] = [page]
+
+
+def page_of(result: Any) -> Any:
+    """A result as a page in a notebook."""
+    return _pages[0]()(result)
 
 
 def picture_of(kind: str) -> Picture:

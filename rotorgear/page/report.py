@@ -175,6 +175,7 @@ def _page(model: Model, about: dict[str, Any], parts: list[Any], turntable: str)
         about=about,
         sections=parts,
         turntable=turntable,
+        solids=text_of(folder / "turntable.html"),
         script=text_of(folder / "turntable.js") + text_of(folder / "turntable_in_report.js") if turntable else "",
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
     )

@@ -32,14 +32,14 @@ KIND_COLOURS = {
 }
 
 
-def scene(result: ModalResult) -> str:
-    """The scene of a report as JSON: the solids, and displacements of the first elastic modes."""
+def scene(result: ModalResult, most: int = _MODES, largest: int = _LARGEST) -> str:
+    """The scene of a report as JSON: the solids, and displacements of the first elastic modes, in so many letters at most."""
     solids = build_solids(result.model, result.nodes, LIGHT)
     packed = geometry(solids)
     modes = []
     for k in [k for k in range(len(result)) if not result.rigid[k]]:
         modes.append({"name": mode_name(result, k), **motion(solids, np.real(result.shapes[:, :, k]))})
-        if len(modes) == max(1, min(_MODES, _LARGEST // len(packed["points"]))):
+        if len(modes) == max(1, min(most, largest // len(packed["points"]))):
             break
     # A name must not end the script that holds it.
     return json.dumps({**packed, "modes": modes}).replace("<", "\\u003c")

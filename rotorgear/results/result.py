@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from html import escape
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rotorgear.drawing import picture_of
+from rotorgear.drawing import page_of, picture_of
 from rotorgear.extras import require
 from rotorgear.note import NAMED, as_notes, sentences
 from rotorgear.quantity import counted
@@ -182,6 +182,17 @@ class Result(Record):
             AnalysisError: a kind of result without a picture. MissingExtraError: matplotlib or pyvista is not installed.
         """
         return picture_of(self.kind)(self, on, **options)
+
+    def show(self) -> Any:
+        """What a notebook shows below its cell: modes as solids that turn and move, else the picture, whose points say what they are.
+
+        Returns:
+            An object that notebooks show, and whose text is that of the result.
+
+        Raises:
+            AnalysisError: a kind of result without a picture. MissingExtraError: matplotlib is not installed.
+        """
+        return page_of(self)
 
     def text(self, width: int = _WIDTH, **options: Any) -> str:
         """The table as text, so many characters wide."""
