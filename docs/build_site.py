@@ -29,7 +29,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Analyses": ("static", "modal", "response", "transient", "sweep"),
     "Parts": ("mesh", "bevel", "planetary", "bearings", "casings", "model_file"),
     "Design": ("app", "report", "rig"),
-    "Files and Python": ("commands", "python", "api", "rexs"),
+    "Files and Python": ("commands", "python", "api", "rexs", "coming_from"),
     "Trust": ("accuracy", "validation", "measured"),
     "Theory": ("theory_structure", "theory_parts", "theory_motions", "conventions"),
     "Development": ("CONTRIBUTING",),

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import rotorgear as rg
-from rotorgear.model.parts.synonyms import MEANT, meant
+from rotorgear.model.parts.synonyms import GROUPS, MEANT, meant
+from tests.paths import ROOT
 
 DEFINITIONS = rg.schema()["$defs"]
 KEYS = {key for one in DEFINITIONS.values() for key in one.get("properties", {})} | set(rg.schema()["properties"])
@@ -19,6 +22,24 @@ ROTOR = """
 def test_every_word_leads_to_a_key_that_there_is() -> None:
     assert len(MEANT) >= 60
     assert {key for keys in MEANT.values() for key in keys} <= KEYS
+
+
+TABLES = [set(one.get("properties", {})) for one in (*DEFINITIONS.values(), rg.schema())]
+
+
+@pytest.mark.parametrize("word", list(MEANT))
+def test_each_word_is_answered_with_each_of_its_keys_in_a_table_that_has_it(word: str) -> None:
+    """A word that is a key of all those tables, or of which an earlier key is always there, would never be answered so."""
+    for key in MEANT[word]:
+        assert any(key in keys and word not in keys and meant(word, keys) == key for keys in TABLES), key
+
+
+def test_the_page_has_each_word_once() -> None:
+    page = (ROOT / "docs" / "coming_from.md").read_text(encoding="utf-8")
+    rows = [line for line in page.split("\n## ", 1)[1].splitlines() if line.startswith("| `")]
+    words = [word for row in rows for word in re.findall(r"`([^`]+)`", row.split("|")[1])]
+    assert sorted(words) == sorted(MEANT)
+    assert len(words) == sum(map(len, GROUPS.values())), "a word in two groups"
 
 
 @pytest.mark.parametrize(
