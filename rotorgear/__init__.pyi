@@ -17,6 +17,7 @@ from rotorgear.model.parts.operation import ModelDamping as ModelDamping
 from rotorgear.model.parts.operation import Point as Point
 from rotorgear.model.parts.shaft import Material as Material
 from rotorgear.model.parts.shaft import Shaft as Shaft
+from rotorgear.model.parts.shaft import PositionByMesh as PositionByMesh
 from rotorgear.model.parts.shaft import Section as Section
 from rotorgear.model.parts.shaft import Disk as Disk
 from rotorgear.model.parts.shaft import PointMass as PointMass

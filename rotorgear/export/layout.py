@@ -136,7 +136,7 @@ _OVERLAP = 0.85
 
 def display_frames(model: Model) -> dict[str, Frame]:
     """Frames of all shafts as they are shown, in the order of the file: their own, or beside their mates."""
-    given = {name: shaft.position for name, shaft in model.shafts.items()}
+    given = {name: shaft.origin for name, shaft in model.shafts.items()}
     if all(given.values()):
         return {name: shaft.frame for name, shaft in model.shafts.items()}
     # Axes that are not parallel to z, and planets with axes of their own, have positions.
@@ -152,9 +152,7 @@ def _display_axes(model: Model) -> dict[str, Axis]:
     # Given positions are kept. Their neighbours are placed one by one; a shaft that no neighbour leads to begins a group of its
     # own, to the right of all others.
     axes: dict[str, Axis] = {
-        name: (shaft.position[0], shaft.position[1])
-        for name, shaft in model.shafts.items()
-        if shaft.position is not None
+        name: (shaft.origin[0], shaft.origin[1]) for name, shaft in model.shafts.items() if shaft.origin is not None
     }
     envelopes = {}
     for name, part in model.shafts.items():

@@ -21,7 +21,7 @@ from rotorgear.files.read import UnreadableError, digest_of_named
 from rotorgear.model.address import value_at, with_values
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
-from rotorgear.model.layout.carriers import repeated
+from rotorgear.model.layout.carriers import repeated, says_less
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.state import State
 from rotorgear.model.layout.torque_flow import torque_flow
@@ -56,7 +56,7 @@ class Model(Tables):
         except ValidationError:
             problems, rest, broken = repaired(given)
             raise ModelError([*problems, *find_problems(rest, overrides, broken)]) from None
-        if self.carriers or any(gear.casing is not None for gear in self.gears.values()):
+        if says_less(self):
             once = {name: getattr(self, name) for name in type(self).model_fields}
             whole, problems = repeated(self, overrides)
             # The fields of a frozen part: what the analyses see are the parts of the whole gearbox.

@@ -44,7 +44,7 @@ def coupled_points(model: Tables) -> Iterator[Problem]:
             yield from inclined
             continue
         # Positions may be left out, and torsion alone knows no distances: nothing to compare then.
-        if not model.has("bending") or first.position is None or second.position is None:
+        if not model.has("bending") or first.origin is None or second.origin is None:
             continue
         distance = max(abs(x) for x in beside.at(second.station(coupling.to_at))[:2].tolist())
         if distance > 1e-9 + 1e-6 * max(first.length, second.length):

@@ -74,7 +74,7 @@ def _mates(address: str, both: MeshLayout) -> Iterator[Problem]:
 def _places(address: str, both: MeshLayout) -> Iterator[Problem]:
     met = both.meeting
     pair = both.bevel
-    if both.pinion.shaft_part.position is None or both.gear.shaft_part.position is None:
+    if both.pinion.shaft_part.origin is None or both.gear.shaft_part.origin is None:
         yield Problem(address, "bevel gears on shafts without a position", "positions of both shafts")
         return
     if met is None or pair is None:

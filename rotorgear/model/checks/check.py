@@ -16,7 +16,7 @@ from rotorgear.model.checks.gears import gear_problems, inertia_problems
 from rotorgear.model.checks.internal_loads import cut_places, load_points
 from rotorgear.model.checks.loads import loads, loads_that_stand_still, operating_point, train_problems
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
-from rotorgear.model.layout.carriers import repeated
+from rotorgear.model.layout.carriers import repeated, says_less
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.references import PartName
 from rotorgear.model.parts.tables import Tables
@@ -69,7 +69,7 @@ def find_problems(
         lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped), *loads_that_stand_still(rest)],
         lambda rest: [*massless_gears(rest), *planets.assembled(rest)],
     )
-    if model.carriers or any(gear.casing is not None for gear in model.gears.values()):
+    if says_less(model):
         dropped |= _parts_of(found)
         found += repeated(names.without(model, dropped), overrides)[1]
     for stage in stages:

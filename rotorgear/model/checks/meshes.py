@@ -17,6 +17,7 @@ from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import RIGID, Mesh
 from rotorgear.model.parts.problems import missing, not_default, told
+from rotorgear.model.parts.shaft import PositionByMesh
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -106,7 +107,12 @@ def _wind_up(address: str, mesh: MeshLayout, others: list[MeshLayout]) -> Iterat
             got = f"a wheel that winds up against its bore, of gear '{gear.name}', which is cut on its shaft"
             wanted = "another body or exclude_torsion = false, or integral = false for the gear"
             yield Problem(f"{address}.tooth_fe", got, wanted)
-    elastic = {gear.name: other.name for other in others if other.has_teeth for gear in other.elastic_gears}
+    elastic: dict[str, str] = {}
+    for other in others:
+        try:
+            elastic |= {gear.name: other.name for gear in other.elastic_gears} if other.has_teeth else {}
+        except RotorgearError:  # teeth that can't mesh are told of that mesh
+            continue
     for gear in mesh.gears:
         if gear.name in elastic and gear not in mesh.elastic_gears:
             wanted = f"body and exclude_torsion as in meshes.{elastic[gear.name]}, which leaves it to the rotor model"
@@ -216,13 +222,15 @@ def _on_shafts(address: str, mesh: MeshLayout) -> Iterator[Problem]:
 
 def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:
     line = mesh.centre_line
+    # Where a mesh could not place a shaft its teeth can't mesh, which is told below.
+    unplaced = any(isinstance(gear.shaft_part.position, PositionByMesh) for gear in mesh.gears)
     found: list[Problem] = []
     if line is not None and not mesh.has_own_angle:
         for key in ("centre_line_angle", "pressure_angle"):
             if (angle := getattr(mesh.part, key)) is not None:
                 hint = "it follows from the positions of the shafts"
                 found.append(Problem(f"{address}.{key}", degrees(angle), "nothing here", hint))
-    elif in_bending and line is None:  # torsion alone needs no direction of the mesh force
+    elif in_bending and line is None and not unplaced:  # torsion alone needs no direction of the mesh force
         pinion = mesh.pinion.part
         gear = mesh.gear.part
         if mesh.part.centre_line_angle is None:

@@ -66,6 +66,8 @@ def _is_lost(model: Tables, target: PartName, gone: set[PartName]) -> bool:
 # Tables of what a point may be on.
 _WITH_POINTS = (*ON_SHAFTS, "casings", "couplings")
 
+_SINGULAR = {"meshes": "mesh"}
+
 Broken = Collection[PartName]
 _LISTED = 20  # names that a hint lists at most
 
@@ -96,7 +98,9 @@ def unknown_names(model: Tables, broken: Broken) -> Iterator[Problem]:
         address = ".".join(item for item in (*owner, key) if item)
         if key != "on":
             if not _is_known(model, table, name, broken):
-                yield unknown(address, name, _names(model, table, broken), f"a {table.removesuffix('s')}")
+                yield unknown(
+                    address, name, _names(model, table, broken), f"a {_SINGULAR.get(table, table.removesuffix('s'))}"
+                )
         # What a point is on is written with its table, which may be wrong itself: then all parts on shafts are valid.
         elif table not in _WITH_POINTS or not _is_known(model, table, name, broken):
             tables = [table] if table in _WITH_POINTS else ON_SHAFTS

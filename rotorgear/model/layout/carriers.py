@@ -14,13 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.errors import Problem, RotorgearError
-from rotorgear.gears.geometry.pair import working_centre_distance
+from rotorgear.errors import Problem
+from rotorgear.model.layout.placing import centre_distance, meshes_of, placed_by_meshes
 from rotorgear.model.parts.carrier import Carrier, sister, written_name
-from rotorgear.model.parts.gear import Gear
-from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.references import PartName, references
-from rotorgear.model.parts.shaft import Shaft
+from rotorgear.model.parts.shaft import PositionByMesh, Shaft
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -45,20 +43,31 @@ def carried(tables: Tables) -> dict[PartName, str]:
     while more := {
         owner: found[target]
         for owner, _, target in arrows
-        if target in found and owner not in found and owner[0] not in ("carriers", "operation")
+        if target in found and owner not in found and owner[0] not in ("carriers", "operation", "shafts")
     }:
         found |= more
     return {part: carrier for part, carrier in found.items() if carrier is not None}
 
 
+def says_less(tables: Tables) -> bool:
+    """Whether the file says less than the whole gearbox has: planets once, rings by their seats, shafts by their meshes."""
+    return bool(
+        tables.carriers
+        or any(gear.casing is not None for gear in tables.gears.values())
+        or any(isinstance(shaft.position, PositionByMesh) for shaft in tables.shafts.values())
+    )
+
+
 def repeated(tables: Tables, overrides: Mapping[str, Mapping[str, Any]] | None = None) -> tuple[Tables, list[Problem]]:
-    """The tables of the whole gearbox, and what keeps planets from being placed; these are left out.
+    """The tables of the whole gearbox, and what keeps shafts and planets from being placed; the latter are left out.
 
     Args:
         tables: as the file has them, whose names are those of parts.
         overrides: table -> name such as "sun_planet#2" -> the keys that one of the sisters has otherwise.
     """
+    tables, unplaced = placed_by_meshes(tables)
     tables, rings = _seated_rings(tables)
+    rings = [*unplaced, *rings]
     if not tables.carriers:
         return tables, rings
     parts = carried(tables)
@@ -147,7 +156,7 @@ def _coaxial(tables: Tables, found: dict[str, dict[str, Any]], parts: Mapping[Pa
         own = tables.carriers[carrier].shaft
         frame = tables.shafts[own].frame
         for shaft in {own, *beside} & shafts.keys():
-            if shafts[shaft].position is None:
+            if shafts[shaft].origin is None:
                 where: dict[str, Any] = {"position": tuple(frame.origin.tolist())}
                 if shaft != own:
                     where |= {"axis": tables.shafts[own].axis, "x_axis": tables.shafts[own].x_axis}
@@ -208,19 +217,10 @@ def _wanted(tables: Tables, parts: Mapping[PartName, str], name: str, places: Ma
     return not beside or any(other in places for other in beside)
 
 
-def _meshes(tables: Tables, name: str) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
-    """Meshes of the gears of a shaft: name, part, its own gear and the other one."""
-    for mesh_name, mesh in tables.meshes.items():
-        pair = [tables.gears[gear] for gear in (mesh.pinion, mesh.gear) if gear in tables.gears]
-        if len(pair) == 2 and [gear.shaft for gear in pair].count(name) == 1:
-            own, other = pair if pair[0].shaft == name else pair[::-1]
-            yield mesh_name, mesh, own, other
-
-
 def _radii(tables: Tables, parts: Mapping[PartName, str], name: str) -> Iterator[tuple[str, float, float]]:
     """Mesh with a gear on the carrier's axis, the distance of the axes that it wants, and by how much that may be missed."""
-    for mesh_name, mesh, own, other in _meshes(tables, name):
-        distance = _distance(mesh, own, other)
+    for mesh_name, mesh, own, other in meshes_of(tables, name):
+        distance = centre_distance(mesh, own, other)
         if ("shafts", other.shaft) not in parts and distance:
             lumped = math.inf if own.lumped else RADIUS_TOLERANCE * (own.normal_module or 0.0)
             yield mesh_name, distance, lumped
@@ -228,29 +228,10 @@ def _radii(tables: Tables, parts: Mapping[PartName, str], name: str) -> Iterator
 
 def _beside(tables: Tables, parts: Mapping[PartName, str], name: str) -> Iterator[tuple[str, str, float]]:
     """Mesh with another planet of the carrier, its shaft, and the distance of their axes."""
-    for mesh_name, mesh, own, other in _meshes(tables, name):
-        distance = _distance(mesh, own, other)
+    for mesh_name, mesh, own, other in meshes_of(tables, name):
+        distance = centre_distance(mesh, own, other)
         if parts.get(("shafts", other.shaft)) == parts["shafts", name] and distance:
             yield mesh_name, other.shaft, distance
-
-
-def _distance(mesh: Mesh, own: Gear, other: Gear) -> float | None:
-    """Distance (m) of the axes of two gears that mesh without backlash; None where the file does not say it."""
-    if own.geometry is not None and other.geometry is not None:
-        pair = (other, own) if own.internal else (own, other)
-        first = pair[0].geometry
-        second = pair[1].geometry
-        assert first is not None
-        assert second is not None
-        try:
-            return abs(working_centre_distance(first, second))
-        except RotorgearError:  # teeth that can't mesh: their mesh says why
-            return None
-    angle = mesh.pressure_angle or own.transverse_pressure_angle or other.transverse_pressure_angle
-    if own.base_radius is None or other.base_radius is None or angle is None:
-        return None
-    sign = -1.0 if own.internal or other.internal else 1.0
-    return abs(own.base_radius + sign * other.base_radius) / math.cos(angle)
 
 
 def _offset(

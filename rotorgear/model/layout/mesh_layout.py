@@ -159,7 +159,7 @@ class MeshLayout:
     @cached_property
     def centre_line(self) -> tuple[float, float] | None:
         """Centre distance in m and direction from pinion to gear in rad; None where the shafts have no positions."""
-        if self.pinion.shaft_part.position is None or self.gear.shaft_part.position is None or self.is_bevel:
+        if self.pinion.shaft_part.origin is None or self.gear.shaft_part.origin is None or self.is_bevel:
             return None
         dx, dy, _ = self.gear_frame.at(self.gear.z).tolist()
         return math.hypot(dx, dy), math.atan2(dy, dx)

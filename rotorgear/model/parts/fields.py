@@ -257,7 +257,10 @@ def listed(count: int, expected: str) -> BeforeValidator:
 
 def _parse_position(value: Any) -> Any:
     if not isinstance(value, list | tuple) or len(value) not in (2, 3):
-        raise refuse("x and y of the axis such as ['0 mm', '120 mm'], or x, y and z of its z = 0")
+        raise refuse(
+            "x and y of the axis such as ['0 mm', '120 mm'], or x, y and z of its z = 0, "
+            "or { mesh = 'stage_2', angle = '52 deg' }"
+        )
     return value
 
 

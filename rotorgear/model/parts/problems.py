@@ -17,6 +17,8 @@ from rotorgear.model.parts.synonyms import meant
 from rotorgear.quantity import did_you_mean, nearest
 
 Loc = tuple[int | str, ...]
+# Pydantic's marks in a location of which kind of value it took: no keys of the file.
+LIST, TABLE = "[list]", "[table]"
 _LONGEST = 60
 _TYPES = {
     "model_type": "a table",
@@ -94,7 +96,10 @@ def from_validation(error: ValidationError, root: type[BaseModel], silent: Colle
 
 def root_causes(error: ValidationError, root: type[BaseModel]) -> list[Any]:
     """List pydantic's single errors without the missing keys that stand there misspelt: those are unknown keys already."""
-    items = error.errors(include_url=False)
+    items: list[Any] = [
+        {**item, "loc": tuple(key for key in item["loc"] if key not in (LIST, TABLE))}
+        for item in error.errors(include_url=False)
+    ]
     meant = {(*item["loc"][:-1], guessed_key(item, root)) for item in items if item["type"] == "extra_forbidden"}
     return [item for item in items if not (item["type"] == "missing" and item["loc"] in meant)]
 
@@ -164,10 +169,10 @@ def class_at(loc: Loc, root: type[BaseModel]) -> type[BaseModel] | None:
 
 
 def _strip(annotation: Any) -> Any:
-    """Drop Annotated and None from an annotation."""
+    """Drop Annotated and None from an annotation; of several kinds of values take the part, else the first."""
     while typing.get_origin(annotation) is typing.Annotated:
         annotation = typing.get_args(annotation)[0]
     if typing.get_origin(annotation) in (typing.Union, types.UnionType):
-        rest = [arg for arg in typing.get_args(annotation) if arg is not type(None)]
-        return _strip(rest[0])
+        rest = [_strip(arg) for arg in typing.get_args(annotation) if arg is not type(None)]
+        return next((arg for arg in rest if isinstance(arg, type) and issubclass(arg, BaseModel)), rest[0])
     return annotation

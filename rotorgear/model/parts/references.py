@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rotorgear.model.parts.shaft import PositionByMesh
 from rotorgear.model.parts.tables import Tables
 
 PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
@@ -33,6 +34,9 @@ def references(model: Tables) -> Iterator[tuple[PartName, str, PartName]]:
                 in_casing = table == "gears" and key == "shaft" and part.casing is not None
                 if (target := getattr(part, key)) is not None and not in_casing:
                     yield (table, name), key, (named, target)
+    for name, shaft in model.shafts.items():
+        if isinstance(shaft.position, PositionByMesh):
+            yield ("shafts", name), "position.mesh", ("meshes", shaft.position.mesh)
     for name, point in model.points.items():
         if point.on is not None:
             table, _, part = point.on.partition(".")
@@ -40,5 +44,5 @@ def references(model: Tables) -> Iterator[tuple[PartName, str, PartName]]:
         elif point.shaft is not None:
             yield ("points", name), "shaft", ("shafts", point.shaft)
     for key in ("input_shaft", "output_shaft") if model.operation else ():
-        if (shaft := getattr(model.operation, key)) is not None:
-            yield ("operation", ""), key, ("shafts", shaft)
+        if (reference := getattr(model.operation, key)) is not None:
+            yield ("operation", ""), key, ("shafts", reference)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from rotorgear.model.parts import fields as si
 from rotorgear.model.parts.fields import Flag, Part, Station, Whole, refuse
 from rotorgear.model.parts.frame import Frame, frame_along
+from rotorgear.model.parts.problems import LIST, TABLE
 
 
 class Material(Part):
@@ -92,16 +93,34 @@ class Section(Part):
         return outer, bore, outer_end, bore_end
 
 
+class PositionByMesh(Part):
+    """The place of a shaft beside the one that a mesh joins it to, at the centre distance of their teeth."""
+
+    mesh: str = Field(description="name of the mesh, of a gear on this shaft with one on a shaft that has its place")
+    angle: si.Angle = Field(
+        description="direction from the axis of that shaft to this one, from its own +x about its +z"
+    )
+
+
+def _kind_of_position(value: Any) -> str:
+    return TABLE if isinstance(value, dict | PositionByMesh) else LIST
+
+
+Position = Annotated[
+    Annotated[si.Position, Tag(LIST)] | Annotated[PositionByMesh, Tag(TABLE)], Discriminator(_kind_of_position)
+]
+
+
 class Shaft(Part):
     """A shaft: an axis, and sections from its start on. Without sections it is one rigid point.
 
     Its places, displacements and forces are told in its own frame, whose z is the axis.
     """
 
-    position: si.Position | None = Field(
+    position: Position | None = Field(
         None,
-        description="(x, y) of the axis, or (x, y, z) of its z = 0; may be left out where all axes are parallel to z and no "
-        "gear on the shaft needs a centre distance",
+        description="(x, y) of the axis, or (x, y, z) of its z = 0, or { mesh, angle }; may be left out where all axes are "
+        "parallel to z and no gear on the shaft needs a centre distance",
     )
     axis: si.Direction = Field((0.0, 0.0, 1.0), description="direction of its own +z in space")
     x_axis: si.Direction | None = Field(
@@ -149,7 +168,12 @@ class Shaft(Part):
     @cached_property
     def frame(self) -> Frame:
         """Its own coordinates; those of a shaft without a position begin at the origin."""
-        return frame_along(self.position or (0.0, 0.0), self.axis, self.x_axis)
+        return frame_along(self.origin or (0.0, 0.0), self.axis, self.x_axis)
+
+    @property
+    def origin(self) -> tuple[float, ...] | None:
+        """(x, y), or (x, y, z) of its z = 0, in m; None without a position, and until its mesh has placed it."""
+        return None if isinstance(self.position, PositionByMesh) else self.position
 
     @property
     def length(self) -> float:
