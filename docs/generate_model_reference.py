@@ -25,7 +25,7 @@ from rotorgear.model.parts.gear import Flank, Gear, GearBody
 from rotorgear.model.parts.load import Load, LoadHistory, Unbalance
 from rotorgear.model.parts.mesh import CornerImpact, ErrorHarmonic, Mesh, StiffnessHarmonic, ToothFeTable
 from rotorgear.model.parts.operation import ModelDamping, Operation, Point, Scatter
-from rotorgear.model.parts.shaft import LIBRARY, Disk, Material, PointMass, Section, Shaft
+from rotorgear.model.parts.shaft import LIBRARY, Disk, Material, PointMass, PositionByMesh, Section, Shaft
 from rotorgear.model.parts.supports import (
     Bearing,
     Coupling,
@@ -44,6 +44,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[operation]", Operation),
     ("[materials.NAME]", Material),
     ("[shafts.NAME]", Shaft),
+    ("position = { ... } of a shaft", PositionByMesh),
     ("sections = [{ ... }] of a shaft", Section),
     ("[carriers.NAME]", Carrier),
     ("[gears.NAME]", Gear),
@@ -104,6 +105,9 @@ RULES: dict[type[BaseModel], str] = {
         Both faces may stand in one mesh or in two; a set of one mesh of several is written `lower.flange`.""",
     Shaft: """
         That is enough for a torsional model.""",
+    PositionByMesh: """
+        Such as `{ mesh = "stage_2", angle = "52 deg" }`. The axes are parallel and lie at the distance at which teeth and profile
+        shifts mesh without backlash; z = 0 of both lies side by side. It moves with teeth, module and shifts.""",
     Section: """
         A section begins where the one before it ends. `outer_diameter_end` and `bore_end` make it a cone. The mass
         diameters serve sleeves and rings that weigh but do not stiffen.""",
@@ -299,7 +303,11 @@ def _value(kind: dict[str, Any]) -> str:
         if not kind["x-unit"]:
             return "number"
         return f'`"{example}"`'
+    if "oneOf" in kind:
+        return f"{_value(kind['oneOf'][0])}, or table"
     options = {option.get("type") for option in kind.get("anyOf", [])} - {"null"}
+    if options == {"string"}:
+        return "text, or"
     if options == {"string", "object"}:
         return "text or table"
     if options == {"number", "string", None}:
@@ -321,10 +329,8 @@ def _value(kind: dict[str, Any]) -> str:
 
 
 def _words(kind: dict[str, Any]) -> str:
-    """The words that a quantity may be in place of a number."""
-    return " ".join(
-        f'`"{word}"`' for option in kind.get("anyOf", []) for word in option.get("enum", []) if "x-unit" in kind
-    )
+    """The words that a quantity may be in place of a number, or that a text usually is."""
+    return " ".join(f'`"{word}"`' for option in kind.get("anyOf", []) for word in option.get("enum", []))
 
 
 def _list(kind: dict[str, Any]) -> str:

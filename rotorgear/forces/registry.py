@@ -38,6 +38,11 @@ _REGISTERED: dict[str, type[ForceLaw]] = {}
 Law = TypeVar("Law", bound=type[ForceLaw])
 
 
+def shipped() -> tuple[str, ...]:
+    """Return the names of the laws of the package."""
+    return tuple(_SHIPPED)
+
+
 def names() -> tuple[str, ...]:
     """Return the names of all laws."""
     return (*_SHIPPED, *_REGISTERED)
@@ -53,8 +58,8 @@ def law_of(name: str) -> type[ForceLaw]:
         return _REGISTERED[name]
     if name not in _SHIPPED:
         raise AnalysisError(f"there is no force law '{name}'; there are {', '.join(names())}")
-    shipped: type[ForceLaw] = getattr(import_module(f"rotorgear.forces.{name}"), _SHIPPED[name])
-    return shipped
+    law: type[ForceLaw] = getattr(import_module(f"rotorgear.forces.{name}"), _SHIPPED[name])
+    return law
 
 
 def register_law(name: str) -> Callable[[Law], Law]:

@@ -49,11 +49,13 @@ def soft_along_shaft(equilibrium: Equilibrated) -> Iterator[Note]:
         if times < _SOFT or carried < _CARRIED * max(lean * own for lean, own, _ in pushed):
             continue
         stiffness = sum(abs(force[name][2] / travel[name]) for name in holding)
-        names = " and ".join(f"bearings.{name}" for name in holding)
-        hold = f"{'hold' if len(holding) > 1 else 'holds'} it there with {1e-6 * stiffness:.3g} N/um (force over way)"
-        remedy = "check the axial stiffness given there, or hold the shaft by angular-contact or preloaded bearings"
-        what = f"moves along its axis {times:.1f} times as far as its teeth give way, measured along the flank normal"
-        yield Note(f"shafts.{shaft}", what, f"{names} {hold}: {remedy}", f"{1e6 * moved:+.3g} um")
+        names = " and ".join(holding)
+        size = f"{1e6 * moved:+.3g} um, {times:.1f} times, {1e-6 * stiffness:.3g} N/um of {names}"
+        what = "moves along its axis so many times farther than its teeth give way (along the flank normal), on soft bearings"
+        remedy = (
+            "check their axial stiffness (force over way), or hold the shaft by angular-contact or preloaded bearings"
+        )
+        yield Note(f"shafts.{shaft}", what, remedy, size)
 
 
 def _travels(equilibrium: Equilibrated) -> dict[str, float]:

@@ -23,6 +23,7 @@ from rotorgear.model.parts.gear import DEPTHS
 from rotorgear.model.parts.load import LoadHistory
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
+from rotorgear.note import Note
 from rotorgear.quantity import GRAVITY, RPM_PER_RAD_S, millimetres
 
 # Densities of solids in kg/m^3, and the units that slip.
@@ -39,8 +40,8 @@ _GAP = 10.0
 _ANGLE = 4.0 * math.pi
 
 
-def implausible(layout: Layout) -> Iterator[str]:
-    """Yield a sentence on every value of a model that is far from all that is built."""
+def implausible(layout: Layout) -> Iterator[Note]:
+    """Yield a fact on every value of a model that is far from all that is built."""
     judged = chain(
         _materials(layout),
         _shafts(layout),
@@ -51,19 +52,19 @@ def implausible(layout: Layout) -> Iterator[str]:
         _bodies(layout),
         _operation(layout),
     )
-    return _sentences(judged)
+    return _facts(judged)
 
 
-def implausible_speed(layout: Layout, address: str, speed: float) -> Iterator[str]:
-    """Yield a sentence on a speed (rad/s) of the input shaft that is beyond all that is built."""
-    return _sentences(_speed(layout, address, speed))
+def implausible_speed(layout: Layout, address: str, speed: float) -> Iterator[Note]:
+    """Yield a fact on a speed (rad/s) of the input shaft that is beyond all that is built."""
+    return _facts(_speed(layout, address, speed))
 
 
-def _sentences(judged: Iterable[Judged]) -> Iterator[str]:
+def _facts(judged: Iterable[Judged]) -> Iterator[Note]:
     for address, value, (low, high), got, usual, slips in judged:
         if not low <= value <= high:
             slip = slips if isinstance(slips, str) else slips[value > high]
-            yield f"{address}: {got}; usual is {usual.format(low, high)}: {slip}"
+            yield Note(address, f"usual is {usual.format(low, high)}", slip, got)
 
 
 def _mass_of(layout: Layout, shaft: str) -> float:

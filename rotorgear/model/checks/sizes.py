@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from itertools import islice, pairwise
 
 from rotorgear.errors import AnalysisError, Problem
-from rotorgear.model.checks.names import unknown
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.problems import not_default, shown, told
 from rotorgear.model.parts.references import ON_SHAFTS
@@ -170,7 +169,8 @@ def nonlinear_elements(model: Tables) -> Iterator[Problem]:
     for name, element in model.nonlinear_elements.items():
         address = f"nonlinear_elements.{name}"
         if element.law not in names():
-            yield unknown(f"{address}.law", element.law, list(names()), "a force law")
+            wanted = f"one of {', '.join(names())}"
+            yield Problem(f"{address}.law", shown(element.law), wanted, did_you_mean(element.law, names()))
             continue
         law = law_of(element.law)
         declared = law.declared()

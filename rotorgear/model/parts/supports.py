@@ -225,10 +225,19 @@ class Coupling(Part):
 ElementDof = Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion"]
 
 
+def _known_laws(schema: dict[str, Any]) -> None:
+    """Editors, the page and the reference list the laws of the package; other names are those of laws of one's own."""
+    from rotorgear.forces.registry import shipped  # laws are loaded for models that name one only
+
+    schema["anyOf"] = [{"type": schema.pop("type"), "enum": list(shipped())}, {"type": "string"}]
+
+
 class NonlinearElement(Part):
     """A force law on a shaft, against the ground or against another shaft."""
 
-    law: str = Field(description="name of the force law, of the package or registered from Python")
+    law: str = Field(
+        description="name of the force law, of the package or registered from Python", json_schema_extra=_known_laws
+    )
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the element")
     to_shaft: str | None = Field(None, description="name of a second shaft; default: the ground")

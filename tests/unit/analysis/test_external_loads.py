@@ -349,5 +349,5 @@ def test_missing_rows_and_impossible_forces_of_a_history_are_asked_about(tmp_pat
     (tmp_path / "h.csv").write_text("time_s,force_x_MN\n" + "\n".join(f"{t:.3f},{1e3 * x}" for t, x in rows))
     model = _with(CANTILEVER, 'shaft = "rotor"\nat = "end"\nhistory = "h.csv"', tmp_path)
     found = list(implausible(model.layout))
-    assert any("history: no row from 0.029 to 0.3 s; usual is one every 0.001 s" in one for one in found)
-    assert any("history: 6e+09 N" in one for one in found)
+    assert any("history (no row from 0.029 to 0.3 s): usual is one every 0.001 s" in one for one in found)
+    assert any("history (6e+09 N" in one for one in found)

@@ -11,6 +11,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.model.checks.plausibility import implausible
+from rotorgear.note import sentences
 from tests.models import spur_pair
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -174,6 +175,13 @@ def test_a_slip_of_a_unit_is_named_with_its_remedy(change, address, slip):
     found = list(implausible(model.layout))
     assert any(sentence.startswith(address) for sentence in found), found
     assert any(re.search(slip, sentence) and "usual is" in sentence for sentence in found), found
+
+
+def test_one_slip_at_several_bearings_is_one_sentence():
+    model = rg.load(MODELS / "split_torque.toml")
+    slip = {f"bearings.{name}.stiffness": {"radial": 1e3 + k} for k, name in enumerate(model.bearings)}
+    (sentence,) = sentences(implausible(model.with_(slip).layout), 3)
+    assert f"and {len(slip) - 1} more: usual is 1e6 to 1e10 N/m; N/mm or N/um meant?" in sentence
 
 
 @pytest.mark.parametrize("file", sorted(MODELS.glob("*.toml")), ids=lambda file: file.stem)
