@@ -18,9 +18,8 @@ from rotorgear.files.bounds import MATRICES
 from rotorgear.files.read import UnreadableError
 from rotorgear.files.write import reason_of, written
 from rotorgear.model.model import Model
-from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.results.state_space import StateSpace
-from rotorgear.system.system import System
+from rotorgear.system.dofs import dofs_of_nodes
 
 _ENDINGS = (".mat", ".npz")
 
@@ -135,17 +134,8 @@ def write_matrices(
             f"{name}_indptr": compressed.indptr,
             f"{name}_shape": np.array(compressed.shape),
         }
-    # A free degree of freedom has the name of the first node that it moves by one, else what the map says of it.
-    of_nodes = _node_dofs(system)
-    transform = parts["transform"]
-    names = []
-    units = []
-    for k in range(system.n):
-        column = slice(transform.indptr[k], transform.indptr[k + 1])
-        moved = transform.indices[column][transform.data[column] == 1.0]
-        names.append(of_nodes[min(moved)] if len(moved) else f"{system.dofs.describe(k, system.nodes)} [{k}]")
-        units.append("" if not len(moved) else "rad" if min(moved) % 6 > 2 else "m")
-    values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(of_nodes)}
+    names, units = zip(*system.dof_names.items(), strict=True)
+    values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(dofs_of_nodes(system.nodes))}
     stream = BytesIO()
     np.savez_compressed(stream, allow_pickle=False, **values)
     with written(target) as scratch:
@@ -183,14 +173,3 @@ def read_matrices(path: str | Path) -> dict[str, Any]:
         raise RotorgearError(f"{path}: no file of matrices: {error.reason}") from None
     except (ValueError, KeyError, TypeError) as error:
         raise RotorgearError(f"{path}: no file of matrices: {reason_of(error)}") from None
-
-
-def _node_dofs(system: System) -> list[str]:
-    nodes = system.nodes
-    places = [f"shafts.{shaft}({1e3 * z:.9g} mm)" for shaft, z in zip(nodes.shaft, nodes.z, strict=True)]
-    counts: dict[str, int] = {}
-    named = []
-    for place in places:  # a gear with teeth apart, or two parts at one place, have nodes of one place
-        counts[place] = counts.get(place, 0) + 1
-        named.append(place if counts[place] == 1 else f"{place}#{counts[place]}")
-    return [f"{place}:{direction}" for place in named for direction in DOF_NAMES]

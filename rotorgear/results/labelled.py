@@ -9,7 +9,11 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.results.schema import Declared, Record, Rows
+
+# What stands along axes that all results have in common.
+_NAMES = {"component": DOF_NAMES, "displacement": DOF_NAMES, "velocity": DOF_NAMES, "xyz": tuple("xyz")}
 
 
 def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
@@ -93,8 +97,9 @@ def _columns(record: Record, prefix: str = "") -> Iterator[tuple[str, tuple[str,
 def data_set(result: Record) -> Any:
     """Return everything that is counted by axes as an `xarray.Dataset`.
 
-    Dimensions are the axes, in small letters; a field that has the name of its only axis, or the plural, labels it. Each
-    variable has `long_name` and `units`.
+    Dimensions are the axes, in small letters. A field that has the name of its only axis, the plural, or that with "_hz" behind
+    it, labels it; the six motions of a node and x, y, z have their names, and what is only counted has numbers from 1, as in
+    `rows`. Each variable and each coordinate that is a quantity has `long_name` and `units`.
 
     Raises:
         MissingExtraError: xarray is not installed.
@@ -110,6 +115,8 @@ def data_set(result: Record) -> Any:
         about = {"long_name": declared.label, "units": declared.unit}
         if isinstance(value, dict) and declared.record is None and declared.name != "settings" and value:
             named = declared.axes[0].lower()
+            if named == declared.name:  # a variable can't have the name of its dimension
+                named = f"{named}_of"
             arrays.append(
                 xr.DataArray(
                     np.array(list(value.values())),
@@ -123,12 +130,16 @@ def data_set(result: Record) -> Any:
         about = {"long_name": declared.label, "units": declared.unit}
         if isinstance(getattr(result, declared.name, None), dict) or not axes:
             continue
-        if len(axes) == 1 and name in (axes[0], f"{axes[0]}s"):
+        if len(axes) == 1 and name in (axes[0], f"{axes[0]}s", f"{axes[0]}_hz"):
             coordinates[axes[0]] = (axes[0], values, about)
-        else:
+        if len(axes) != 1 or name not in (axes[0], f"{axes[0]}s"):
             arrays.append(xr.DataArray(values, dims=axes, name=name, attrs=about))
     merged = xr.merge(arrays, join="outer", compat="no_conflicts", combine_attrs="drop")
     # Newer versions of xarray drop the attributes of the variables as well as those of the whole.
     for array in arrays:
         merged[array.name].attrs = dict(array.attrs)
+    for axis, size in merged.sizes.items():
+        if axis not in coordinates and axis not in merged.coords:
+            known = _NAMES.get(str(axis), ())
+            coordinates[axis] = list(known) if len(known) == size else np.arange(1, size + 1)
     return merged.assign_coords(coordinates)

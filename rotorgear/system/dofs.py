@@ -16,6 +16,7 @@ import scipy.sparse as sp
 
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import CASING, FOLLOWS, GEAR_BODY, Nodes
 
@@ -55,6 +56,21 @@ class DofMap:
         everything[free] = q
         return everything
 
+    def names(self, nodes: Nodes) -> dict[str, str]:
+        """Name -> SI unit of each free dof: that of the first node that it moves by one, else what it is and no unit."""
+        of_nodes = dofs_of_nodes(nodes)
+        T = sp.csc_array(self.transform[: len(of_nodes)])
+        found = {}
+        for k in range(self.n):
+            column = slice(T.indptr[k], T.indptr[k + 1])
+            moved = T.indices[column][T.data[column] == 1.0]
+            first = of_nodes[min(moved)] if len(moved) else ""
+            if first and first not in found:
+                found[first] = "rad" if min(moved) % 6 > 2 else "m"
+            else:
+                found[f"{self.describe(k, nodes)} [{k}]"] = ""
+        return found
+
     def describe_some(self, dofs: Sequence[int], nodes: Nodes) -> str:
         """Say which displacements some free dofs are: the first four, and how many more."""
         named = "; ".join(self.describe(dof, nodes) for dof in dofs[:4])
@@ -76,7 +92,19 @@ class DofMap:
                     return f"elastic dof {number - first + 1} of gear '{name}'"
             return f"an internal {nodes.internal[number]} dof of a shaft element"
         node, k = divmod(row, 6)
-        return f"{('x', 'y', 'z', 'tilt_x', 'tilt_y', 'torsion')[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
+        return f"{DOF_NAMES[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
+
+
+def dofs_of_nodes(nodes: Nodes) -> list[str]:
+    """Names of the six motions of all nodes, such as "shafts.input(120 mm):tilt_x"."""
+    counts: dict[str, int] = {}
+    named = []
+    for shaft, z in zip(nodes.shaft, nodes.z, strict=True):
+        place = f"shafts.{shaft}({1e3 * z:.9g} mm)"
+        # A gear with teeth apart, or two parts at one place, have nodes of one place.
+        counts[place] = counts.get(place, 0) + 1
+        named.append(place if counts[place] == 1 else f"{place}#{counts[place]}")
+    return [f"{place}:{direction}" for place in named for direction in DOF_NAMES]
 
 
 def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:

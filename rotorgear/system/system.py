@@ -376,6 +376,11 @@ class System:
             D = sp.csc_array(D + self._spinning(speed))
         return D if D.nnz and np.any(D.data) else None
 
+    @property
+    def dof_names(self) -> dict[str, str]:
+        """Name -> SI unit of each row and column of the matrices, n of them, such as "shafts.input(120 mm):tilt_x" -> "rad"."""
+        return self.dofs.names(self.nodes)
+
     def matrices(self, speed: float = 0.0) -> Matrices:
         """All matrices at a reference speed in rad/s."""
         skew = self.circulatory(speed)

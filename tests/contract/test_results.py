@@ -278,6 +278,18 @@ def test_a_data_set_has_names_units_and_the_origin() -> None:
     assert data["frequency_hz"].attrs == {"long_name": "frequency", "units": "Hz"}
     assert data.attrs["model_hash"] == example("modal").model_hash
     assert "bending" in data["kinetic_by_motion"]["motion"].values
+    assert list(data["shapes"].sel(component="tilt_x").dims) == ["node", "mode"]
+    assert list(data["mode"].values) == [row["mode"] for row in example("modal").rows("mode")]
+    assert data["frequency_hz"].sel(mode=2) == example("modal").frequency_hz[1]  # type: ignore[attr-defined]
+    response = example("frf")
+    assert response.to_xarray()["receptance"]["frequency"].attrs["units"] == "Hz"
+
+
+@each_kind
+def test_every_dimension_of_a_data_set_has_coordinates(kind: str) -> None:
+    pytest.importorskip("xarray")
+    data = example(kind).to_xarray()
+    assert set(data.sizes) <= set(data.coords)
 
 
 def test_a_field_appears_everywhere_from_one_line(tmp_path: Any) -> None:
