@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,9 +16,11 @@ import pytest
 
 from tests.paths import ROOT
 
-HEAVY = {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "meshio", "matplotlib", "distributed", "dask"}
+# The page of `rotorgear app`, and tables of other programs: nothing else has any of them.
+PAGE = {"nicegui", "fastapi", "starlette", "uvicorn", "openpyxl", "pandas", "xarray"}
+HEAVY = PAGE | {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "meshio", "matplotlib", "distributed", "dask"}
 # What a modal run of shafts has no need of: graphics, a compiler, finite elements of solids, a cluster.
-GRAPHICS = {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem", "meshio", "pymetis", "distributed"}
+GRAPHICS = PAGE | {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem", "meshio", "pymetis", "distributed"}
 
 # Runs the program text argv[1] with the arguments argv[3:], then writes which modules are loaded to the file argv[2].
 WATCH = """
@@ -85,6 +88,12 @@ def test_help_loads_nothing_heavy(tmp_path: Path, program: str, arguments: tuple
 @needs_command_line
 def test_the_list_of_commands_loads_no_model_and_no_colours(tmp_path: Path) -> None:
     assert not {"pydantic", "pydantic_core", "rich"} & loaded(tmp_path, AS_MODULE, "--help")
+
+
+def test_the_server_of_the_page_is_imported_by_the_page_alone() -> None:
+    sources = {file: file.read_text(encoding="utf-8") for file in (ROOT / "rotorgear").rglob("*.py")}
+    found = {file.parent.name for file, text in sources.items() if re.search(r"^\s*(from|import) nicegui", text, re.M)}
+    assert found == {"app"}
 
 
 @needs_command_line
