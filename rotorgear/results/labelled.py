@@ -12,6 +12,8 @@ from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.results.schema import Declared, Record, Rows
 
+# Behind the name of an axis that stands twice.
+_SECOND = "_2"
 # What stands along axes that all results have in common.
 _NAMES = {"component": DOF_NAMES, "displacement": DOF_NAMES, "velocity": DOF_NAMES, "xyz": tuple("xyz")}
 
@@ -87,19 +89,25 @@ def _columns(record: Record, prefix: str = "") -> Iterator[tuple[str, tuple[str,
             yield name, declared.axes, value, declared
         elif isinstance(value, tuple) and declared.axes:
             # Empty by its default, a field says that the model has nothing of its kind: it isn't counted by its axis.
-            if value == () and type(record).__dataclass_fields__[declared.name].default == ():
+            if value == () and (declared.computed or type(record).__dataclass_fields__[declared.name].default == ()):
                 continue
             texts = np.empty(len(value), dtype=object)
             texts[:] = value
             yield name, declared.axes, texts, declared
 
 
+def _distinct(axes: tuple[str, ...]) -> list[str]:
+    """Axes with other names where one stands twice, as of a matrix."""
+    return [f"{axis}{_SECOND}" if axis in axes[:k] else axis for k, axis in enumerate(axes)]
+
+
 def data_set(result: Record) -> Any:
     """Return everything that is counted by axes as an `xarray.Dataset`.
 
-    Dimensions are the axes, in small letters. A field that has the name of its only axis, the plural, or that with "_hz" behind
-    it, labels it; the six motions of a node and x, y, z have their names, and what is only counted has numbers from 1, as in
-    `rows`. Each variable and each coordinate that is a quantity has `long_name` and `units`.
+    Dimensions are the axes, in small letters. A field that has the name of its only axis, or the plural, labels it, and
+    frequencies do; the six motions of a node and x, y, z have their names, and what is only counted has numbers from 1, as in `rows`. Of a
+    matrix over one axis the second is called "parameter_2". Each variable and each coordinate that is a quantity has `long_name`
+    and `units`.
 
     Raises:
         MissingExtraError: xarray is not installed.
@@ -130,16 +138,18 @@ def data_set(result: Record) -> Any:
         about = {"long_name": declared.label, "units": declared.unit}
         if isinstance(getattr(result, declared.name, None), dict) or not axes:
             continue
-        if len(axes) == 1 and name in (axes[0], f"{axes[0]}s", f"{axes[0]}_hz"):
+        labels = len(axes) == 1 and name in (axes[0], f"{axes[0]}s")
+        if labels or (name, axes) == ("frequency_hz", ("frequency",)):
             coordinates[axes[0]] = (axes[0], values, about)
-        if len(axes) != 1 or name not in (axes[0], f"{axes[0]}s"):
-            arrays.append(xr.DataArray(values, dims=axes, name=name, attrs=about))
+        if not labels:
+            arrays.append(xr.DataArray(values, dims=_distinct(axes), name=name, attrs=about))
     merged = xr.merge(arrays, join="outer", compat="no_conflicts", combine_attrs="drop")
     # Newer versions of xarray drop the attributes of the variables as well as those of the whole.
     for array in arrays:
         merged[array.name].attrs = dict(array.attrs)
     for axis, size in merged.sizes.items():
         if axis not in coordinates and axis not in merged.coords:
-            known = _NAMES.get(str(axis), ())
-            coordinates[axis] = list(known) if len(known) == size else np.arange(1, size + 1)
+            first = str(axis).removesuffix(_SECOND)
+            known = _NAMES.get(first, coordinates[first][1] if first in coordinates else ())
+            coordinates[axis] = (axis, list(known) if len(known) == size else np.arange(1, size + 1))
     return merged.assign_coords(coordinates)
