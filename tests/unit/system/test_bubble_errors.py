@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.common.points import moving_rows
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.modal.solve import Wanted, solve
-from rotorgear.system.bubble_errors import bubble_errors
+from rotorgear.analysis.response.mesh import damped_plant
+from rotorgear.system.bubble_errors import ForcedChanges, bubble_errors
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 from tests.models import STEEL
@@ -80,3 +82,31 @@ def test_the_estimate_is_the_error_of_shafts_whose_material_damps_strongly(speed
     light &= error > 1e-8
     ratio = estimate[light] / error[light]
     assert ratio == pytest.approx(1.0, rel=0.05)
+
+
+@pytest.mark.parametrize("alpha", [0.0, 3e4])
+def test_what_bubbles_change_of_a_receptance_is_its_error_in_a_medium_that_brakes_strongly(alpha: float) -> None:
+    """At the place of the force, where the first order of the change is a product of the response with itself."""
+    model = rg.Model(
+        motions=["bending"],
+        materials=STEEL,
+        shafts={"rotor": {"sections": [{"length": 0.9, "outer_diameter": 0.25}]}},
+        bearings={end: {"shaft": "rotor", "at": end, "stiffness": {"radial": 3e9}} for end in ("start", "end")},
+        operation={"input_shaft": "rotor"},
+        supports={"middle": {"shaft": "rotor", "at": 0.45, "stiffness": {"radial": 1e6}}},
+        damping={"rayleigh_alpha": alpha, "rayleigh_beta": 1e-6},
+    )
+    w = np.array([2500.0, 9000.0])
+
+    def answers(system: System) -> tuple[np.ndarray, np.ndarray]:
+        """Responses (n, m) to a force in the middle, and what of them is seen there (m,)."""
+        f = moving_rows(system, ["supports.middle:y"]).T
+        dynamics = damped_plant(system, 0.0, 0.0, 0.0).dynamics(0.0)
+        q = np.hstack([dynamics.solve(float(one), f) for one in w])
+        return q, (f.T @ q)[0]
+
+    coarse = System(model, plan=Plan(4, 1))
+    q, seen = answers(coarse)
+    _, exact = answers(System(model, plan=Plan(12, 4)))
+    estimate = ForcedChanges.of(coarse).change(0.0, w, q, turning=False)
+    assert estimate == pytest.approx(np.abs(exact - seen), rel=0.05)
