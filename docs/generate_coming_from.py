@@ -1,4 +1,4 @@
-"""Writes docs/coming_from.md: words of other programs and the keys that they lead to, from the list that the program answers with."""
+"""Writes docs/coming_from.md: words of other programs and their keys, from the list that the program answers with."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from rotorgear.model.parts.synonyms import GROUPS
 
 HEAD = """# Coming from another program
 
-A model file has one word for each thing. What other programs and drawings call it is no key, but `rotorgear check` answers it with
-the key that is meant: `inner_diameter: unknown key (here that is 'bore')`. Capitals, blanks and hyphens do not matter. Where a word
-leads to several keys, the first that the table has is meant.
+A model file has one word for each thing. What other programs and drawings call it is no key, but `rotorgear check` answers it
+with the key that is meant: `inner_diameter: unknown key (here that is 'bore')`. Capitals, blanks and hyphens do not matter.
+Where a word leads to several keys, the first that the table has is meant.
 
 | you have | begin with |
 |---|---|
-| a model of ROSS, openTorsion or a book on rotors | [`[shafts.NAME]` with sections](model_file.md#shaftsname) in place of elements between nodes; `at` is a place, no node |
+| a model of ROSS, openTorsion or a book | [sections of shafts](model_file.md#shaftsname) for elements; `at` is a place, no node |
 | a gearbox in MASTA, Romax, KISSsoft or another program that writes REXS | [`rotorgear import`](rexs.md) |
-| a casing in Nastran, Abaqus or Gmsh | [its mesh](casings.md#put-a-bearing-on-a-casing), or [matrices that were reduced there](casings.md#use-a-body-that-was-reduced-elsewhere) |
+| a casing in Nastran, Abaqus or Gmsh | [its mesh, or reduced matrices](casings.md#put-a-bearing-on-a-casing) |
 | measured modes in a universal file, records over time | [the rig](rig.md) |
 """
 

@@ -1,8 +1,8 @@
 """The mesh of a box from a few numbers: plates around an inner space, bored blocks for bearings, inner walls, ribs and feet.
 
 Bricks stand on a plane grid of quadrilaterals, repeated at each z and kept where the box is solid. The grid's lines run through
-all edges of walls, blocks, ribs and feet, so that the mesh has the volume of the drawing. Around each axis of bores a square block
-is left out of the lines, and rings of quadrilaterals lead from its border to the bores; where the corners of two blocks overlap,
+all edges of walls, blocks, ribs and feet, so that the mesh has the volume of the drawing. Around each axis of bores a square
+block is left out of the lines, and rings of quadrilaterals lead from its border to the bores; where the corners of two blocks overlap,
 both end at the diagonal between them. A bore is a polygon of the area of its circle.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -182,16 +183,16 @@ def _blocks(shape: BoxShape, address: str) -> list[_Block]:
                 reach = f"{millimetres(at - block.half)} to {millimetres(at + block.half)}"
                 room = f"{millimetres(shape.low[axis])} to {millimetres(shape.high[axis])}"
                 raise AnalysisError(
-                    f"{address}.box.bores.{widest.name}: the block of its seat reaches over {'xy'[axis]} from {reach}, outside of the "
-                    f"wall, whose inside is {room}. Move the corners of the box, or make boss thinner."
+                    f"{address}.box.bores.{widest.name}: the block of its seat reaches over {'xy'[axis]} from {reach}, outside of "
+                    f"the wall, whose inside is {room}. Move the corners of the box, or make boss thinner."
                 )
         for seat in block.seats:
             first, last = block.tube(seat, shape.plates)
             if last - first - shape.wall > _LONGEST * 2.0 * block.half:
                 raise AnalysisError(
                     f"{address}.box.bores.{seat.name}: the bearing at z = {millimetres(seat.at[2])} is "
-                    f"{millimetres(last - first - shape.wall)} away from the nearest wall. Move the corners of the box, give it an "
-                    "inner wall (walls), or leave the casing of this bearing out."
+                    f"{millimetres(last - first - shape.wall)} away from the nearest wall. Move the corners of the box, give it "
+                    "an inner wall (walls), or leave the casing of this bearing out."
                 )
     return blocks
 
@@ -201,7 +202,7 @@ def _lines(edges: list[float], element: float, blocks: list[tuple[float, float]]
     edges = sorted(edges)
     edges = [edge for number, edge in enumerate(edges) if number == 0 or edge - edges[number - 1] > _SAME]
     found = [edges[:1]]
-    for first, last in zip(edges, edges[1:], strict=False):
+    for first, last in pairwise(edges):
         inside = [(high - low) / _OF_A_SIDE for low, high in blocks if low < 0.5 * (first + last) < high]
         parts = math.ceil((last - first) / min([element, *inside]) - 1e-6)
         found.append(np.linspace(first, last, parts + 1)[1:].tolist())
@@ -471,8 +472,8 @@ def _seat_set(
     if not solid[np.ix_(layers, np.flatnonzero(rings))].all() or solid[np.ix_(layers, np.flatnonzero(inside))].any():
         others = ", ".join(one.name for one in block.seats if one is not seat)
         raise AnalysisError(
-            f"{address}.box.bores.{seat.name}: its seat stands in the bore of another on its axis ({others}). Give bearings side by "
-            "side one diameter, or places that do not overlap."
+            f"{address}.box.bores.{seat.name}: its seat stands in the bore of another on its axis ({others}). Give bearings side "
+            "by side one diameter, or places that do not overlap."
         )
     count = len(plane.points)
     after = np.roll(circle, -1)

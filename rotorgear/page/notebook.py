@@ -1,4 +1,4 @@
-"""What `result.show()` puts below a cell of a notebook: the turntable of the report for modes, else the picture that answers the mouse.
+"""What `result.show()` puts below a cell of a notebook: the turntable for modes, else the picture, which answers the mouse.
 
 It is a page of its own in a frame that may run its script and reach nothing else. So it needs no package of Jupyter, works
 in every notebook that shows HTML, and stays in pages that are made of notebooks.

@@ -184,7 +184,7 @@ class Result(Record):
         return picture_of(self.kind)(self, on, **options)
 
     def show(self) -> Any:
-        """What a notebook shows below its cell: modes as solids that turn and move, else the picture, whose points say what they are.
+        """What a notebook shows below its cell: modes as solids that turn, else the picture, whose points say what they are.
 
         Returns:
             An object that notebooks show, and whose text is that of the result.

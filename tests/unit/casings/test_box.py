@@ -136,7 +136,7 @@ def test_breathing_of_a_cube_is_that_of_clamped_plates_and_converges_as_its_erro
 
 
 def test_a_seat_at_the_end_of_a_long_box_is_as_soft_as_a_beam_and_a_tube() -> None:
-    """Held at one end: L^3/3EI + L/(k G A) across, with Cowper's k of a square tube, Bredt's L s/(4 G A^2 t) and Lamé's disk in torsion."""
+    """Held at one end: across L^3/3EI + L/(k G A), k of a square tube by Cowper; in torsion Bredt's tube and Lamé's disk."""
     a, t, length = 0.1, 0.004, 1.0
     shape = replace(
         CUBE,
@@ -148,12 +148,12 @@ def test_a_seat_at_the_end_of_a_long_box_is_as_soft_as_a_beam_and_a_tube() -> No
     body = body_of(shape, held=("-z",))
     stiffness = reduce(body, 1.0)[0].stiffness[:6, :6]
     flexibility = np.linalg.inv(stiffness)
-    I = ((a + t) ** 4 - (a - t) ** 4) / 12.0
+    area_moment = ((a + t) ** 4 - (a - t) ** 4) / 12.0
     A = (a + t) ** 2 - (a - t) ** 2
     G = E / 2.0 / (1.0 + NU)
     kappa = 20.0 * (1.0 + NU) / (48.0 + 39.0 * NU)
     span = length + 0.006
-    across = span**3 / (3.0 * E * I) + span / (kappa * G * A)
+    across = span**3 / (3.0 * E * area_moment) + span / (kappa * G * A)
     assert flexibility[0, 0] == pytest.approx(flexibility[1, 1], rel=1e-6)
     assert flexibility[0, 0] == pytest.approx(across, rel=0.01)
     annulus = (1.0 / 0.015**2 - 1.0 / (0.5 * a) ** 2) / (4.0 * math.pi * G * t)  # of the end wall, turned in its plane
@@ -172,7 +172,13 @@ sections = [{ length = "240 mm", outer_diameter = "25 mm" }]
 
 [bearings]
 left = { shaft = "rotor", at = "-4 mm", casing = "box", stiffness = { radial = 1e8, axial = 1e7 } }
-right = { shaft = "rotor", at = "204 mm", casing = "box", rolling = { designation = "6205" }, stiffness = { radial = 1e8, axial = 1e7 } }
+
+[bearings.right]
+shaft = "rotor"
+at = "204 mm"
+casing = "box"
+rolling = { designation = "6205" }
+stiffness = { radial = 1e8, axial = 1e7 }
 
 [casings.box]
 material = "aluminium"
@@ -258,6 +264,6 @@ def test_blocks_that_cannot_stand_beside_each_other_are_refused() -> None:
         body_of(
             replace(CUBE, seats=(seat("one", 0.08, 0.08, 0.0, 0.04, 0.004), seat("two", 0.12, 0.12, 0.0, 0.04, 0.004)))
         )
+    wide = seat("wide", 0.1, 0.1, 0.004, 0.04, 0.006)
     with pytest.raises(rg.AnalysisError, match=r"bores\.slim: .*in the bore of another on its axis"):
-        wide = seat("wide", 0.1, 0.1, 0.004, 0.04, 0.006)
         body_of(replace(CUBE, seats=(wide, seat("slim", 0.1, 0.1, 0.005, 0.03, 0.01))))
