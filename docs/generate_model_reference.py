@@ -138,7 +138,7 @@ RULES: dict[type[BaseModel], str] = {
         Only `x`, `y` and `axial` count, or `radial` for x and y: a pedestal is rigid in tilt.""",
     StiffnessMatrix: """
         Give `radial`, or `x` and `y`; `tilt`, or `tilt_x` and `tilt_y`; or the full `matrix` and nothing else, rows and
-        columns x y z tilt_x tilt_y torsion. What is left out is zero.""",
+        columns x y z tilt_x tilt_y torsion. What is left out is zero, and `"rigid"` is for bearings and couplings.""",
     DampingMatrix: f"""
         The same keys as those of the [stiffness](#stiffness-----of-a-part), with velocities in place of displacements:
         `"{DIMENSIONS["damping"].example}"` along axes, `"{DIMENSIONS["rotational_damping"].example}"` about them.""",
@@ -312,6 +312,9 @@ def _value(kind: dict[str, Any]) -> str:
         return "text or table"
     if options == {"number", "string", None}:
         return "number or table"
+    if options == {"string", None}:
+        words = [word for option in kind["anyOf"] for word in option.get("enum", ())]
+        return " ".join(f'`"{word}"`' for word in words) + " or table"
     if options == {"string", "array"}:
         return "text or list of numbers"
     if options == {"string", "number"}:

@@ -87,7 +87,7 @@ def _cut(layout: Layout, nodes: Nodes, name: str) -> Cut:
         dofs, relative = relative_motion(layout, nodes, point.on)
         # A unit of relative displacement by the second end alone does the work of the load.
         row[6:] = np.linalg.inv(relative[:, 6:])[:, k]
-        rigid = layout.model.couplings[point.on.removeprefix("couplings.")].rigid
+        rigid = k in layout.model.couplings[point.on.removeprefix("couplings.")].rigid_directions
         return Cut(name, point.on, dofs, row, k, rigid)
     place = layout.place(f"points.{name}")
     node = nodes.at(*place)

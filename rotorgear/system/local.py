@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -61,12 +62,21 @@ _UNLOADED = 1e-6
 
 @dataclass(frozen=True)
 class LocalModel:
-    """A system for time integration with the parts behind its local displacements."""
+    """A system for time integration with the parts behind its local displacements; `asked`: speed and `along_faces` of it."""
 
     system: System
     local: LocalSystem
     parts: tuple[LocalPart, ...]
     groups: tuple[ElementGroup, ...]
+    asked: tuple[float, bool]
+
+    @cached_property
+    def released(self) -> LocalModel:
+        """The same with all dofs that rigid members take away; itself where nothing is rigid."""
+        if self.system.released is self.system:
+            return self
+        speed, along_faces = self.asked
+        return local_model(self.system.released, self.local.rotation, speed, along_faces=along_faces)
 
     @property
     def meshes(self) -> list[int]:
@@ -185,7 +195,7 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
             local = replace(local, changes=changes).at_time(0.0)
         else:
             local = replace(local, load=local.load + on_rigid_train(local, rigid, local.load[:, None])[:, 0])
-    return LocalModel(system, local, parts, tuple(groups))
+    return LocalModel(system, local, parts, tuple(groups), (speed, along_faces))
 
 
 def _require_plain_planets(system: System, rotation: Rotation) -> None:
@@ -199,6 +209,12 @@ def _require_plain_planets(system: System, rotation: Rotation) -> None:
     if not turning or not np.any(rotation.speeds):
         return
     require_constant(system.layout)
+    for name, bearing in model.bearings.items():
+        if bearing.rigid_directions:
+            raise AnalysisError(
+                f"bearings.{name}.stiffness: its force in a rigid direction beside planets that go round is not built in time. "
+                "Give it a stiffness."
+            )
     hold = "or hold the carrier: speed_ratio = 0 of shafts."
     round_with = {planet: planets for planets in turning.values() for planet in planets.planets}
     for mesh in model.meshes:

@@ -22,7 +22,7 @@ from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
 from rotorgear.system.planets import PinLoad, pin_loads, planet_groups, seen_from_carrier, turning_carriers
-from rotorgear.system.rigid_members import Conditions, conditions, without_rigid
+from rotorgear.system.rigid_members import Conditions, conditions, followers, without_rigid
 
 
 @dataclass(frozen=True)
@@ -110,6 +110,7 @@ class System:
         self.state = state if state.layout is model.layout else replace(state, layout=model.layout)
         self._last: dict[str, tuple[float, Any]] = {}
         self.is_seen_from_carrier = False
+        self._is_released = False
 
     def require_freedom(self) -> None:
         """Refuse a model in which nothing can move.
@@ -136,7 +137,17 @@ class System:
 
     def _alike(self, other: System) -> System:
         other.is_seen_from_carrier = self.is_seen_from_carrier
+        other._is_released = self._is_released
         return other
+
+    @cached_property
+    def released(self) -> System:
+        """The same with all dofs that rigid members take away; itself where nothing is rigid."""
+        if not self.conditions.parts:
+            return self
+        found = self._alike(type(self)(self.model, plan=self.plan, state=self.state))
+        found._is_released = True
+        return found
 
     @property
     def load(self) -> State:
@@ -157,7 +168,12 @@ class System:
     @cached_property
     def dofs(self) -> DofMap:
         """Which of their displacements are degrees of freedom, and how the others follow."""
-        return without_rigid(self._without_conditions, self.conditions)
+        return without_rigid(self._without_conditions, self.conditions, self.followers)
+
+    @cached_property
+    def followers(self) -> sp.csc_array:
+        """E (b, n): the dofs of the `released` system from its own."""
+        return followers(self.conditions)
 
     @cached_property
     def _without_conditions(self) -> DofMap:
@@ -165,8 +181,9 @@ class System:
 
     @cached_property
     def conditions(self) -> Conditions:
-        """What rigid meshes and couplings keep at zero."""
-        return conditions(self.layout, self.nodes, self._without_conditions, self.state.rigid)
+        """What rigid meshes, couplings and bearings keep at zero."""
+        found = conditions(self.layout, self.nodes, self._without_conditions, self.state.rigid)
+        return found.none if self._is_released else found
 
     @property
     def train(self) -> Train:

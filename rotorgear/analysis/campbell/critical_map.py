@@ -70,6 +70,11 @@ def critical_map(
     """
     if not model.bearings:
         raise AnalysisError("the model has no bearings, so there is no support stiffness to vary")
+    rigid = [f"bearings.{name}" for name, bearing in model.bearings.items() if set(bearing.rigid_directions) & {0, 1}]
+    if rigid:
+        raise AnalysisError(
+            f"{rigid[0]}.stiffness: rigid across the shaft, where a map varies it: give it any stiffness"
+        )
     shaft = shaft or model.reference_shaft
     line = next((item for item in excitation_orders(model, (order,), ()) if shaft in item.parts), None)
     if line is None:

@@ -160,6 +160,7 @@ def _without_motion(system: System) -> Iterator[Note]:
         table, _, name = address.partition(".")
         part = getattr(model, table)[name]
         pushes = np.any(spring.stiffness, axis=0) | np.any(spring.damping, axis=0)
+        pushes[list(getattr(part, "rigid_directions", ()))] = True
         if not pushes[moves].any() and not getattr(part, "fixed", ()) and (pushes.any() or table == "bearings"):
             yield Note(address, "", why)
     if not model.has("bending"):
@@ -204,7 +205,7 @@ def _dofs(system: System) -> Iterator[Note]:
     for how, count in (
         ("held fixed by supports", held["supports"]),
         ("tied by rigid sections", held["rigid sections"]),
-        ("taken away by rigid meshes and couplings", held.get("rigid members", 0)),
+        ("taken away by rigid meshes, couplings and bearings", held.get("rigid members", 0)),
     ):
         if count:
             yield Note("", f"{count} dofs {how}")

@@ -76,7 +76,7 @@ def moving_rows(system: System, names: Sequence[str]) -> np.ndarray:
     R = point_rows(system, names).toarray()
     for text, row in zip(names, R, strict=True):
         if not row.any() and not located(system.model, text)[0]:
-            raise AnalysisError(f"'{text}' can't move: a support or the motions of the model hold it")
+            raise AnalysisError(f"'{text}' can't move: a support, a rigid bearing or the motions of the model hold it")
     return R
 
 

@@ -19,9 +19,9 @@ class Order:
     Attributes:
         name: "shaft input 1x" or "mesh stage_1a, stage_1b 2x".
         ratio: frequency in rad/s over the size of the reference speed; fixed: what of it does not go with the speed, in rad/s.
-        unbalance: force per square of the reference speed at the free dofs, (n,).
+        unbalance: force per square of the reference speed at the free dofs, and at those of rigid members, (b,).
         error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
-        applied: force at the free dofs whatever the speed, (n,) or 0.
+        applied: force at these dofs whatever the speed, (b,) or 0.
         couple: of loaded teeth that feel the tilt of their shafts, about the place of each contact along its face, (c,) N m.
         minor: whether it is one of the many small orders that loaded teeth need for their peak to peak only.
     """
@@ -47,7 +47,7 @@ class Order:
         return self.ratio * abs(speed) + self.fixed
 
     def load(self, lines: ContactLines, speed: float) -> np.ndarray:
-        """Force on the free dofs at a reference speed in rad/s, (n,)."""
+        """Force on these dofs, which the contacts are told on, at a reference speed in rad/s, (b,)."""
         w = self.frequency_at(speed)
         return np.asarray(
             speed**2 * self.unbalance

@@ -57,15 +57,17 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[Note, ...]]:
     """
     require_plain_teeth(setup.system)
     left: list[Note] = []
-    nothing = np.zeros(setup.system.n, complex)
+    # Loads on what rigid members hold are theirs alone, and count for their forces.
+    free = setup.system.released
+    nothing = np.zeros(free.n, complex)
     rest = np.zeros(len(setup.lines.states), complex)
     blank = Order("", 0.0, nothing, rest, rest, rest, minor=True)
     found: dict[_Key, tuple[list[str], Order]] = {}
     for key, name, part in chain(
-        _unbalances(setup.system, blank),
+        _unbalances(free, blank),
         _meshes(setup, blank, left),
         _loaded_teeth(setup, blank, left),
-        _external_loads(setup.system, blank, left),
+        _external_loads(free, blank, left),
     ):
         names, order = found.get(key, ([], blank))
         found[key] = names if name in names else [*names, name], order.plus(part)

@@ -28,8 +28,10 @@ from rotorgear.solvers.sparse.entries import on_one_pattern
 from rotorgear.solvers.sparse.factor import Factor
 from rotorgear.solvers.sparse.sums import SparseSums
 from rotorgear.system.bubble_errors import ForcedChanges
-from rotorgear.system.contacts import contact_lines
+from rotorgear.system.contacts import ContactLines, contact_lines
+from rotorgear.system.groups import relative_motion
 from rotorgear.system.internal_loads import LoadRows, load_rows, read_loads
+from rotorgear.system.rigid_forces import from_loads, on_shafts, rigid_rows
 from rotorgear.system.system import System
 
 
@@ -120,6 +122,12 @@ def force_rows(
     return K, C
 
 
+def _damped_lines(system: System) -> ContactLines:
+    """The contacts of a system with Rayleigh's share of their damping."""
+    lines = contact_lines(system)
+    return replace(lines, damping=lines.damping + system.model.damping.rayleigh_beta * lines.stiffness)
+
+
 class GroundLoads:
     """Force, and moment about the origin of the model, of the ground on each held set and mount of casings from meshes.
 
@@ -171,10 +179,10 @@ class Plant:
     """
 
     def __init__(self, system: System, damping: tuple[np.ndarray, np.ndarray, float] | None = None) -> None:
-        beta = system.model.damping.rayleigh_beta
-        lines = contact_lines(system)
         self.system = system
-        self.lines = replace(lines, damping=lines.damping + beta * lines.stiffness)
+        self.lines = _damped_lines(system)
+        self._acting = self.lines if system.released is system else _damped_lines(system.released)
+        self._rigid: LoadRows | None = None
         self.low_rank: LowRank | None = None
         self.damped: tuple[np.ndarray, LowRank] | None = None
         if damping is not None and damping[2] > 0.0 and damping[1].size:
@@ -277,7 +285,12 @@ class Plant:
     def loads(self, orders: list[Order], speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies (o,) in rad/s and loads (n, o) of all orders at a reference speed."""
         w = np.array([order.frequency_at(speed) for order in orders])
-        return w, np.array([order.load(self.lines, speed) for order in orders]).T
+        loads = self._on_all(orders, np.full(len(orders), speed))
+        return w, loads if self.system.released is self.system else np.asarray(self.system.followers.T @ loads)
+
+    def _on_all(self, orders: list[Order], speeds: np.ndarray) -> np.ndarray:
+        """Loads (b, o) of orders at a reference speed for each, on the dofs of rigid members, too."""
+        return np.array([order.load(self._acting, speed) for order, speed in zip(orders, speeds, strict=True)]).T
 
     def read(self, orders: list[Order], speed: float | np.ndarray, w: np.ndarray, q: np.ndarray) -> Readings:
         """What the displacements q (n, o) of the orders mean, at one reference speed in rad/s or at one for each.
@@ -301,6 +314,8 @@ class Plant:
         normal = w[:, None] * self._normal(q)
         lacking = self._bubbles.change(speed, w, q, turning=True)
         on_seats = np.asarray(seated).reshape(len(w), -1, 6)
+        held = held.reshape(len(w), -1, 3)
+        self._add_rigid(orders, np.broadcast_to(speed, len(w)), w, q, held, on_seats)
         brake = self._brake(w, q) if self.ground.names or self.rings.names else None
         if self.rings.names:
             couple = np.array([order.couple for order in orders])
@@ -310,7 +325,7 @@ class Plant:
             transmission_error=rotation,
             approach=transverse,
             pressed=approach,
-            bearing_force=held.reshape(len(w), -1, 3),
+            bearing_force=held,
             acceleration=-(w**2)[:, None] * moved,
             internal_load=inside,
             displacement=there,
@@ -323,14 +338,50 @@ class Plant:
     def load_rows(self, speed: float) -> LoadRows:
         """Loads of the points that read one, from displacements, at a reference speed in rad/s."""
         if self.has_tables:
-            still = load_rows(self.system, speed)
-        else:
-            self._load_rows = self._load_rows or load_rows(self.system)
-            still = self._load_rows.at(speed)
+            return self._braked(load_rows(self.system, speed))
+        self._load_rows = self._load_rows or load_rows(self.system)
+        return self._braked(self._load_rows.at(speed))
+
+    def rigid_rows(self, speed: float) -> LoadRows:
+        """Forces of the rigid directions of bearings by displacements, at a reference speed in rad/s; loads act beside them."""
+        if self.has_tables:
+            return self._braked(rigid_rows(self.system, speed))
+        self._rigid = self._rigid or rigid_rows(self.system)
+        return self._braked(self._rigid.at(speed))
+
+    def _braked(self, rows: LoadRows) -> LoadRows:
+        """Rows with the damping of modes."""
         if self.damped is None:
-            return still
+            return rows
         modes, (P, d, _) = self.damped
-        return still.braked(modes, d, P)
+        return rows.braked(modes, d, P)
+
+    def _add_rigid(
+        self,
+        orders: list[Order],
+        speeds: np.ndarray,
+        w: np.ndarray,
+        q: np.ndarray,
+        held: np.ndarray,
+        on_seats: np.ndarray,
+    ) -> None:
+        """Add the forces of rigid directions to those on bearings (o, b, 3) and on seats (o, s, 6); as in `read`."""
+        directions = on_shafts(self.system)
+        if not directions:
+            return
+        about = float(speeds[0])
+        forces = self.rigid_rows(about).amplitudes(w, q, speeds - about)
+        forces = forces + from_loads(self.system) @ self._on_all(orders, speeds)
+        bearings = list(self.system.model.bearings)
+        seats = list(self.seats.values())
+        for (name, k), force in zip(directions, forces, strict=True):
+            if k < 3:
+                held[:, bearings.index(name), k] -= force
+            address = f"bearings.{name}"
+            for number, parts in enumerate(seats):
+                if address in parts:
+                    _, relative = relative_motion(self.system.layout, self.system.nodes, address)
+                    on_seats[:, number] -= force[:, None] * relative[k, :6]
 
     def _brake(self, w: np.ndarray, q: np.ndarray) -> np.ndarray | None:
         """Accelerations (n, o) that the damping of modes acts as, of displacements q (n, o) at frequencies w (o,)."""

@@ -154,7 +154,8 @@ class ModalSweep:
         self.scale = np.sqrt(np.abs(K.diagonal()) + (0.1 * top) ** 2 * np.abs(M.diagonal()))
         shifted = factor_symmetric((K + (0.3 * top) ** 2 * M).tocsc())
         loads = np.hstack([plant.loads(orders, float(self.speeds[-1]))[1]])
-        patterns = np.hstack([loads.real, loads.imag, plant.lines.vectors, plant.load_rows(float(self.speeds[-1])).q.T])
+        read = (rows(float(self.speeds[-1])).q.T for rows in (plant.load_rows, plant.rigid_rows))
+        patterns = np.hstack([loads.real, loads.imag, plant.lines.vectors, *read])
         self.basis = orthonormal(np.zeros((plant.system.n, 0)), np.hstack([modes, shifted.solve(patterns)]), self.scale)
         self._projection: tuple[Pencil, ...] | None = None
         self.modes = modes.shape[1]

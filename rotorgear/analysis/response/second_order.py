@@ -165,4 +165,4 @@ def _moved(plant: Plant, speed: float, joint: JointState, cycle: Cycle, rest: np
 
 def _answer(plant: Plant, speed: float, ratio: float, force: np.ndarray) -> Readings:
     """Readings of the linear plant at a speed under forces of the contacts (c,) in N at a multiple of the reference speed."""
-    return answer(plant, [Order("", ratio, np.zeros(plant.system.n), 0.0 * force, force, 0.0 * force)], speed)
+    return answer(plant, [Order("", ratio, np.zeros(plant.system.released.n), 0.0 * force, force, 0.0 * force)], speed)

@@ -61,6 +61,11 @@ def bearing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
         on_shaft = -law.part.columns[6 * node : 6 * node + 6] @ law.force
         name = law.part.part.removeprefix("bearings.")
         forces[name] = forces.get(name, 0.0) + on_shaft
+    kept = equilibrium.system.conditions
+    if kept.of_bearings:
+        rigid = kept.forces(equilibrium.loads - _of_elements(equilibrium))
+        for k in kept.of_bearings:
+            forces[kept.parts[k].removeprefix("bearings.")][kept.components[k]] -= rigid[k]
     return forces
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.common.points import motion_points, point_rows
+from rotorgear.analysis.static.mean_state import springs_about_mean
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.time.arguments import Sisters
@@ -19,6 +20,7 @@ from rotorgear.solvers.time.sisters import sisters_of, turning_matrix
 from rotorgear.system.internal_loads import load_rows, read_loads
 from rotorgear.system.local import LocalModel
 from rotorgear.system.planets import sister_places
+from rotorgear.system.rigid_forces import from_loads, on_shafts
 
 _AXES = ("x", "y", "z")
 
@@ -62,13 +64,13 @@ def channels(local: LocalModel, speed: float) -> Channels:
     """
     system = local.system
     every = list(_bearing_forces(local))
+    constant = _add_rigid_directions(every, local, speed)
     for name in motion_points(system.model):
         dof = DOF_NAMES.index(system.model.points[name].direction)
         row = point_rows(system, (name,)).toarray()[0]
         unit = "m" if dof < 3 else "rad"
         for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
             every.append((f"points.{name} {what}", unit + per, {kind: row}))
-    constant = {}
     for label, unit, by_kind, weight in _internal_loads(local):
         constant[label] = -weight
         every.append((label, unit, by_kind))
@@ -96,6 +98,46 @@ def channels(local: LocalModel, speed: float) -> Channels:
             rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
     names, units, _ = zip(*every, strict=True) if every else ((), (), ())
     return Channels(names, units, rows, np.array([constant.get(name, 0.0) for name in names]))
+
+
+def _add_rigid_directions(
+    every: list[tuple[str, str, dict[str, np.ndarray]]], local: LocalModel, speed: float
+) -> dict[str, float]:
+    """Add the force in each rigid direction of a bearing, which laws and loads on the dofs that it takes away join in.
+
+    Returns:
+        What constant loads add to the channels, by name.
+    """
+    found: dict[str, float] = {}
+    known = {name: by_kind for name, _, by_kind in every}
+    named = rigid_channels(local)
+    if not named:
+        return found
+    free = springs_about_mean(local.released, speed).local
+    E = local.system.followers
+    P = from_loads(local.system)
+    D = free.velocity_terms(float(free.rotation.speeds[0]))
+    rows = {"q": -(P @ free.K) @ E, "v": -(P @ D) @ E, "a": -(P @ free.M) @ E, "F": -(P @ free.B)}
+    for k, name in named.items():
+        if name not in known:
+            known[name] = {}
+            every.append((name, "N", known[name]))
+        for kind, whole in rows.items():
+            row = np.asarray(whole)[k]
+            if row.any():
+                known[name][kind] = known[name].get(kind, 0.0) + row
+        found[name] = float(P[k] @ free.load)
+    return found
+
+
+def rigid_channels(local: LocalModel) -> dict[int, str]:
+    """The channel of each rigid direction of a bearing, by its number among them: of a run-up those without gyroscopic terms."""
+    system = local.system
+    axes = [(k, f"bearings.{name} force {_AXES[axis]}") for k, (name, axis) in enumerate(on_shafts(system)) if axis < 3]
+    if local.local.rotation.is_constant or not axes:
+        return dict(axes)
+    turning = np.asarray((from_loads(system) @ system.released.gyroscopic) @ system.followers)
+    return {k: name for k, name in axes if not turning[k].any()}
 
 
 def _internal_loads(local: LocalModel) -> Iterator[tuple[str, str, dict[str, np.ndarray], float]]:

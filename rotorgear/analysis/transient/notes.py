@@ -10,10 +10,11 @@ from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.left_out import GIVE_DAMPING, left_out
 from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.analysis.static.mean_state import mean_torsion_notes
+from rotorgear.analysis.transient.channels import rigid_channels
 from rotorgear.analysis.transient.request import STARTS, Grid, Task, history_bytes
 from rotorgear.analysis.transient.statistics import halves_differ
 from rotorgear.model.model import Model
-from rotorgear.model.parts.fields import in_words
+from rotorgear.model.parts.fields import DOF_NAMES, in_words
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.note import Note, as_notes
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -21,6 +22,7 @@ from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import unbalanced
 from rotorgear.system.internal_loads import read_loads
 from rotorgear.system.local import LocalModel
+from rotorgear.system.rigid_forces import on_shafts
 
 # Numerical share of the energy above which a run is warned about.
 ENERGY_BOUND = 0.05
@@ -47,8 +49,11 @@ def damped_at_nodes(model: Model) -> tuple[Note, ...]:
     if not model.damping.modal_ratio:
         return ()
     why = "it acts at the nodes, as forces from outside"
-    return tuple(
-        Note(f"points.{name}", "what damping of modes does between two nodes", why) for name in read_loads(model)
+    what = "what damping of modes does"
+    rigid = (name for name, bearing in model.bearings.items() if bearing.rigid_directions)
+    return (
+        *(Note(f"points.{name}", f"{what} between two nodes", why) for name in read_loads(model)),
+        *(Note(f"bearings.{name}", f"{what} beside its rigid directions", why) for name in rigid),
     )
 
 
@@ -82,6 +87,10 @@ def transient_left_out(local: LocalModel) -> tuple[Note, ...]:
                 notes.append(Note(address, "what changes with the load", why, f"F_bt = {curve.load:.4g} N"))
         if name in system.state.faces:
             notes += _along_face(address, mesh, follows=law.components == 2)
+    told = rigid_channels(local).values()
+    for channel in (f"bearings.{name} force {DOF_NAMES[k]}" for name, k in on_shafts(system) if k < 3):
+        if channel not in told:
+            notes.append(Note(channel, "", "gyroscopic terms take part in it, which are those of a constant speed"))
     for state in system.state.forces:
         along = law_of[f"meshes.{state.contact.mesh}"].components == 2
         of_teeth = system.state.face_map(state) if along else system.state.contact_map(state)

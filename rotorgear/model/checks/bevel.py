@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem
 from rotorgear.model.checks.gears import degrees
 from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.model.parts.mesh import RIGID, Mesh
+from rotorgear.model.parts.fields import RIGID
+from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.problems import not_default, told
 from rotorgear.quantity import millimetres
 

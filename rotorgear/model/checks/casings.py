@@ -65,7 +65,7 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
             ("poisson_ratio", not named and nu >= 0.5, f"{nu:.4g}", "one from 0 to below 0.5"),
         )
         for set_name, mount in casing.mounts.items():
-            yield from six_by_six(f"{address}.mounts.{set_name}", mount, None)
+            yield from six_by_six(f"{address}.mounts.{set_name}", mount, None, f"hold it: held = ['{set_name}']")
             yield from six_by_six(f"{address}.mounts.{set_name}", None, mount.damping)
         if casing.box is not None:
             yield from _box(model, name, casing, casing.box)

@@ -14,8 +14,9 @@ from rotorgear.model.checks.casings import counted_twice
 from rotorgear.model.checks.gears import degrees, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
+from rotorgear.model.parts.fields import RIGID
 from rotorgear.model.parts.gear import Gear
-from rotorgear.model.parts.mesh import RIGID, Mesh
+from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.problems import missing, not_default, told
 from rotorgear.model.parts.shaft import PositionByMesh
 from rotorgear.model.parts.tables import Tables

@@ -10,7 +10,7 @@ from rotorgear.errors import Problem
 from rotorgear.model.layout.carriers import PlanetSet, carried
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.carrier import MARK, written_name
-from rotorgear.model.parts.mesh import RIGID
+from rotorgear.model.parts.fields import RIGID
 from rotorgear.model.parts.problems import told
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
@@ -84,6 +84,7 @@ def on_carriers(model: Tables) -> Iterator[Problem]:
                 address,
                 ("casing", bearing.casing is not None, "a casing", "nothing here: a planet runs on its carrier's pin"),
                 ("pedestal", bearing.pedestal is not None, "a pedestal", "nothing here: a planet runs on its pin"),
+                ("stiffness", bearing.rigid_directions, "'rigid' of a planet's bearing", "a stiffness"),
             )
         elif table == "nonlinear_elements":
             wanted = "a bearing on the pin, with its stiffness or by its rolling elements"

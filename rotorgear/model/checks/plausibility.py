@@ -222,8 +222,8 @@ def _bearing(layout: Layout, address: str, bearing: Bearing) -> Iterator[Judged]
 def _stiffness(address: str, matrix: StiffnessMatrix, weight: float, *, given: bool = False) -> Iterator[Judged]:
     """Stiffness across the shaft against the weight on it; `given`: directions without one are rigid."""
     rows = matrix.as_rows()
-    across = [rows[i][i] for i in range(2) if rows[i][i] or not given]
-    if not any(any(row) for row in rows):
+    across = [rows[i][i] for i in range(2) if i not in matrix.rigid and (rows[i][i] or not given)]
+    if not (matrix.rigid or any(any(row) for row in rows)):
         if not given:
             yield address, 0.0, (1.0, 1.0), "0 in all directions", _SPRING, "it holds nothing; leave it out"
     elif across:
@@ -243,9 +243,9 @@ def _couplings(layout: Layout) -> Iterator[Judged]:
     speed = abs(operation.speed or 0.0)
     torque = operation.torque or (operation.power / speed if operation.power and speed else 0.0)
     for name, coupling in layout.model.couplings.items():
-        stiffness = 0.0 if coupling.rigid else coupling.torsional_stiffness
+        stiffness = coupling.torsional_stiffness
         ratio = abs(float(layout.train.ratio(coupling.from_shaft)))
-        if stiffness > 0.0 and ratio:
+        if 0.0 < stiffness < math.inf and ratio:
             twist = torque / ratio / stiffness
             what = f"which the whole torque of the operating point would twist by {twist:.3g} rad"
             got = f"{stiffness:.4g} N m/rad, {what}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from itertools import islice, pairwise
 
 from rotorgear.errors import AnalysisError, Problem
+from rotorgear.model.parts.fields import DOF_NAMES, RIGID
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.problems import not_default, shown, told
 from rotorgear.model.parts.references import ON_SHAFTS
@@ -20,6 +21,8 @@ from rotorgear.model.parts.supports import (
 )
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import RPM_PER_RAD_S, did_you_mean, millimetres, nearest
+
+_OF_LAW = "a law gives way, and the stiffness stands for it; leave one of the two out"
 
 
 def motions(model: Tables) -> Iterator[Problem]:
@@ -74,7 +77,7 @@ def matrices(model: Tables) -> Iterator[Problem]:
     for name, bearing in model.bearings.items():
         yield from _bearing(f"bearings.{name}", bearing)
     for name, support in model.supports.items():
-        yield from six_by_six(f"supports.{name}", support.stiffness, support.damping)
+        yield from six_by_six(f"supports.{name}", support.stiffness, support.damping, "hold it by fixed = ['x', 'y']")
         if not (support.stiffness or support.damping or support.fixed):
             yield Problem(f"supports.{name}", "neither stiffness, damping nor fixed", "at least one of them")
     for name, element in model.nonlinear_elements.items():
@@ -86,7 +89,7 @@ def matrices(model: Tables) -> Iterator[Problem]:
             ("", element.stiffness is not None and element.table, "stiffness and table", "one of the two"),
             ("damping", lone, "damping without stiffness", wanted),
         )
-        yield from six_by_six(address, element.stiffness, element.damping)
+        yield from six_by_six(address, element.stiffness, element.damping, _OF_LAW)
         yield from _table(address, element.table)
     for name, coupling in model.couplings.items():
         given = not_default(coupling, ("stiffness", "damping"))
@@ -110,14 +113,17 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         ("", bearing.stiffness is not None and bearing.table, "stiffness and table", "one of the two"),
         ("damping", double, "damping beside a table", "damping in the rows of the table"),
     )
-    yield from six_by_six(address, bearing.stiffness, bearing.damping)
+    yield from six_by_six(address, bearing.stiffness, bearing.damping, _OF_LAW if bearing.has_law else None)
+    if bearing.stiffness is not None and bearing.stiffness.torsion == RIGID:
+        wanted = "a stiffness, or a support with fixed = ['torsion']"
+        yield Problem(f"{address}.stiffness.torsion", f"'{RIGID}'", wanted, "shafts turn in their bearings")
     yield from _table(address, bearing.table)
     for kind, geometry in bearing.geometries.items():
         yield from geometry.problems(f"{address}.{kind}", bearing.beside(kind))
     if bearing.pedestal is None:
         return
     stiffness = bearing.pedestal.stiffness
-    yield from six_by_six(f"{address}.pedestal", stiffness, bearing.pedestal.damping)
+    yield from six_by_six(f"{address}.pedestal", stiffness, bearing.pedestal.damping, "leave a rigid direction out")
     for key, matrix in (("stiffness", stiffness), ("damping", bearing.pedestal.damping)):
         rows = matrix.as_rows() if matrix and stiffness.given else ()
         tilts = any(value for i, row in enumerate(rows) for j, value in enumerate(row) if max(i, j) > 2)
@@ -137,11 +143,28 @@ def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
         wanted = "at least two rows with speeds that rise from 0 or more"
         yield Problem(f"{address}.table", f"speeds of {rpm} rpm", wanted)
     for number, row in enumerate(table):
-        yield from six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
+        yield from six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping, "give a stiffness, not a table")
 
 
-def six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: DampingMatrix | None) -> Iterator[Problem]:
-    """A stiffness and a damping have entries, each given once, that are no springs of negative stiffness."""
+def six_by_six(
+    address: str, stiffness: StiffnessMatrix | None, damping: DampingMatrix | None, in_place: str | None = None
+) -> Iterator[Problem]:
+    """A stiffness and a damping have entries, each given once, that are no springs of negative stiffness.
+
+    `in_place` says what a rigid direction is given by where it is none of this stiffness.
+    """
+    rigid = stiffness.rigid if stiffness else ()
+    if rigid and in_place is not None:
+        yield Problem(f"{address}.stiffness", f"'{RIGID}'", "numbers", in_place)
+    elif stiffness is not None:
+        damped = damping.as_rows() if damping else ()
+        for k in rigid:
+            crossed = any(stiffness.as_rows()[k]) or any(row[k] for row in stiffness.as_rows())
+            name = DOF_NAMES[k]
+            if crossed:
+                yield Problem(f"{address}.stiffness", f"a cross term of {name}", f"none: {name} is {RIGID}")
+            if damped and (any(damped[k]) or any(row[k] for row in damped)):
+                yield Problem(f"{address}.damping", f"one of {name}", f"none: {name} is {RIGID}, and does not move")
     for key, matrix in (("stiffness", stiffness), ("damping", damping)):
         if matrix is None:
             continue

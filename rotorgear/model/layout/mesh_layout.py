@@ -30,8 +30,9 @@ from rotorgear.gears.geometry.pair import (
 from rotorgear.model.layout.bevel import Meeting, meeting, pair_of
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.fields import RIGID
 from rotorgear.model.parts.frame import Frame
-from rotorgear.model.parts.mesh import RIGID, Mesh
+from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.shaft import Place
 from rotorgear.quantity import millimetres
 

@@ -34,6 +34,8 @@ from rotorgear.quantity import in_words as quantity_in_words
 
 MOTIONS = ("bending", "axial", "torsion")
 DOF_NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "torsion")
+# The word of what does not give at all: flanks that stay in touch, directions in which two parts move as one.
+RIGID = "rigid"
 
 # Longest list or table that the repr of a part writes out.
 _SHORT = 3
@@ -187,6 +189,20 @@ class Unit:
         return self.schema()
 
 
+@dataclass(frozen=True)
+class UnitOrRigid(Unit):
+    """A quantity, or the word of what does not give at all."""
+
+    def parse(self, value: Any) -> Any:
+        """The word, or the quantity in SI."""
+        return value if value == RIGID else super().parse(value)
+
+    def schema(self) -> dict[str, Any]:
+        """A number in SI, a text with a unit, or the word."""
+        plain = super().schema()
+        return {**plain, "anyOf": [*plain["anyOf"], {"type": "string", "enum": [RIGID]}]}
+
+
 Length = Annotated[float, Unit("length")]
 PositiveLength = Annotated[float, Unit("length", "positive")]
 NonNegativeLength = Annotated[float, Unit("length", "non-negative")]
@@ -203,10 +219,12 @@ Modulus = Annotated[float, Unit("modulus", "positive")]
 Torque = Annotated[float, Unit("torque", "non-negative")]
 Power = Annotated[float, Unit("power", "non-negative")]
 Stiffness = Annotated[float, Unit("stiffness", "non-negative")]
+StiffnessOrRigid = Annotated[float | str, UnitOrRigid("stiffness", "non-negative")]
 SignedStiffness = Annotated[float, Unit("stiffness")]
 StiffnessPerArea = Annotated[float, Unit("stiffness_per_area", "positive")]
 Frequency = Annotated[float, Unit("frequency", "positive")]
 RotationalStiffness = Annotated[float, Unit("rotational_stiffness", "non-negative")]
+RotationalStiffnessOrRigid = Annotated[float | str, UnitOrRigid("rotational_stiffness", "non-negative")]
 Damping = Annotated[float, Unit("damping", "non-negative")]
 SignedDamping = Annotated[float, Unit("damping")]
 RotationalDamping = Annotated[float, Unit("rotational_damping", "non-negative")]

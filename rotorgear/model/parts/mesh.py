@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.model.parts import fields as si
-from rotorgear.model.parts.fields import Flag, Part, Unit, Whole, refuse
+from rotorgear.model.parts.fields import RIGID, Flag, Part, Unit, Whole, refuse
 from rotorgear.quantity import DIMENSIONS, did_you_mean
 
 # Least length of a list; most harmonics of a series; values of a series for each harmonic, and at least.
@@ -23,8 +23,6 @@ _MOST_HARMONICS = 100
 _VALUES_A_HARMONIC = 8
 _VALUES = 64
 _UNIT = Unit("stiffness", "positive")
-# The name of teeth that do not give: their flanks stay in touch exactly.
-RIGID = "rigid"
 _SHARE = Unit("ratio")
 _ANGLE = Unit("angle")
 _EXAMPLE = DIMENSIONS["stiffness"].example

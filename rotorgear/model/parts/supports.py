@@ -14,7 +14,7 @@ from rotorgear.model.parts.bearings.geometry import BearingGeometry, Oil
 from rotorgear.model.parts.bearings.journal import JournalGeometry
 from rotorgear.model.parts.bearings.rolling import RollingElements
 from rotorgear.model.parts.bearings.thrust import ThrustGeometry
-from rotorgear.model.parts.fields import Flag, Part, Station
+from rotorgear.model.parts.fields import RIGID, Flag, Part, Station
 from rotorgear.model.parts.problems import class_at
 from rotorgear.quantity import QuantityError, parse_in_unit
 
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw, Parameter
 
 Rows = tuple[tuple[float, ...], ...]
+# Keys that say what stands on the diagonal of a 6 x 6, in its order.
+_DIAGONAL = (("x", "radial"), ("y", "radial"), ("axial",), ("tilt_x", "tilt"), ("tilt_y", "tilt"), ("torsion",))
+_TORSION = 5
 FixedDof = Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion", "all"]
 
 
@@ -34,19 +37,13 @@ class _SixBySix(Part):
         return frozenset(name for name in type(self).model_fields if getattr(self, name) is not None)
 
     def as_rows(self) -> Rows:
-        """The 6 x 6 matrix as rows, in the order x y z tilt_x tilt_y torsion."""
+        """The 6 x 6 matrix as rows, in the order x y z tilt_x tilt_y torsion; 0 in directions that are rigid."""
         values = {name: getattr(self, name) or 0.0 for name in type(self).model_fields if name != "matrix"}
         matrix = getattr(self, "matrix", None)
         if matrix is not None:
             return matrix
-        diagonal = [
-            values["x"] or values["radial"],
-            values["y"] or values["radial"],
-            values["axial"],
-            values["tilt_x"] or values["tilt"],
-            values["tilt_y"] or values["tilt"],
-            values["torsion"],
-        ]
+        given = [next((values[key] for key in keys if values[key]), 0.0) for keys in _DIAGONAL]
+        diagonal = [0.0 if value == RIGID else value for value in given]
         rows = [[diagonal[i] if i == j else 0.0 for j in range(6)] for i in range(6)]
         rows[0][1] = values["xy"]
         rows[1][0] = values["yx"]
@@ -56,17 +53,22 @@ class _SixBySix(Part):
 class StiffnessMatrix(_SixBySix):
     """Stiffness of a bearing, support or coupling."""
 
-    radial: si.Stiffness | None = Field(None, description="along x and y")
-    x: si.Stiffness | None = Field(None, description="along x")
-    y: si.Stiffness | None = Field(None, description="along y")
-    axial: si.Stiffness | None = Field(None, description="along z")
+    radial: si.StiffnessOrRigid | None = Field(None, description="along x and y")
+    x: si.StiffnessOrRigid | None = Field(None, description="along x")
+    y: si.StiffnessOrRigid | None = Field(None, description="along y")
+    axial: si.StiffnessOrRigid | None = Field(None, description="along z")
     xy: si.SignedStiffness | None = Field(None, description="cross term: force along x from a displacement along y")
     yx: si.SignedStiffness | None = Field(None, description="cross term: force along y from a displacement along x")
-    tilt: si.RotationalStiffness | None = Field(None, description="about x and y")
-    tilt_x: si.RotationalStiffness | None = Field(None, description="about x")
-    tilt_y: si.RotationalStiffness | None = Field(None, description="about y")
-    torsion: si.RotationalStiffness | None = Field(None, description="about z")
+    tilt: si.RotationalStiffnessOrRigid | None = Field(None, description="about x and y")
+    tilt_x: si.RotationalStiffnessOrRigid | None = Field(None, description="about x")
+    tilt_y: si.RotationalStiffnessOrRigid | None = Field(None, description="about y")
+    torsion: si.RotationalStiffnessOrRigid | None = Field(None, description="about z")
     matrix: si.Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
+
+    @property
+    def rigid(self) -> tuple[int, ...]:
+        """Numbers of the directions that do not give, in the order x y z tilt_x tilt_y torsion."""
+        return tuple(k for k, keys in enumerate(_DIAGONAL) if any(getattr(self, key) == RIGID for key in keys))
 
 
 class DampingMatrix(_SixBySix):
@@ -93,6 +95,16 @@ def _radial(value: Any) -> Any:
 def _or_one_number(schema: dict[str, Any]) -> None:
     """Editors are told of the number, too."""
     schema["anyOf"] = [{"type": "number"}, {"type": "string"}, *schema["anyOf"]]
+
+
+def _all_rigid(value: Any) -> Any:
+    """A coupling without any give is rigid in all directions."""
+    return dict.fromkeys(("radial", "axial", "tilt", "torsion"), RIGID) if value == RIGID else value
+
+
+def _or_rigid(schema: dict[str, Any]) -> None:
+    """Editors are told of the word, too."""
+    schema["anyOf"] = [{"type": "string", "enum": [RIGID]}, *schema["anyOf"]]
 
 
 class TableRow(Part):
@@ -181,6 +193,11 @@ class Bearing(Part):
         return self.geometry if isinstance(self.geometry, Oil) else None
 
     @property
+    def rigid_directions(self) -> tuple[int, ...]:
+        """Numbers of the directions in which the shaft and what it stands on move as one."""
+        return () if self.stiffness is None else self.stiffness.rigid
+
+    @property
     def is_linear(self) -> bool:
         """Whether it has a stiffness that linear analyses take."""
         return not self.has_law or self.stiffness is not None
@@ -203,16 +220,25 @@ class Coupling(Part):
     from_at: Station = Field("end", description="z on the first shaft; default: its end")
     to_shaft: str = Field(description="name of the second shaft")
     to_at: Station = Field("start", description="z on the second shaft; default: its start")
-    stiffness: StiffnessMatrix | None = Field(
-        None, description="stiffness; with a torsional one, both shafts turn at one speed"
+    stiffness: Annotated[StiffnessMatrix | None, BeforeValidator(_all_rigid)] = Field(
+        None,
+        description="stiffness; with a torsional one, both shafts turn at one speed; or rigid, in all directions",
+        json_schema_extra=_or_rigid,
     )
     damping: DampingMatrix | None = Field(None, description="damping")
     rigid: Flag = Field(False, description="true: both ends move as one body, in place of a stiffness")
 
     @property
+    def rigid_directions(self) -> tuple[int, ...]:
+        """Numbers of the directions in which both ends move as one."""
+        if self.rigid:
+            return tuple(range(6))
+        return () if self.stiffness is None else self.stiffness.rigid
+
+    @property
     def torsional_stiffness(self) -> float:
         """Of a rigid one infinite, in N m/rad."""
-        if self.rigid:
+        if _TORSION in self.rigid_directions:
             return math.inf
         return 0.0 if self.stiffness is None else self.stiffness.as_rows()[5][5]
 

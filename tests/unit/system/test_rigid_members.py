@@ -86,7 +86,7 @@ def test_each_rigid_mesh_takes_one_dof_away_and_frequencies_are_those_of_stiff_t
     found = rg.modal(rigid, modes=8)
     assert found.dofs == 22
     assert rg.modal(stiff, modes=8).dofs == 24
-    assert any("taken away by rigid meshes and couplings" in str(note) for note in found.left_out)
+    assert any("taken away by rigid meshes, couplings and bearings" in str(note) for note in found.left_out)
     # Of a chain by itself, with inertias and springs referred to the first shaft.
     ratio = np.cumprod([1.0, *(1.0 / STAGES.get(number, 1) for number in range(1, 22))])
     M = np.diag(np.array(INERTIA) * ratio**2)
