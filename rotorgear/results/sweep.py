@@ -38,6 +38,12 @@ class Reduction(Record):
     frequencies: int = of("at how many frequencies")
     bases: int = of("how many bases there are")
     seconds: float = of("CPU time", "s", note=" to find and check them")
+    loads: float = of(
+        "FRF error of loads inside shafts and couplings",
+        json="error_loads",
+        note=", closed; 0 where none is read",
+        default=0.0,
+    )
 
     @property
     def error(self) -> float:
@@ -149,6 +155,29 @@ class SweepResult(ModelResult, kind="sweep"):
         default_factory=lambda: np.zeros((0, 0, 0, 0)),
     )
 
+    load_points: tuple[str, ...] = of("names of the points that read a load", "", "gauge", default=(), kw_only=True)
+    load_unit: tuple[str, ...] = of("unit of the load that a point reads", "", "gauge", default=(), kw_only=True)
+    load_statistics: np.ndarray = of(
+        "mean, rms about it, largest and smallest load inside a shaft or coupling",
+        "N, N m",
+        "point",
+        "run",
+        "gauge",
+        "load_statistic",
+        default_factory=lambda: np.zeros((0, 0, 0, 4)),
+        kw_only=True,
+    )
+    load_error: np.ndarray = of(
+        "estimated errors of these loads",
+        "N, N m",
+        "point",
+        "run",
+        "gauge",
+        "load_statistic",
+        default_factory=lambda: np.zeros((0, 0, 0, 4)),
+        kw_only=True,
+    )
+
     @derived("lines of the points that keep their trajectory", "", "portrait", record=Portrait, json="portraits")
     def portrait_lines(self) -> tuple[Portrait, ...]:
         """Length and lines of the trajectories; none where none were kept."""
@@ -224,6 +253,7 @@ class SweepResult(ModelResult, kind="sweep"):
                 "Estimated errors, relative; of contact loss and coast flank in %",
                 self._errors(runs[:_MOST]),
             )
+        yield from self._loads(runs[:_MOST])
         if self.portraits is not None:
             yield from self._strongest_lines(self.portraits)
         columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: each the largest of all contacts"
@@ -306,6 +336,21 @@ class SweepResult(ModelResult, kind="sweep"):
             rows.append(cells)
         heads = [*self._heads(), "response", *(head for head, *_ in shown)]
         return grid(rows, *heads, left=0, caption="Estimated errors of the points", tight=True)
+
+    def _loads(self, runs: list[tuple[int, int]]) -> Iterator[Block]:
+        """Loads inside shafts and couplings: the mean, rms about it, both ends, and the error of the larger one."""
+        for k, (name, unit) in enumerate(zip(self.load_points, self.load_unit, strict=True)):
+            rows = []
+            for p, r in runs:
+                values = self.load_statistics[p, r, k]
+                end = 2 if abs(values[2]) >= abs(values[3]) else 3
+                error = float(self.load_error[p, r, k, end]) / (abs(float(values[end])) or np.nan)
+                rows.append(
+                    [*self._cells(p, r), *(written(float(x), ".5g") for x in values), written(error, error_words)]
+                )
+            yield from ("", Line(f"Load at {name}"))
+            heads = (f"mean\n{unit}", f"rms\n{unit}", f"largest\n{unit}", f"smallest\n{unit}", "error")
+            yield grid(rows, *self._heads(), "response", *heads, left=0, caption=f"Load at {name}", tight=True)
 
     def _strongest_lines(self, kept: Portraits) -> Iterator[Block]:
         """The strongest lines in the spectra of the points that keep their trajectory."""

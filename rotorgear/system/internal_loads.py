@@ -130,6 +130,11 @@ class LoadRows:
         q, v = self.per_speed
         return replace(self, q=self.q + speed * q, v=self.v + speed * v)
 
+    def within(self, basis: np.ndarray) -> LoadRows:
+        """The rows on the coordinates of a basis (n, r)."""
+        q, v = (rows @ basis for rows in self.per_speed)
+        return replace(self, q=self.q @ basis, v=self.v @ basis, a=self.a @ basis, per_speed=(q, v))
+
     def braked(self, modes: np.ndarray, d: np.ndarray, P: np.ndarray) -> LoadRows:
         """The rows with damping P diag(d) P^T of modes (n, m), P = M modes: it brakes as accelerations modes d P^T v would."""
         return replace(self, v=self.v + ((self.a @ modes) * d) @ P.T)

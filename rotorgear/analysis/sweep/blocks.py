@@ -22,6 +22,7 @@ from rotorgear.analysis.sweep.certify import (
     to_go_on,
 )
 from rotorgear.analysis.sweep.classify import QUASI_PERIODIC, period_in
+from rotorgear.analysis.sweep.inside import load_errors, load_scatter
 from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.analysis.sweep.request import Request
@@ -46,6 +47,8 @@ _OF_ORBIT = (
     "jumped",
     "before",
     "error",
+    "loads",
+    "load_error",
 )
 # Digits by which blocks are put in their order.
 _DIGITS = 20
@@ -168,7 +171,7 @@ def run_jobs(
     # Errors of statistics by periods that follow, in smaller steps. Runge and Kutta's fourth order is not that of statistics:
     # impacts begin between steps, extremes and sides are those of steps.
     unknown = np.full((len(points[0].contact), len(STATED)), np.nan)
-    orbits = [replace(orbit, error=unknown) for orbit in orbits]
+    orbits = [replace(orbit, error=unknown, load_error=np.full(orbit.loads.shape, np.nan)) for orbit in orbits]
     sound = [i for i, orbit in enumerate(orbits) if bounded(orbit, points[i])]
     kinds = {i: judged(orbits[i], points[i], request) for i in sound}
     wild = [i for i in sound if not period_in(kinds[i][0]) and kinds[i][0] != QUASI_PERIODIC]
@@ -181,9 +184,14 @@ def run_jobs(
         error[:, _ENDS] = compared(*ends, OF_ERROR, _LUCK_OF_ENDS)
         kind, stands = kinds[i]
         left = np.nan_to_num(orbits[i].away) if stands and period_in(kind) else 0.0
-        orbits[i] = replace(orbits[i], error=np.sqrt(error**2 + (by_count / FINER) ** 2 + (left * scales) ** 2))
+        inside = load_errors(orbits[i].loads, orbit.loads, float(left), (_LUCK, _LUCK_OF_ENDS))
+        error = np.sqrt(error**2 + (by_count / FINER) ** 2 + (left * scales) ** 2)
+        orbits[i] = replace(orbits[i], error=error, load_error=inside)
     for i, windows in _windows(points, orbits, wild, replace(plan, tangents=0), go_on).items():
-        orbits[i] = replace(orbits[i], error=_scatter(orbits[i], windows, points[i].system.columns.counted))
+        draws = np.random.default_rng(1).integers(0, len(windows), (_DRAWS, len(windows)))
+        inside = load_scatter(orbits[i].loads, np.array([one.loads for one in windows]), draws)
+        error = _scatter(orbits[i], windows, points[i].system.columns.counted, draws)
+        orbits[i] = replace(orbits[i], error=error, load_error=inside)
     return orbits
 
 
@@ -226,7 +234,7 @@ def _windows(
     return found
 
 
-def _scatter(own: Orbit, windows: Sequence[Orbit], counted: np.ndarray) -> np.ndarray:
+def _scatter(own: Orbit, windows: Sequence[Orbit], counted: np.ndarray, draws: np.ndarray) -> np.ndarray:
     """By how much statistics (c, s) of a run that never repeats differ from those of another one, in nineteen cases of twenty.
 
     From records as long, made of windows drawn with replacement; least and largest values are those of a quarter of them, for
@@ -251,7 +259,6 @@ def _scatter(own: Orbit, windows: Sequence[Orbit], counted: np.ndarray) -> np.nd
         found = judged_statistics(side_by_side, np.ones(len(which) * contacts, bool))[0]
         return np.asarray(found.reshape(len(which), contacts, -1))
 
-    draws = np.random.default_rng(1).integers(0, len(windows), (_DRAWS, len(windows)))
     scatter = scatter_of_two(of(draws, draws[:, : len(windows) // 4]))
     every = np.arange(len(windows))[None]
     between = np.abs(judged_statistics(own, counted)[0] - of(every, every)[0])

@@ -13,12 +13,14 @@ from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.sweep.axes import Axis, points_of
 from rotorgear.analysis.sweep.certify import STATED, bounded, indicators, judged, needed
 from rotorgear.analysis.sweep.classify import CHAOTIC, FAILED, NOT_SETTLED, exponents, period_in
+from rotorgear.analysis.sweep.inside import with_reduction
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.model.model import Model
 from rotorgear.note import Note
 from rotorgear.results.sweep import Reduction, SweepResult
 from rotorgear.solvers.batch.run_block import Orbit
+from rotorgear.system.internal_loads import read_loads
 
 # Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
 _FORGOTTEN = 3.0
@@ -66,6 +68,8 @@ def gathered(
     error = np.full((p, r, t), np.nan)
     tables: dict[str, Any] = {name: np.full((p, r, c), np.nan) for name in _TABLES}
     statistics_error = np.full((p, r, c, len(STATED)), np.nan)
+    gauges = read_loads(model)
+    loads, load_error = np.full((2, p, r, len(gauges), 4), np.nan)
     motion = [FAILED] * (p * r)
     failed = list(failure)
     for (i, run), orbit in orbits.items():
@@ -86,6 +90,8 @@ def gathered(
         for name, table in tables.items():
             table[i, run] = measures[name]
         statistics_error[i, run] = orbit.error
+        loads[i, run] = orbit.loads
+        load_error[i, run] = with_reduction(orbit.load_error, orbit.loads, reduction.loads if reduction else 0.0)
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
@@ -98,6 +104,9 @@ def gathered(
     if reduction is not None and reduction.error > request.reduction_error:
         sizes = f"{100.0 * reduction.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %"
         warnings.append(Note("", f"the reduction is {sizes}", "ask for more modes, or leave their number open"))
+    if reduction is not None and reduction.loads > request.reduction_error:
+        off = f"vibrations of loads inside shafts and couplings by up to {100.0 * reduction.loads:.2g} % off"
+        warnings.append(Note("", f"the reduction leaves {off}", "their errors have it; more modes (--modes) lower it"))
     if request.elements is None and any(shaft.sections for shaft in model.shafts.values()):
         # The error of the default discretisation is not estimated.
         warnings.append(
@@ -135,6 +144,10 @@ def gathered(
         portraits=None,
         statistic=STATED,
         statistics_error=statistics_error,
+        load_points=tuple(gauges),
+        load_unit=tuple(gauges.values()),
+        load_statistics=loads,
+        load_error=load_error,
         reduction=reduction,
         **tables,
     )

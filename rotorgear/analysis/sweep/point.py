@@ -17,8 +17,9 @@ import numpy as np
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.static.about_equilibrium import state_in_time
 from rotorgear.analysis.static.mean_state import springs_about_mean
+from rotorgear.analysis.sweep.inside import Inside
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large
-from rotorgear.analysis.transient.notes import left_out_in_time, unread_loads
+from rotorgear.analysis.transient.notes import damped_at_nodes, left_out_in_time
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
@@ -28,6 +29,7 @@ from rotorgear.solvers.batch.small_system import MOST_DOFS, Shapes, SmallSystem,
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, Expanded, unbalanced
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation, local_tangent
+from rotorgear.system.internal_loads import load_rows, read_loads
 from rotorgear.system.local import local_model
 from rotorgear.system.planets import turning_carriers
 from rotorgear.system.system import flow_system
@@ -144,6 +146,7 @@ class Point:
             len(self.system.rigid),
             len(self.system.carried),
             self.system.turns,
+            len(self.system.loads.base),
             self.contact,
             own.kind.tobytes(),
             tuple(type(law) for law in own.laws),
@@ -154,7 +157,10 @@ class Point:
 
 @dataclass(frozen=True)
 class AtRest:
-    """What of a point does not depend on its speed: local system, orders, names of contacts, state at rest, whether it drifts."""
+    """What of a point does not depend on its speed: local system, orders, names of contacts, state at rest, whether it drifts.
+
+    `inside`: loads inside shafts and couplings that are read, at standstill where nothing but rotation depends on the speed.
+    """
 
     local: LocalSystem
     orders: list[Fraction]
@@ -163,6 +169,7 @@ class AtRest:
     static: np.ndarray
     drifts: bool
     shapes: Shapes | None = None
+    inside: Inside | None = None
 
     @cached_property
     def period(self) -> tuple[Fraction, int]:
@@ -209,7 +216,7 @@ class Built:
     Attributes:
         local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
         left_out: what it leaves out. speed: at which it was built, rad/s. modal_ratio: damping added to every mode.
-        is_large: whether it is to be reduced, to at most `most` coordinates.
+        is_large: whether it is to be reduced, to at most `most` coordinates. inside: loads that are read.
     """
 
     local: LocalSystem
@@ -220,6 +227,7 @@ class Built:
     modal_ratio: float
     is_large: bool
     most: int
+    inside: Inside | None
 
 
 class PointMaker:
@@ -282,8 +290,8 @@ class PointMaker:
         """The state at rest of what was built, made ready for statics as `expanded`; the whole where it is to be reduced."""
         local, orders, contact = built.local, built.orders, built.contact
         if self._modes is not None or built.is_large or np.any(local.M.diagonal() <= 0.0):
-            return Large(local, orders, contact, built.speed, built.modal_ratio, built.most)
-        return at_rest(local, orders, contact, expanded or self._expanded(local))
+            return Large(local, orders, contact, built.speed, built.modal_ratio, built.most, built.inside)
+        return replace(at_rest(local, orders, contact, expanded or self._expanded(local)), inside=built.inside)
 
     def _at(self, known: AtRest | Large, speed: float, modal_ratio: float) -> Point | Large:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
@@ -311,7 +319,8 @@ class PointMaker:
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
         watched = np.hstack([built.local.watched_vectors, approach])
         built = replace(built, local=replace(built.local, watched=watched))
-        left_out = (*left_out_in_time(built, speed, contacts_only=True), *unread_loads(model))
+        inside = Inside(load_rows(system, speed), speed) if read_loads(model) else None
+        left_out = (*left_out_in_time(built, speed, contacts_only=True), *damped_at_nodes(model))
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")
@@ -326,7 +335,7 @@ class PointMaker:
         bodies = bool(system.model.casings) or bool(system.nodes.bodies)
         is_large = system.n > MOST_DOFS or (bodies and system.n > LEAST_DOFS)
         most = MOST_WITH_BODIES if bodies else MOST_COORDINATES
-        return Built(built.local, orders, contact, left_out, speed, model.damping.modal_ratio, is_large, most)
+        return Built(built.local, orders, contact, left_out, speed, model.damping.modal_ratio, is_large, most, inside)
 
     def _expanded(self, local: LocalSystem) -> Expanded:
         """The system made ready for statics; that of the point before where its matrices are the same to the last bit."""
@@ -368,7 +377,8 @@ def ready_reduced(points: Sequence[Large], found: Sequence[tuple[LocalSystem, Sh
     expanded = Expanded(found[0][0])
     first: AtRest | None = None
     for point, (local, shapes) in zip(points, found, strict=True):
-        known = replace(at_rest(local, point.orders, point.contact, expanded), shapes=shapes)
+        inside = point.inside and point.inside.within(shapes.vectors)
+        known = replace(at_rest(local, point.orders, point.contact, expanded), shapes=shapes, inside=inside)
         first = first or known
         yield ready(known.about(first), point.speed, point.modal_ratio)
 
@@ -380,7 +390,9 @@ def ready(known: AtRest, speed: float, modal_ratio: float = 0.0) -> Point:
     columns = Columns.of([column for law in laws for column in law.columns(speed)])
     order = float(np.copysign(float(fastest), speed))
     one_at_a_time = known.own_laws(columns.kind == OWN_LAW, 1.0 / order)
-    system = small_system(known.still, speed, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio)
+    inside = known.inside.at(speed) if known.inside else ()
+    w = float(fastest) * abs(speed)
+    system = small_system(known.still, speed, columns, one_at_a_time, w, turns, modal_ratio, inside)
     # What the drive carries stays at its speed, whatever acts on it.
     drifts = len(system.carried) < len(system.rigid) and known.drifts
     counted = columns.counted

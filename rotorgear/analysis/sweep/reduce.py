@@ -20,6 +20,7 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.common.casings import rates
+from rotorgear.analysis.sweep.inside import Inside
 from rotorgear.cpu import cpu_seconds
 from rotorgear.errors import AnalysisError
 from rotorgear.results.sweep import Reduction
@@ -65,7 +66,7 @@ _CANDIDATES = 300
 class Large:
     """A point before its reduction: the whole system, orders of what varies, names of contacts, speed in rad/s, added damping.
 
-    `most`: coordinates that it may have.
+    `most`: coordinates that it may have. `inside`: loads that are read.
     """
 
     local: LocalSystem
@@ -74,6 +75,7 @@ class Large:
     speed: float
     modal_ratio: float
     most: int = MOST_COORDINATES
+    inside: Inside | None = None
 
     @property
     def key(self) -> bytes:
@@ -162,6 +164,7 @@ class Reducer:
                 probes.count,
                 1,
                 cpu_seconds() - begun,
+                first.inside.difference(local, own, V, probes) if first.inside else 0.0,
             )
         )
         return [(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points]

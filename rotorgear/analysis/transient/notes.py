@@ -38,23 +38,20 @@ def left_out_in_time(local: LocalModel, speed: float, *, contacts_only: bool = F
     return (*told, *transient_left_out(local), *mean_torsion_notes(system, speed))
 
 
-def unread_loads(model: Model) -> tuple[Note, ...]:
-    """The points that read a load, of an analysis that tells motions and contacts alone."""
-    why = "of the loads, the result tells those of the contacts; a transient tells this one"
-    return tuple(Note(f"points.{name}.quantity", "", why) for name in read_loads(model))
-
-
 def damped_at_nodes(model: Model) -> tuple[Note, ...]:
     """The loads inside shafts of a model whose modes have a damping ratio."""
     if not model.damping.modal_ratio:
         return ()
     why = "it acts at the nodes, as forces from outside"
-    what = "what damping of modes does"
-    rigid = (name for name, bearing in model.bearings.items() if bearing.rigid_directions)
-    return (
-        *(Note(f"points.{name}", f"{what} between two nodes", why) for name in read_loads(model)),
-        *(Note(f"bearings.{name}", f"{what} beside its rigid directions", why) for name in rigid),
-    )
+    what = "what damping of modes does between two nodes"
+    return tuple(Note(f"points.{name}", what, why) for name in read_loads(model))
+
+
+def damped_in_bearings(model: Model) -> tuple[Note, ...]:
+    """The forces in rigid directions of bearings of such a model."""
+    rigid = [name for name, bearing in model.bearings.items() if bearing.rigid_directions and model.damping.modal_ratio]
+    what = "what damping of modes does beside its rigid directions"
+    return tuple(Note(f"bearings.{name}", what, "its force is that of all else") for name in rigid)
 
 
 def transient_left_out(local: LocalModel) -> tuple[Note, ...]:

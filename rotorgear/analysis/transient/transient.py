@@ -27,6 +27,7 @@ from rotorgear.analysis.transient.histories import Histories, run_task
 from rotorgear.analysis.transient.notes import (
     adrift,
     damped_at_nodes,
+    damped_in_bearings,
     intact,
     left_out_in_time,
     thinned,
@@ -247,6 +248,7 @@ def _result(
         left_out=(
             *left_out_in_time(task.local, task.largest),
             *damped_at_nodes(system.model),
+            *damped_in_bearings(system.model),
             *thinned(task, grid),
         ),
     )

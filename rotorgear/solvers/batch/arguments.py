@@ -18,7 +18,8 @@ class BatchSystem(NamedTuple):
 
     Attributes:
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
-        across: d and d' of each column from (z, z'), (2 m, 2 n). watched: W^T by rows, (p, n).
+        across: d and d' of each column from (z, z'), (2 m, 2 n).
+        watched: of displacements W^T, and loads, from (z, z', F, 1) by rows, (p, 2 n + m + 1); the last l of them are loads.
         per_force: acceleration by a force of each column, -B, (n, m).
         rigid: orthonormal motions without strain, (r, n, w); carried: those whose speed the drive keeps, (c, n, w).
         root: S with S^T S the mean stiffness, (n, n, w).
@@ -54,7 +55,8 @@ class BatchMotion(NamedTuple):
         state: z and z', (2 n, w). kept: (m, 4, w) of the end of the last step, see kernel_jumps.py.
         tangents: (t, 2 n, w). last: (m, w) sides that touched last.
         growth: of tangents, (p, t, w), and section: (p, 2 m, w), at the end of each period.
-        sums: (m, 14, w) and extremes, the least and largest of the watched displacements, (2, p, w), so far.
+        sums: (m, 14, w) and extremes, the least and largest of what is watched, (2, p, w), so far.
+        moments: sums of the loads and of their squares, (2, l, w), so far.
     """
 
     state: np.ndarray
@@ -65,6 +67,7 @@ class BatchMotion(NamedTuple):
     section: np.ndarray
     sums: np.ndarray
     extremes: np.ndarray
+    moments: np.ndarray
 
 
 class TangentWork(NamedTuple):

@@ -20,6 +20,7 @@ from rotorgear.solvers.batch.kernel_parts import (
     FOUND,
     IN_D,
     IN_V,
+    add_moments,
     contacts,
     count,
     of,
@@ -172,6 +173,7 @@ def batch_loop(turns, steps, begun, counting, system, columns, table, acting, mo
     section = motion.section
     sums = motion.sums
     extremes = motion.extremes
+    moments = motion.moments
     watched = system.watched
     p = extremes.shape[1]
     seen = work(p)
@@ -228,6 +230,7 @@ def batch_loop(turns, steps, begun, counting, system, columns, table, acting, mo
                     count(counted, now, d, F, found, last, sums)
                     product(watched, stage, 0, seen)
                     widen(seen, extremes, p)
+                    add_moments(seen, p, moments)
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
                     if number == 0:

@@ -132,11 +132,21 @@ def write_contact(now, prescribed, weight, rate, j, F, found, used):
 
 @compiled(fast=True, inner=True)
 def widen(seen, extremes, p):
-    """Take p displacements (p, w) into their least and largest values so far, (2, p, w)."""
+    """Take p displacements and loads (p, w) into their least and largest values so far, (2, p, w)."""
     for j in range(p):
         x = get(seen, j)
         put(extremes, j, smaller(get(extremes, j), x))
         put(extremes, p + j, larger(get(extremes, p + j), x))
+
+
+@compiled(fast=True, inner=True)
+def add_moments(seen, p, moments):
+    """Add the last l of p watched values (p, w) and their squares to the sums of them, (2, l, w)."""
+    loads = moments.shape[1]
+    for j in range(loads):
+        x = get(seen, p - loads + j)
+        put(moments, j, get(moments, j) + x)
+        put(moments, loads + j, get(moments, loads + j) + x * x)
 
 
 @compiled(fast=True, inner=True)

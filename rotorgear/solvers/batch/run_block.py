@@ -67,6 +67,8 @@ class Orbit:
         growth: (p, t) logarithm of the growth of each tangent in a common period.
         sums: (m, 14) statistics, see kernel_parts.py; forces in N.
         extremes: (p, 2) least and largest of the watched displacements.
+        loads: (l, 4) mean, rms about it, largest and smallest of loads inside shafts and couplings, in N or N m; load_error: the
+        errors of these, by a run with other steps; nan where that was not done.
         doubt: (t,) what exponents per period change by in a run with other steps.
         settled: common periods before those that count.
         multiplier: ln|mu| in a common period of the orbit that it is on; nan where that is not asked for or not found.
@@ -92,6 +94,8 @@ class Orbit:
     jumped: bool = False
     before: np.ndarray = field(default_factory=lambda: np.zeros(0))
     error: np.ndarray = field(default_factory=lambda: np.array(np.nan))
+    loads: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    load_error: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
 
 def foretell_batches() -> None:
@@ -142,7 +146,7 @@ def run_block(
     ]
     # Random tangents, the same for all systems and runs.
     tangents = np.random.default_rng(1).standard_normal((plan.tangents, 2 * first.n))
-    extremes = aligned((2, first.W.shape[1], BATCH))
+    extremes = aligned((2, first.W.shape[1] + len(first.loads.base), BATCH))
     extremes[0] = np.inf
     extremes[1] = -np.inf
     begin = BatchMotion(
@@ -154,6 +158,7 @@ def run_block(
         section=aligned((0, 0, BATCH)),
         sums=blank_sums(m),
         extremes=extremes,
+        moments=aligned((2, len(first.loads.base), BATCH)),
     )
     keep_start(columns.values, _stacked(x), begin.kept)
 
@@ -199,11 +204,16 @@ def _orbit(system: SmallSystem, number: int, motion: BatchMotion, plan: BatchPla
     end = Start(motion.state[:n, number].copy(), motion.state[n:, number].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
     growth = motion.growth[..., number].copy()
+    watched = system.W.shape[1]
     extremes = motion.extremes[:, :, number].T.copy()
+    mean, square = motion.moments[:, :, number] / max(plan.count * system.turns * plan.steps, 1)
+    ends = system.loads.base[:, None] + extremes[watched:, ::-1]
+    rms = np.sqrt(np.maximum(square - mean**2, 0.0))
+    loads = np.column_stack([system.loads.base + mean, rms, ends])
     # Two displacements are watched of each contact.
     doubt = np.zeros(growth.shape[1])
-    before = np.full(len(extremes) // 2, np.nan)
-    return Orbit(moved, growth, sums, extremes, end, finite, doubt, plan.settle, before=before)
+    before = np.full(watched // 2, np.nan)
+    return Orbit(moved, growth, sums, extremes[:watched], end, finite, doubt, plan.settle, before=before, loads=loads)
 
 
 def trajectory(
@@ -281,11 +291,18 @@ def _matrices(systems: Sequence[SmallSystem]) -> BatchSystem:
             ]
         ),
         per_force=_sparse([-s.B for s in systems]),
-        watched=_sparse([s.W.T for s in systems]),
+        watched=_sparse([_watched(s) for s in systems]),
         rigid=_stacked([s.rigid for s in systems]),
         carried=_stacked([s.carried for s in systems]),
         root=_stacked([s.energy for s in systems]),
     )
+
+
+def _watched(system: SmallSystem) -> np.ndarray:
+    """Watched displacements and loads as rows (p, 2 n + m + 1) on z, z', F and 1."""
+    displacements = np.zeros((system.W.shape[1], system.loads.rows.shape[1]))
+    displacements[:, : system.n] = system.W.T
+    return np.vstack([displacements, system.loads.rows])
 
 
 def _sparse(matrices: Sequence[np.ndarray]) -> SparseRows:

@@ -5,6 +5,7 @@ z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -49,6 +50,14 @@ class Shapes:
 
 
 @dataclass(frozen=True)
+class Reads:
+    """Loads inside of a structure: `rows` (l, 2 n + m + 1) on z, z', F and 1 of what they differ by from a `base` (l,)."""
+
+    rows: np.ndarray
+    base: np.ndarray
+
+
+@dataclass(frozen=True)
 class SmallSystem:
     """n degrees of freedom, m local displacements.
 
@@ -57,7 +66,7 @@ class SmallSystem:
         rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
         carried: (c, n) those of them whose speed nothing but the drive keeps, see `_carried`.
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
-        columns: of the local forces; own: those that act by laws of their own.
+        columns: of the local forces; own: those that act by laws of their own. loads: what is read beside motions.
         w: rad/s of the fastest excitation; turns: its periods in the common one.
         fastest: largest |eigenvalue| of the linear system, in radians of that excitation; followed: of those that a reduced
         system holds for. shapes: of a system that was reduced.
@@ -75,6 +84,7 @@ class SmallSystem:
     energy: np.ndarray
     columns: Columns
     own: OwnLaws
+    loads: Reads
     w: float
     turns: int
     fastest: float
@@ -169,7 +179,14 @@ def modes_of(stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def small_system(
-    still: Still, speed: float, columns: Columns, own: OwnLaws, w: float, turns: int, modal_ratio: float = 0.0
+    still: Still,
+    speed: float,
+    columns: Columns,
+    own: OwnLaws,
+    w: float,
+    turns: int,
+    modal_ratio: float = 0.0,
+    inside: Sequence[np.ndarray] = (),
 ) -> SmallSystem:
     """Return a system at a speed of the reference in rad/s in the form of the kernels.
 
@@ -178,6 +195,7 @@ def small_system(
         own: those with laws of their own.
         w: rad/s of the fastest excitation. turns: its periods in the common one.
         modal_ratio: damping ratio added to every mode with strain.
+        inside: rows (l, n) on q, q' and q'' of loads that are read, and (l,) what is taken off them; nothing where none is.
     """
     shapes = still.shapes
     B = still.B
@@ -202,9 +220,10 @@ def small_system(
         D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
     rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
     followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
+    D = _clean(D)
     return SmallSystem(
         still.K / w**2,
-        _clean(D) / w,
+        D / w,
         still.load / w**2,
         still.clean_B,
         still.W,
@@ -215,12 +234,26 @@ def small_system(
         energy,
         columns.scaled(w),
         own,
+        _reads(still, D, w, inside),
         w,
         turns,
         float(rates.max()),
         float(followed.max(initial=0.0)),
         shapes,
     )
+
+
+def _reads(still: Still, D: np.ndarray, w: float, inside: Sequence[np.ndarray]) -> Reads:
+    """Loads with q'' = f - K q - D q' - B F put in; they are counted from those at rest, beside which vibrations may be small."""
+    n = still.local.n
+    m = still.clean_B.shape[1]
+    if not inside:
+        return Reads(np.zeros((0, 2 * n + m + 1)), np.zeros(0))
+    of_q, of_v, of_a = (rows @ still.inverse.T for rows in inside[:3])
+    base = of_q @ still.rest - inside[3]
+    constant = of_a @ still.load - of_q @ still.rest
+    rows = (of_q - of_a @ still.K, w * (of_v - of_a @ D), -(w**2) * (of_a @ still.clean_B), constant[:, None])
+    return Reads(np.hstack(rows), base)
 
 
 def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:

@@ -11,7 +11,6 @@ import pytest
 import rotorgear as rg
 from tests.unit.analysis.response.test_internal_loads import shaken
 from tests.unit.analysis.static.test_internal_loads import SIX, chain, geared, read_everywhere
-from tests.unit.analysis.static.test_static import data_of
 
 
 def read(result: rg.TransientResult, number: int, side: str = "") -> np.ndarray:
@@ -98,15 +97,3 @@ def test_a_run_up_reads_torques_and_refuses_what_gyroscopic_moments_take_part_in
     kept = {name: point for name, point in model.points.items() if point.quantity in ("torque", "axial")}
     torque = rg.Model(**{**geared(), "points": kept})
     assert "points.0_torque_x torque" in rg.transient(torque, error_estimate=False, **options).channel
-
-
-def test_sweeps_say_that_they_tell_no_loads_inside_shafts() -> None:
-    data = data_of("backlash_pair")
-    data["shafts"]["meter"] = {}
-    data["disks"] = {**data.get("disks", {}), "meter": {"shaft": "meter", "at": "start", "polar_inertia": 1e-4}}
-    coupling = {"from_shaft": "b", "to_shaft": "meter", "stiffness": {"torsion": 1e6}}
-    data["couplings"] = {"meter": coupling}
-    data["points"] = {"meter": {"on": "couplings.meter", "quantity": "torque"}}
-    model = rg.Model(**data)
-    swept = rg.sweep(model, {"operation.speed": ["6000 rpm"]}, discard=2, sample=4, exponents=0, workers=1)
-    assert any(note.part == "points.meter.quantity" for note in swept.left_out)
