@@ -134,12 +134,9 @@ def followers(kept: Conditions) -> sp.csc_array:
             )
         taken = _taken(kept, E, size, own)
         left = np.delete(np.arange(len(size)), taken)
-        values = condition[left]
-        E = (
-            sp.csc_array(E[:, left] + E[:, [taken]] @ sp.csc_array(-values[None] / condition[taken]))
-            if values.any()
-            else E[:, left]
-        )
+        values = -condition[left] / condition[taken]
+        others = E[:, left]
+        E = sp.csc_array(others + E[:, [taken]] @ sp.csc_array(values[None])) if values.any() else others
     return E
 
 
