@@ -39,6 +39,8 @@ _PACKED = struct.Struct("<4s4xQQ2sBBIQQ")
 _DEFLATE = (0, 1)
 _NO_CONVERSION = 0
 _LINEAR = 1
+_OPEN = 0xFFFFFFFF  # size of a WAV that nobody has filled in
+_BREAKS_OFF = "it ends before what it says it holds"
 _TIMES = (2, 3)  # types of a channel of MDF4 that is the time itself
 
 
@@ -106,8 +108,7 @@ def _tracks(file: Path) -> list[Track]:
     package = PACKAGES[file.suffix.lower()]
     title = _TITLES[package]
     reader = {"asammdf": _of_mdf, "nptdms": _of_tdms, "soundfile": _of_wav}[package]
-    for name in ("asammdf", "nptdms"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # what is wrong in the file is told below, once
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # what is wrong in the file is told below, once
     try:
         with _without_echo(), opened(file, RECORD.most_bytes) as data:
             tracks = [
@@ -120,7 +121,8 @@ def _tracks(file: Path) -> list[Track]:
     except ModelError:
         raise
     except Exception as error:  # what these packages raise of broken files is of any kind
-        reason = " ".join(str(error).split())[:120] or type(error).__name__
+        # Without the name that a package gives a file that is open already.
+        reason = " ".join(re.sub(r"^Error opening <[^>]*>: ", "", str(error)).split())[:120] or type(error).__name__
         raise ModelError([Problem(file.name, "", f"a file of {title} that is whole", reason)], str(file)) from None
     if not tracks:
         raise ModelError(
@@ -197,8 +199,12 @@ def _require_bounded_blocks(data: bytes, file: Path) -> None:
 def _of_tdms(data: IO[bytes], file: Path) -> Iterator[Track]:
     """The channels of a TDMS whose properties tell their times, or whose group has a channel of them."""
     from nptdms import TdmsFile
+    from nptdms.log import log_manager
 
+    log_manager.set_level(logging.CRITICAL)
     with TdmsFile.open(data) as tdms:
+        if tdms.file_status.incomplete_final_segment:
+            raise ModelError([Problem(file.name, "", "a file of TDMS that is whole", _BREAKS_OFF)], str(file))
         channels = [channel for group in tdms.groups() for channel in group.channels()]
         _require_size(sum(len(channel) for channel in channels), file)
         several = len({group.name for group in tdms.groups()}) > 1
@@ -215,7 +221,9 @@ def _of_tdms(data: IO[bytes], file: Path) -> Iterator[Track]:
 def _time_of(channel: Any, tdms: Any) -> tuple[str, NDArray[np.float64]] | None:
     """Name and values of the time of a channel; the name is "" where its properties tell it."""
     if "wf_increment" in channel.properties:
-        return "", np.asarray(channel.time_track(), dtype=float)
+        # Without an offset, as some loggers leave it out, the first value is that of the start.
+        offset = float(channel.properties.get("wf_start_offset", 0.0))
+        return "", offset + float(channel.properties["wf_increment"]) * np.arange(len(channel))
     for other in tdms[channel.group_name].channels():
         if other.name.lower() in ("time", "t", "time_s", "time (s)", "time [s]") and len(other) == len(channel):
             return str(other.name), np.asarray(other[:], dtype=float)
@@ -226,6 +234,13 @@ def _of_wav(data: IO[bytes], file: Path) -> Iterator[Track]:
     """The channels of a WAV, called by their number; their values are shares of full scale, without a unit."""
     import soundfile
 
+    head = data.read(8)
+    end = data.seek(0, os.SEEK_END)
+    data.seek(0)
+    said = int.from_bytes(head[4:8], "little")
+    # A logger that streams leaves the size open.
+    if head[:4] == b"RIFF" and end < said + 8 and said != _OPEN:
+        raise ModelError([Problem(file.name, "", "a file of WAV that is whole", _BREAKS_OFF)], str(file))
     with soundfile.SoundFile(data) as sound:
         _require_size(sound.frames * sound.channels, file)
         rate = sound.samplerate

@@ -101,13 +101,14 @@ def record_on_model(
     if points is not None and (isinstance(path, TimeRecord) or Path(path).suffix.lower() not in _UNIVERSAL):
         raise AnalysisError("--points is the table of sensors of a universal file; name channels by --channels")
     names = [channel.name for channel in record.channels]
-    twice = sorted({name for name in names if names.count(name) > 1} & places.keys())
-    if strange := [*(name for name in places if name not in names), *twice]:
+    places = {name: place for name in names if (place := _named(name, model))} | places
+    if twice := sorted({name for name in names if names.count(name) > 1} & places.keys()):
+        raise AnalysisError(
+            f"channels: the record has {names.count(twice[0])} channels '{twice[0]}': leave all but one out"
+        )
+    if strange := [name for name in places if name not in names]:
         hint = did_you_mean(strange[0], names, f"channels of the record: {', '.join(names)}"[:300])
-        raise AnalysisError(f"channels: the record has no single channel '{strange[0]}' ({hint})")
-    for channel in record.channels:
-        if channel.name not in places and (place := _named(channel.name, model)):
-            places[channel.name] = place
+        raise AnalysisError(f"channels: the record has no channel '{strange[0]}' ({hint})")
     record, notes = _evenly(record)
     changes: dict[str, Any] = {}
     found = [

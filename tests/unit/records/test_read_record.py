@@ -147,6 +147,31 @@ def test_tdms_has_times_by_properties_and_by_a_channel(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.channels[1].values, 2.0 * found.channels[0].values)
 
 
+@pytest.mark.parametrize(("package", "write", "name"), [("nptdms", "tdms", "a.tdms"), ("soundfile", "wav", "a.wav")])
+def test_records_that_break_off_are_refused_without_a_word_beside(
+    tmp_path: Path, package: str, write: str, name: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip(package)
+    file = {"tdms": write_tdms, "wav": write_wav}[write](tmp_path / name)
+    whole = file.read_bytes()
+    file.write_bytes(whole[: int(0.8 * len(whole))])
+    with pytest.raises(ModelError, match="it ends before what it says it holds"):
+        read_record(file)
+    assert capfd.readouterr() == ("", "")
+    if write == "wav":  # a logger that streams leaves the size open
+        file.write_bytes(whole[:4] + 4 * b"\xff" + whole[8:])
+        assert len(read_record(file).time) == 50
+
+
+def test_tdms_without_an_offset_begins_at_its_start(tmp_path: Path) -> None:
+    pytest.importorskip("nptdms")
+    from nptdms import ChannelObject, TdmsWriter
+
+    with TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment([ChannelObject("g", "torque", TORQUE, properties={"wf_increment": 0.01})])
+    np.testing.assert_allclose(read_record(tmp_path / "a.tdms").time, TIME - 0.1, atol=1e-12)
+
+
 def test_wav_has_shares_of_full_scale(tmp_path: Path) -> None:
     pytest.importorskip("soundfile")
     found = read_record(write_wav(tmp_path / "box.wav"))

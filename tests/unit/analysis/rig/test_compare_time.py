@@ -262,7 +262,7 @@ def test_a_standing_rotor_is_compared_by_the_force_and_acceleration_of_a_sensor(
     ("channels", "more", "words"),
     [
         ({"first": "points.nowhere"}, {}, "'points.nowhere' is no place"),
-        ({"fist": "points.first"}, {}, "no single channel 'fist'.*did you mean 'first'"),
+        ({"fist": "points.first"}, {}, "no channel 'fist'.*did you mean 'first'"),
         ({"first": "points.first, 3 N m"}, {}, "the record has it in Nm already"),
         ({"first": "disks.jb:torsion, 3"}, {}, "a scale is a number and a unit"),
         ({"drive": "loads.motor"}, {}, "the model has no such load"),
@@ -286,6 +286,13 @@ def test_requests_without_sense_are_refused(
     options = {"steps": 8, "error_estimate": False, "bands": []} | more
     with pytest.raises(rg.AnalysisError, match=words):
         rg.compare_time(chain(), file, channels=channels, **options)
+
+
+def test_a_channel_that_stands_twice_in_a_record_is_not_taken_twice(tmp_path: Path) -> None:
+    file = tmp_path / "r.csv"
+    file.write_text("time (s),first (N m),first (N m)\n" + "".join(f"{0.1 * k},{k},{k}\n" for k in range(9)))
+    with pytest.raises(rg.AnalysisError, match="2 channels 'first': leave all but one out"):
+        rg.compare_time(chain(), file)
 
 
 def test_what_the_record_is_too_coarse_for_is_told(tmp_path: Path, pulse: Any) -> None:
