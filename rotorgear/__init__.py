@@ -14,22 +14,7 @@ from rotorgear.version import VERSION
 
 __version__ = VERSION
 
-# Names of 0.1; verbs have the names of the commands now.
-_FORMER = {
-    "describe_model": "check",
-    "critical_speeds": "critical",
-    "frequency_response": "frf",
-    "gear_sheet": "gear",
-    "mesh_analysis": "mesh",
-    "json_schema": "schema",
-    "accuracy_ladder": "convergence_study",
-    "transient_ladder": "transient_convergence_study",
-    "mesh_ladder": "mesh_convergence_study",
-    "sweep_ladder": "sweep_convergence_study",
-    "AccuracyLadder": "ConvergenceStudy",
-    "SweepLadder": "SweepConvergenceStudy",
-}
-__getattr__, __dir__, __all__ = attach(__name__, __file__, _FORMER)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)
 __all__ += ["__version__"]
 
 

@@ -10,7 +10,7 @@ Type checkers and editors read the stub, and so does `attach`: the names are typ
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
@@ -28,24 +28,16 @@ def homes_of(file: str) -> dict[str, tuple[str, str]]:
     return homes
 
 
-def attach(
-    package: str, file: str, former: Mapping[str, str] | None = None
-) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+def attach(package: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return `__getattr__`, `__dir__` and `__all__` of a package whose names stand in the stub beside its file.
 
     Args:
         package: the package's `__name__`.
         file: its `__file__`.
-        former: former name -> public name: still found in this version, with a warning that says the new one.
     """
     homes = homes_of(file)
 
     def load(name: str) -> Any:
-        if former and name in former:
-            from rotorgear.old_names import warn_old
-
-            warn_old(f"{package}:", name, former[name])
-            return load(former[name])
         if name not in homes:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
         module, own = homes[name]

@@ -2,8 +2,8 @@
 
 Bricks stand on a plane grid of quadrilaterals, repeated at each z and kept where the box is solid. The grid's lines run through
 all edges of walls, blocks, ribs and feet, so that the mesh has the volume of the drawing. Around each axis of bores a square
-block is left out of the lines, and rings of quadrilaterals lead from its border to the bores; where the corners of two blocks overlap,
-both end at the diagonal between them. A bore is a polygon of the area of its circle.
+block is left out of the lines, and rings of quadrilaterals lead from its border to the bores; where the corners of two blocks
+overlap, both end at the diagonal between them. A bore is a polygon of the area of its circle.
 """
 
 from __future__ import annotations
@@ -183,8 +183,8 @@ def _blocks(shape: BoxShape, address: str) -> list[_Block]:
                 reach = f"{millimetres(at - block.half)} to {millimetres(at + block.half)}"
                 room = f"{millimetres(shape.low[axis])} to {millimetres(shape.high[axis])}"
                 raise AnalysisError(
-                    f"{address}.box.bores.{widest.name}: the block of its seat reaches over {'xy'[axis]} from {reach}, outside of "
-                    f"the wall, whose inside is {room}. Move the corners of the box, or make boss thinner."
+                    f"{address}.box.bores.{widest.name}: the block of its seat reaches over {'xy'[axis]} from {reach}, "
+                    f"outside of the wall, whose inside is {room}. Move the corners of the box, or make boss thinner."
                 )
         for seat in block.seats:
             first, last = block.tube(seat, shape.plates)

@@ -5,19 +5,8 @@ from __future__ import annotations
 # Command -> former option -> option.
 OPTIONS: dict[str, dict[str, str]] = {
     "new": {"--from": "--source"},
-    "modal": {"--picture": "--plot", "--compare": "--rig"},
-    "gear": {"--picture": "--plot"},
-    "response": {"--damping": "--modal-damping"},
-    "frf": {"--damping": "--modal-damping", "--from": "--inputs", "--to": "--outputs"},
-    "mesh": {"--loads": "--load-factors"},
+    "modal": {"--compare": "--rig"},
     "optimise-flanks": {"--optimise": "--variables"},
-    "sweep": {
-        "--starts": "--initial-conditions",
-        "--settle": "--discard",
-        "--count": "--sample",
-        "--portrait": "--portraits",
-    },
-    "transient": {"--settle": "--discard"},
 }
 # Options of mesh that are commands of their own now; the first of them that is given says which.
 _OF_MESH = {"--root-stress": "root-stress", "--optimise": "optimise-flanks", "--over": "mesh-map"}

@@ -15,7 +15,6 @@ from rotorgear.errors import ModelError, Problem
 from rotorgear.files.numbers import is_count
 from rotorgear.forces.designations import bore_of, inner_geometry
 from rotorgear.model.parts.fields import Part
-from rotorgear.model.parts.old_names import current_address
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import did_you_mean
 
@@ -96,7 +95,7 @@ def with_values(model: Tables, values: Mapping[str, Any]) -> dict[str, Any]:
     for address, value in values.items():
         given = value.model_dump(mode="json", exclude_none=True) if isinstance(value, Part) else value
         try:
-            places = places_of(data, current_address(address))
+            places = places_of(data, address)
         except ModelError as error:
             problems += error.problems
             continue

@@ -6,17 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.old_names import warn_old
 from rotorgear.plots.figure import COLOURS, figure_for, label, name_axes, parameter_name
-from rotorgear.plots.transient import shaft_orbits
 from rotorgear.results.orbits import OrbitsResult
-from rotorgear.results.transient import TransientResult
 
 _MARKERS = {"fold": "o", "period doubling": "D", "Neimark-Sacker": "s"}
 _SIZE = (7.5, 6.0)
 
 
-def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: int | None = None) -> np.ndarray:
+def orbits(result: OrbitsResult, fig: Any = None, *, contact: int | None = None) -> np.ndarray:
     """Draw the peak to peak of a contact's approach over the parameter: solid where stable, dashed where unstable.
 
     Of a model without meshes it is that of the displacement across a bearing, a nonlinear element or at an unbalance.
@@ -32,9 +29,6 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    if isinstance(result, TransientResult):
-        warn_old("picture of a transient", "orbits", "shaft_orbits")
-        return shaft_orbits(result, fig)
     rows = 3 if result.curves else 2
     size = (_SIZE[0], _SIZE[1] * (1.4 if result.curves else 1.0))
     axes = figure_for(fig, size, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 2)[:rows])

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
-from rotorgear.old_names import warn_old
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of, plain
 from rotorgear.results.table import Block, Line, Table, grid
@@ -186,12 +185,6 @@ class MeshResult(Result, kind="mesh"):
     dofs: int = of("degrees of freedom", note=" of both gears' elements")
     memory_bytes: float | None = of("largest memory of the process", "B", note=", or `null`")
     loads: tuple[LoadPoint, ...] = of("the same mesh at other loads", "", "load", record=LoadPoint)
-
-    @property
-    def model(self) -> str:
-        """Former name of `stiffness_model`."""
-        warn_old("attribute of a mesh result", "model", "stiffness_model")
-        return self.stiffness_model
 
     @derived("plane and direction of the stiffness", note=", in words")
     def plane(self) -> str:

@@ -299,18 +299,17 @@ class Rows:
     other axes.
     """
 
-    def __init__(self, axes: tuple[str, ...], inner_name: str, inner: Rows | None, made_of: type[Row] = Row) -> None:
+    def __init__(self, axes: tuple[str, ...], inner_name: str, inner: Rows | None) -> None:
         self.axes = axes
         self.inner_name = inner_name
         self.inner = inner
-        self.made_of = made_of
         self.fields: list[Declared] = []
         self.declarations: dict[str, Declared] = {}
         self.keys: list[tuple[Declared, Written]] = []
 
     def emptied(self) -> Rows:
         """The same lists without fields."""
-        return Rows(self.axes, self.inner_name, self.inner and self.inner.emptied(), self.made_of)
+        return Rows(self.axes, self.inner_name, self.inner and self.inner.emptied())
 
     @property
     def all_axes(self) -> tuple[str, ...]:
@@ -352,7 +351,7 @@ class Rows:
                 row[written.key] = one if own.along == own.axes else _arranged(record, one, own.axes, own.along)
             if self.inner is not None:
                 row[self.inner_name] = self.inner.of(record, values, here)
-            made.append(self.made_of(**row))
+            made.append(Row(**row))
         return tuple(made)
 
 
@@ -364,16 +363,16 @@ def _entry(values: Any, at: tuple[Any, ...]) -> Any:
     return entry.item() if getattr(entry, "ndim", 1) == 0 else entry
 
 
-def rows(label: str, axis: str, made_of: type[Row] = Row, **within: str) -> Derived[tuple[Row, ...]]:
+def rows(label: str, axis: str, **within: str) -> Derived[tuple[Row, ...]]:
     """Declare a list of rows: of the fields that an axis counts.
 
-    `within`: lists in each row, by the axes that they go along. `made_of`: the class of the rows of the innermost list.
+    `within`: lists in each row, by the axes that they go along.
     """
     axes = (axis, *within.values())
     names = (*within, "")
     lists: Rows | None = None
     for depth in range(len(axes), 0, -1):
-        lists = Rows(axes[:depth], names[depth - 1], lists, Row if lists else made_of)
+        lists = Rows(axes[:depth], names[depth - 1], lists)
 
     def made(record: Record) -> tuple[Row, ...]:
         own = record.declarations[here.declared.name].record

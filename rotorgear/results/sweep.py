@@ -6,13 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.old_names import warn_old
 from rotorgear.quantity import counted
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.result import ModelResult, statistic_names
 from rotorgear.results.schema import Record, derived, of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, error_words, grid, written
-from rotorgear.results.transient import ContactRow
 
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
@@ -79,7 +77,7 @@ class SweepResult(ModelResult, kind="sweep"):
     address: tuple[str, ...] = of("address of a parameter", "", "parameter", note=": what was changed")
     unit: tuple[str, ...] = of("unit", "", "parameter", note=' of its values, or `""` for SI')
     shape: np.ndarray = of("points along each parameter", "", "parameter", json=None)
-    points = rows("points", "point", ContactRow, runs="run", contacts="contact")
+    points = rows("points", "point", runs="run", contacts="contact")
     values: np.ndarray = of("values", "", "point", "parameter", note=" of the parameters")
     frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json="mesh_frequency_hz")
     turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "point", json="mesh_periods")
@@ -198,18 +196,6 @@ class SweepResult(ModelResult, kind="sweep"):
             for k, p in enumerate(kept.point.tolist())
             for j, r in enumerate(kept.run.tolist())
         )
-
-    @property
-    def amplitude(self) -> np.ndarray:
-        """Former name of `peak_to_peak_approach`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a sweep", "amplitude", "peak_to_peak_approach (transverse)")
-        return self.peak_to_peak_approach
-
-    @property
-    def rms(self) -> np.ndarray:
-        """Former name of `rms_approach`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a sweep", "rms", "rms_approach (transverse)")
-        return self.rms_approach
 
     @property
     def period_words(self) -> str:

@@ -7,36 +7,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
-from rotorgear.results.schema import Record, Row, Written, derived, of, part_of, rows
+from rotorgear.results.schema import Record, Written, derived, of, part_of, rows
 from rotorgear.results.table import TRANSMISSION_WORDS, Block, Line, Table, error_words, grid, short, table_of, written
 
-
-class ContactRow(Row):
-    """An entry along the contacts of a motion over time."""
-
-    @property
-    def peak_to_peak_dte_m(self) -> float:
-        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
-        return float(self.peak_to_peak_approach_m)
-
-    @property
-    def rms_dte_m(self) -> float:
-        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
-        return float(self.rms_approach_m)
-
-
-# What a history of a contact is called, and the table it stands in; the last one by its former name.
+# What a history of a contact is called, and the table it stands in.
 _OF_CONTACTS = {
     "force": "mesh_force",
     "transmission_error": "transmission_error",
     "approach": "approach",
-    "deflection": "deflection",
 }
 
 
@@ -150,7 +131,7 @@ class TransientResult(ModelResult, kind="transient"):
     contact_time: np.ndarray = of(
         "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
     )
-    contacts = rows("contacts in the time that counts", "contact", ContactRow)
+    contacts = rows("contacts in the time that counts", "contact")
     contact: tuple[str, ...] = of(
         "name of the contact", "", "contact", note=": mesh and helix", json="name", column="contact"
     )
@@ -262,18 +243,6 @@ class TransientResult(ModelResult, kind="transient"):
     def spacing(self) -> float:
         """Time between two records in s."""
         return self.step * self.every
-
-    @property
-    def deflection(self) -> np.ndarray:
-        """Former name of `approach`, along the flank normal, (r, c)."""
-        warn_old("attribute of a transient", "deflection", "approach (transverse)")
-        return self.approach * self._transverse
-
-    @property
-    def _transverse(self) -> np.ndarray:
-        """cos(beta_b) of each contact, (c,)."""
-        meshes = (self.model.layout.mesh(name.partition(" ")[0]) for name in self.contact)
-        return np.cos([mesh.pinion.base_helix_angle for mesh in meshes])
 
     def history(self, name: str) -> np.ndarray:
         """History (r,) of a channel, or of "force NAME", "transmission_error NAME" or "approach NAME" of a contact.

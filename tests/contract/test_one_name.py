@@ -106,45 +106,12 @@ def test_an_option_means_the_same_in_all_commands(option: str, meaning: str) -> 
                 assert re.search(meaning, parameter.help, re.IGNORECASE), name
 
 
-@pytest.mark.parametrize("spelling", [["--picture", "tooth.jpg"], ["--picture=tooth.jpg"]])
-def test_an_old_option_works_and_names_the_new_one(spelling: list[str]) -> None:
-    done = CliRunner().invoke(app, ["gear", "models/helical_pair.toml", *spelling])
-    assert "--picture is now --plot" in done.output
-    assert "got 'tooth.jpg'" in str(done.exception)  # the value has arrived, and its ending is refused
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("describe_model", "check"),
-        ("critical_speeds", "critical"),
-        ("frequency_response", "frf"),
-        ("gear_sheet", "gear"),
-    ],
-)
-def test_an_old_name_of_a_verb_works_and_names_the_new_one(old: str, new: str) -> None:
-    with pytest.warns(FutureWarning, match=f"'{old}' is now '{new}'"):
-        assert getattr(rg, old) is getattr(rg, new)
-    assert old not in dir(rg)
-
-
-def test_an_old_name_of_an_argument_works_and_names_the_new_one() -> None:
-    model = rg.load("models/jeffcott.toml")
-    with pytest.warns(FutureWarning, match="'top_speed' is now 'stop'"):
-        old = rg.critical(model, top_speed="8000 rpm", elements=1)
-    assert (
-        old.critical_speed_rpm.tolist() == rg.critical(model, stop="8000 rpm", elements=1).critical_speed_rpm.tolist()
-    )
-    with pytest.raises(TypeError, match="top_speed"):
-        rg.critical(model, stop=100.0, top_speed=100.0)
-
-
 def test_an_option_that_says_nothing_of_what_was_measured_is_refused() -> None:
     asked = ["compare", "models/jeffcott.toml", "rig.csv", "--modal-damping", "0.01"]
     assert "--modal-damping does not go with rig lines" in str(CliRunner().invoke(app, asked).exception)
 
 
-def test_a_rig_is_compared_with_a_result_a_model_or_as_before_with_lists() -> None:
+def test_a_rig_is_compared_with_a_result_or_a_model() -> None:
     model = rg.load("models/jeffcott.toml")
     rig = [20.0, rg.RigLine(60.0)]
     result = rg.modal(model, fmax=1.15 * 60.0)
@@ -154,11 +121,5 @@ def test_a_rig_is_compared_with_a_result_a_model_or_as_before_with_lists() -> No
         first.pop(cost, None)
         second.pop(cost, None)
     assert first == second
-    with pytest.warns(FutureWarning, match=r"is now 'compare\(result, rig\)'"):
-        of_lists = rg.compare(
-            result.frequency_hz, result.description, [rg.RigLine(20.0), rg.RigLine(60.0)], rigid=result.rigid
-        )
-    pairs = [[(m.rig.frequency_hz, m.mode_number) for m in found.matches] for found in (of_lists, of_result)]
-    assert pairs[0] == pairs[1] != []
     with pytest.raises(rg.AnalysisError, match="a result has its own"):
         rg.compare(result, rig, elements=2)

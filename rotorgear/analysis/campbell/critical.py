@@ -34,7 +34,6 @@ from rotorgear.analysis.static.state_at import linear_system
 from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
-from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import ExcitationOrder
@@ -56,7 +55,6 @@ _UNSTRAINED = 1e-3
 _ROUNDING = 1e-14
 
 
-@renamed_arguments(top_speed="stop")
 @recorded
 def critical(
     model: Model | System,

@@ -25,7 +25,6 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.spring import constant_spring
 from rotorgear.model.layout.state import State
 from rotorgear.model.model import Model
-from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.critical import CriticalMap
 
@@ -36,7 +35,6 @@ _POINTS = 33
 _BENDS = 0.5
 
 
-@renamed_arguments(top_speed="stop")
 @recorded
 def critical_map(
     model: Model,

@@ -18,7 +18,6 @@ from rotorgear.errors import AnalysisError, ConvergenceError, ModelError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.model.parts.old_names import current_address
 from rotorgear.note import Note
 from rotorgear.solvers.batch.columns import PRESCRIBED
 from rotorgear.solvers.periodic.plant import Plant, Plants
@@ -59,7 +58,6 @@ def range_of(model: Model, address: str, ends: str | Sequence[float | str]) -> R
     Raises:
         AnalysisError: no two different values, or an address that leads nowhere.
     """
-    address = current_address(address)
     parts = ends.split(":") if isinstance(ends, str) else list(ends)
     if len(parts) != 2:
         raise AnalysisError(f"over {address}: got '{ends}', expected FROM:TO such as '3000 rpm:6000 rpm'")

@@ -28,7 +28,6 @@ from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model, model_hash
 from rotorgear.note import Note
-from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.laws import about_state, law_rows
@@ -51,7 +50,6 @@ _UNDAMPED = Note(
 )
 
 
-@renamed_arguments(damping_ratio="modal_damping")
 @recorded
 def frf(
     model: Model,

@@ -27,7 +27,6 @@ from rotorgear.analysis.static.mean_state import about_mean
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
-from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.laws import about_state, law_rows
 from rotorgear.results.response import ResponseResult
@@ -42,7 +41,6 @@ POINTS = 221
 _TANGENTS = 41
 
 
-@renamed_arguments(damping_ratio="modal_damping")
 @recorded
 def response(
     model: Model,

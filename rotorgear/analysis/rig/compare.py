@@ -12,11 +12,9 @@ matches is binomial with the covered share of the band as probability.
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,7 +28,6 @@ from rotorgear.analysis.rig.rig_file import refuse_repeated, rig_lines_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
-from rotorgear.old_names import warn_old
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import (
     Candidate,
@@ -273,20 +270,6 @@ def excitations_at(excitations: Sequence[ExcitationLine], hz: float, reach: floa
     return tuple(line for line in excitations if abs(line.frequency_hz - hz) <= reach)
 
 
-def _understanding_lists(verb: Callable[..., Comparison]) -> Callable[..., Comparison]:
-    """The call of version 0.1, compare(frequencies, descriptions, lines), is understood for one version more."""
-
-    @functools.wraps(verb)
-    def call(source: Any, *args: Any, **kwargs: Any) -> Comparison:
-        if isinstance(source, Model | ModalResult):
-            return verb(source, *args, **kwargs)
-        warn_old("the call", "compare(frequency_hz, descriptions, rig_lines)", "compare(result, rig)")
-        return compare_lines(source, *args, **kwargs)
-
-    return call
-
-
-@_understanding_lists
 @recorded
 def compare(
     source: Model | ModalResult,

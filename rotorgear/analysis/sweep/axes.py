@@ -15,7 +15,6 @@ from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.files.numbers import is_count
 from rotorgear.model.address import Place, changed, places_of, tables_of, value_at
 from rotorgear.model.model import Model
-from rotorgear.model.parts.old_names import current_address
 
 MOST_POINTS = 100_000
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*\Z")
@@ -42,7 +41,6 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     Raises:
         AnalysisError: no numbers, two units, or fewer than one value.
     """
-    address = current_address(address)
     if isinstance(values, str) and ":" in values:
         parts = values.split(":")
         if len(parts) != 3 or not is_count(parts[2].strip()) or int(parts[2]) < 2:

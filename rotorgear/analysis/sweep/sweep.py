@@ -28,7 +28,6 @@ from rotorgear.analysis.sweep.request import Request, start_of, steps_of
 from rotorgear.cpu import Clock, compiling_seconds, cpu_seconds
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.model.model import Model, model_hash
-from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.portrait import Portraits
 from rotorgear.results.sweep import Reduction, SweepResult
@@ -46,7 +45,6 @@ _WHOLE = 3.0
 _LONGER = "in all, up to 8 times as long where motions do not settle"
 
 
-@renamed_arguments(starts="initial_conditions", settle="discard", count="sample")
 @recorded
 def sweep(
     model: Model,

@@ -50,7 +50,6 @@ from rotorgear.cpu import Clock
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.note import Note
-from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.explicit import Explicit, check_length
@@ -62,7 +61,6 @@ from rotorgear.system.system import System
 DEFAULT_ACCURACY = 0.01
 
 
-@renamed_arguments(settle="discard")
 @recorded
 def transient(
     model: Model | System,

@@ -10,7 +10,7 @@ import numbers
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
     AfterValidator,
@@ -27,7 +27,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rotorgear.errors import ModelError
-from rotorgear.model.parts.old_names import KEYS, current_key, with_current_names
+from rotorgear.model.parts.old_names import with_current_names
 from rotorgear.model.parts.problems import from_validation
 from rotorgear.quantity import DIMENSIONS, LARGEST, QuantityError, parse_quantity
 from rotorgear.quantity import in_words as quantity_in_words
@@ -59,15 +59,8 @@ class Part(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _by_current_names(cls, data: Any) -> Any:
-        """Read former keys and values as the present ones."""
+        """Read former values as the present ones."""
         return with_current_names(cls.__name__, data) if isinstance(data, dict) else data
-
-    if not TYPE_CHECKING:  # a type checker would take any attribute for one that exists
-
-        def __getattr__(self, name: str) -> Any:
-            if name in KEYS.get(type(self).__name__, {}):
-                return getattr(self, current_key(type(self).__name__, name))
-            return super().__getattr__(name)
 
     # What a part derives from its fields (cached properties) stands in __dict__ beside them, where pydantic would copy and
     # pickle it: a copy with other fields would go on to answer with the old values, and lazy containers don't pickle.

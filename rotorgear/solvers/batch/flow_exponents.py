@@ -11,12 +11,10 @@ from collections.abc import Callable
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.old_names import renamed_arguments
 
 Field = Callable[[np.ndarray], np.ndarray]
 
 
-@renamed_arguments(settle="discard", count="sample")
 def flow_exponents(
     slope: Field, jacobian: Field, states: np.ndarray, step: float, *, discard: int, sample: int, every: int = 10
 ) -> tuple[np.ndarray, np.ndarray]:

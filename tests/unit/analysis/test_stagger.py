@@ -106,9 +106,9 @@ def odd_share(total: np.ndarray) -> float:
 
 @pytest.mark.parametrize("model", ["contact_line", "potential_energy"])
 def test_half_a_pitch_apart_odd_orders_of_the_stiffness_of_a_pair_vanish(model: str) -> None:
-    found = rg.mesh_analysis(herringbone(model, 0.5), positions=64)
+    found = rg.mesh(herringbone(model, 0.5), positions=64)
     assert odd_share(found.stiffness) < 1e-9
-    assert odd_share(rg.mesh_analysis(herringbone(model, 0.25), positions=64).stiffness) > 0.1
+    assert odd_share(rg.mesh(herringbone(model, 0.25), positions=64).stiffness) > 0.1
 
 
 @pytest.mark.parametrize("stiffness", ["potential_energy", {"mean": 4e8, "amplitudes": [0.1, 0.05, 0.02]}])
@@ -151,13 +151,3 @@ def test_half_a_pitch_apart_odd_orders_of_the_total_vanish_in_a_settled_transien
     total = result.mesh_force[result.counted].sum(axis=1)[:-1]  # twelve mesh periods; the last sample begins another
     orders = np.abs(np.fft.rfft(total))[12::12][:6]
     assert orders[::2].max() < 1e-6 * orders[1::2].max()
-
-
-def test_the_former_key_is_read_as_the_stagger_and_another_value_beside_it_is_refused() -> None:
-    with pytest.warns(match="helix_stagger"):
-        old = herringbone("potential_energy", 0.0, meshes__pair__stagger=None, meshes__pair__helix_stagger=0.25)
-    assert old.meshes["pair"].stagger == 0.25
-    with pytest.warns(match="helix_stagger"):
-        assert herringbone("iso", 0.5, meshes__pair__helix_stagger=0.5).meshes["pair"].stagger == 0.5
-    with pytest.raises(rg.ModelError, match="helix_stagger"):
-        herringbone("iso", 0.5, meshes__pair__helix_stagger=0.25)

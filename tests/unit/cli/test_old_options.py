@@ -10,11 +10,12 @@ from rotorgear.cli.old_options import OPTIONS, current
 
 
 def test_a_former_option_is_passed_on_with_its_value_and_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
-    args = ["sweep", "model.toml", "--settle", "40", "--count=20", "--steps", "80"]
-    assert current(args) == ["sweep", "model.toml", "--discard", "40", "--sample=20", "--steps", "80"]
+    args = ["modal", "model.toml", "--compare", "rig.csv", "--modes", "8"]
+    assert current(args) == ["modal", "model.toml", "--rig", "rig.csv", "--modes", "8"]
+    assert current(["new", "--from=a"]) == ["new", "--source=a"]
     warned = capsys.readouterr().err
-    assert "--settle is now --discard" in warned
-    assert "--count is now --sample" in warned
+    assert "--compare is now --rig" in warned
+    assert "--from is now --source" in warned
 
 
 @pytest.mark.parametrize(

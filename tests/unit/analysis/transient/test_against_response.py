@@ -170,16 +170,6 @@ def test_ranges_of_transmission_error_and_approach_are_those_of_all_steps(method
     assert np.ptp(few.approach[few.counted], axis=0).max() < 0.999 * np.ptp(few.approach_range, axis=1).max()
 
 
-def test_former_names_of_the_approach_are_read_with_a_warning() -> None:
-    result = rg.transient(herringbone(), time=3e-4, discard=0.0, steps=40, elements=1, error_estimate=False)
-    name = result.contact[1]
-    normal = np.cos(result.model.layout.mesh("pair").pinion.base_helix_angle)
-    with pytest.warns(FutureWarning, match="approach"):
-        assert result.history(f"deflection {name}") == pytest.approx(normal * result.history(f"approach {name}"))
-    with pytest.warns(FutureWarning, match="approach"):
-        assert result.contacts[1].peak_to_peak_dte_m == result.contacts[1].peak_to_peak_approach_m
-
-
 def test_where_only_torsion_moves_transmission_error_and_approach_are_one() -> None:
     model = spur_pair(motions=["torsion"])
     result = rg.transient(model, time=0.01, discard=0.0, steps=60, elements=1, method="newmark", error_estimate=False)
