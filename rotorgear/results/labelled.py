@@ -105,9 +105,9 @@ def data_set(result: Record) -> Any:
     """Return everything that is counted by axes as an `xarray.Dataset`.
 
     Dimensions are the axes, in small letters. A field that has the name of its only axis, or the plural, labels it, and
-    frequencies do; the six motions of a node and x, y, z have their names, and what is only counted has numbers from 1, as in `rows`. Of a
-    matrix over one axis the second is called "parameter_2". Each variable and each coordinate that is a quantity has `long_name`
-    and `units`.
+    frequencies do; the six motions of a node and x, y, z have their names, and what is only counted has numbers from 1, as in
+    `rows`. Of a matrix over one axis the second is called "parameter_2". Each variable and each coordinate that is a quantity
+    has `long_name` and `units`.
 
     Raises:
         MissingExtraError: xarray is not installed.
