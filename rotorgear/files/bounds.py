@@ -37,7 +37,7 @@ MODEL = Bound(
     "model, campaigns (TOML)", 8 * _MB, f"{LONGEST_TEXT} letters in a text or name, {MOST_DOTS} dots in a row in a key"
 )
 TABLE = Bound(
-    "rig lines, sensors, cuts, measured flanks, loads over time (CSV)",
+    "rig lines, sensors, cuts, limits, measured flanks, loads over time (CSV)",
     32 * _MB,
     f"{MOST_ROWS:,} rows, {LONGEST_TEXT:,} letters in a cell",
 )

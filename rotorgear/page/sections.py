@@ -192,7 +192,7 @@ def _response(made: dict[str, Any]) -> Section:
     section.draw("Amplitudes over speed.", result.plot(), "Run-up")
     if len(result.speeds) > 1 and (result.contact_mesh or result.bearings):
         section.draw(
-            "Levels over speed and frequency, an order a ray; above, the overall level.", order_map(result), "Orders"
+            "Levels over speed, by frequency and by order; above, the overall level.", order_map(result), "Orders"
         )
     return section
 

@@ -18,6 +18,8 @@ from rotorgear.results.table import label_of, scale, unit_of
 FORMATS = (".png", ".svg", ".pdf")
 # Colours of lines and bars that colour-blind readers tell apart, dark enough on white (Okabe and Ito).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555", "#8B4513")
+# Dashes beside them, so that neighbours are told apart in grey, too; dots are left to limits.
+DASHES: tuple[Any, ...] = ("-", (0, (7, 2)), (0, (9, 2, 2, 2)), (0, (3, 1.2)))
 # What is told first, what is set against it, and what stands beside both.
 BLUE, ORANGE, GREY = "#1f5fa8", "#b3541e", "#777777"
 

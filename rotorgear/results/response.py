@@ -7,6 +7,8 @@ from itertools import groupby
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S, counted
 from rotorgear.results.laws import AboutEquilibrium
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
@@ -38,6 +40,39 @@ class Peak(Record):
     )
     teeth_part: bool = of("whether the linear solution would part loaded teeth there")
     axis: str = of("axis of the amplitude", note=' of a force or displacement, "x", "y" or "z"; else `""`', default="")
+
+
+class LimitLine(Record):
+    """A target over speed for one quantity, all orders together or one of them, and how the run-up stands against it.
+
+    Between its corners the line is straight; outside of them it says nothing.
+    """
+
+    at: str = of("mesh, bearing or point", column="limit of")
+    order: str = of("order", note='; `""`: all orders together, the root of their sum of squares', column="order")
+    unit: str = of("unit of the amplitudes")
+    speed_rpm: np.ndarray = of("speeds of its corners", "rpm", "corner")
+    amplitude: np.ndarray = of("limit", "", "corner", note=" at these speeds, half of peak to peak")
+    ratio: float = of("largest ratio of the amplitude to the limit", column="of limit", form=".3g")
+    worst_rpm: float = of("speed of that ratio", "rpm", column="at rpm", form=".1f")
+    reached: float = of("amplitude there", note=" in that unit", column="reached", form=".4g")
+    allowed: float = of("limit there", note=" in that unit", column="limit", form=".4g")
+    exceeded_rpm: float = of(
+        "range of speed above the limit",
+        "rpm",
+        note=": sum of the steps between asked speeds",
+        column="rpm above",
+        form=".1f",
+    )
+
+    def over(self, speed_rpm: np.ndarray) -> np.ndarray:
+        """The limit at some speeds (...), NaN outside of the line."""
+        return np.interp(np.abs(speed_rpm), self.speed_rpm, self.amplitude, left=np.nan, right=np.nan)
+
+    @property
+    def level_db(self) -> float:
+        """By how many dB the amplitude is above the limit at worst; negative below it."""
+        return float(20.0 * np.log10(max(self.ratio, 1e-30)))
 
 
 # rho c of air at 20 degrees and 1 atm, in kg/(m^2 s).
@@ -207,6 +242,42 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         "largest amplitudes", "", "peak", note=" of each quantity", record=Peak, default=(), kw_only=True
     )
 
+    limits: tuple[LimitLine, ...] = of(
+        "limits",
+        "",
+        "limit",
+        note=" of the quantities, and how the run-up stands against them",
+        record=LimitLine,
+        default=(),
+        kw_only=True,
+    )
+
+    def amplitudes_of(self, at: str | None = None) -> tuple[str, str, np.ndarray]:
+        """What a mesh (its most loaded helix), a bearing (all three forces) or a point tells: words, unit, amplitudes (o, s).
+
+        Raises:
+            AnalysisError: no such mesh, bearing or point.
+        """
+        if at is None:
+            at = max(self.peaks(), key=lambda row: row[4])[0] if self.contact_mesh else next(iter(self.bearings), "")
+        name = at.rpartition(".")[2]
+        if name in self.contact_mesh:
+            force = np.abs(self.mesh_force[:, :, self.contacts_of(name)])
+            return f"dynamic force of mesh {name}", "N", force.max(axis=2)
+        if name in self.bearings:
+            force = self.bearing_force[:, :, self.bearings.index(name)]
+            words = f"force of bearing {name} (root of the sum of squares of x, y, z)"
+            return words, "N", np.linalg.norm(np.abs(force), axis=2)
+        unit = unit_at(self.model, name)
+        if name in self.points:
+            return f"acceleration at {name}", unit, np.abs(self.acceleration[:, :, self.points.index(name)])
+        if name in self.load_points:
+            return f"load at {name}", unit, np.abs(self.internal_load[:, :, self.load_points.index(name)])
+        known = [*dict.fromkeys(self.contact_mesh), *self.bearings, *self.points, *self.load_points]
+        raise AnalysisError(
+            f"'{at}' is no mesh, bearing or point of the model: expected one of {', '.join(known) or 'none'}"
+        )
+
     def contacts_of(self, mesh: str) -> list[int]:
         """Numbers of the contacts of a mesh."""
         return [k for k, name in enumerate(self.contact_mesh) if name == mesh]
@@ -240,6 +311,8 @@ class ResponseResult(AboutEquilibrium, kind="response"):
             )
         heads = ("no", "order", "times input", f"Hz at {abs(last):.6g} rpm")
         yield from ("", grid(rows, *heads, left=2, caption="Orders"), "", self._largest(), "")
+        if self.limits:
+            yield from (self._limits(), "")
         if self.contact_mesh:
             yield TRANSMISSION_WORDS
         yield "amplitudes are half of peak to peak, each order by itself; forces without their mean"
@@ -260,6 +333,22 @@ class ResponseResult(AboutEquilibrium, kind="response"):
                     f"{10.0 * np.log10(power[s] / 1e-12):.1f} dB, at {self.speed_rpm[s]:.1f} rpm"
                 )
         yield from (*self.remarks(), "")
+
+    def _limits(self) -> Table:
+        """How each quantity stands against its limit."""
+        return table_of(
+            self,
+            "limits",
+            "at",
+            Column("order", lambda line: line.order or "all"),
+            "ratio",
+            Column("dB", lambda line: f"{line.level_db:+.1f}", left=False),
+            "reached",
+            "allowed",
+            Column("unit", lambda line: line.unit.replace("^", "")),
+            "worst_rpm",
+            "exceeded_rpm",
+        )
 
     def _largest(self) -> Table:
         """The largest amplitude of each quantity, the order, speed and frequency of it, and what is left out of it."""
@@ -284,6 +373,28 @@ class ResponseResult(AboutEquilibrium, kind="response"):
             )
             columns.append(left_out)
         return table_of(self, "largest", *columns)
+
+
+# Directions of a point that are rotations, and loads that a point reads about an axis.
+TURNING = ("tilt_x", "tilt_y", "torsion")
+MOMENTS = ("torque", "bending")
+# Reference of a level by its unit: ISO 1683 for forces and accelerations; there is none for the others.
+REFERENCES = {"N": (1e-6, "1 uN"), "m/s^2": (1e-6, "1 um/s^2")}
+
+
+def unit_at(model: Model, name: str) -> str:
+    """Unit of what a mesh, bearing or point of a model tells."""
+    point = model.points.get(name)
+    if point is None or name in model.meshes or name in model.bearings:
+        return "N"
+    if point.quantity is not None:
+        return "N m" if point.quantity in MOMENTS else "N"
+    return "rad/s^2" if point.direction in TURNING else "m/s^2"
+
+
+def reference_of(unit: str) -> tuple[float, str]:
+    """Reference of a level in dB, and its words."""
+    return REFERENCES.get(unit, (1.0, f"1 {unit}"))
 
 
 def _rows_of_orders(orders: tuple[str, ...]) -> list[tuple[int, int]]:

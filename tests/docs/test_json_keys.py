@@ -241,7 +241,9 @@ def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
 
 
 def test_the_keys_of_response_are_documented(tmp_path: Path) -> None:
-    data = written(tmp_path, "response", str(MODEL), "--points", "2", "--fmax", "3000", "--elements", "1")
+    (tmp_path / "limits.csv").write_text("at,speed_rpm,amplitude_N\nstage_1a,0,500\nstage_1a,30000,500\n")
+    asked = ("--points", "2", "--fmax", "3000", "--elements", "1", "--limits", str(tmp_path / "limits.csv"))
+    data = written(tmp_path, "response", str(MODEL), *asked)
     data["internal_load"] = {"meter": [[0.0]]}  # nor a point that reads a load
     data["normal_velocity_m_per_s"] = data["radiated_power_w"] = {"box": [[0.0]]}  # this model has no casing
     for part, place in (("casing_ground", "feet"), ("casing_seat", "left")):

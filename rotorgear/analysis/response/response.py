@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_modal_damping, check_request, check_whole, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.response.limits import against, check_limits, read_limits
 from rotorgear.analysis.response.mesh import aims, damped_modes, mesh_error, meshed, parting, speed_warnings
 from rotorgear.analysis.response.order import Order
 from rotorgear.analysis.response.orders import orders_of
@@ -55,6 +57,7 @@ def response(
     elements: int | None = None,
     accuracy: float | None = None,
     shape_speed: float | str | None = None,
+    limits: str | Path | None = None,
     progress: Progress = silent,
 ) -> ResponseResult:
     """Return the linear response to all excitations of a model, by order and speed.
@@ -75,13 +78,17 @@ def response(
             up to the highest frequency are refined to 1e-3, whatever that makes of the forces).
         shape_speed: speed at which the deflection shapes are kept (default: the operating speed, else that of the largest
             force).
+        limits: table (CSV) of targets over speed: `at` (mesh, bearing or point), `speed_rpm`, and `amplitude_N`, `rms_N` or
+            `level_dB`; with `order` of that order alone. The table and the pictures tell what exceeds them.
         progress: callable that is told fraction and step.
 
     Raises:
+        ModelError: mistakes in the table of limits.
         AnalysisError: nothing excites the model, speeds of both senses, a contact that is open in the mean state.
         ConvergenceError: the modal solution does not reach its tolerance, or an undamped resonance is hit exactly.
     """
     chosen, begun = _speeds(model, speeds, start, stop, points)
+    targets = {} if limits is None else read_limits(limits, model)
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
     check_modal_damping(modal_damping)
@@ -93,6 +100,7 @@ def response(
     about = about_mean(model, [float(value) for value in chosen[spread]], speed)
     orders, weak = orders_of(about[1])
     orders, highest, top, left = _within(orders, float(np.max(np.abs(chosen))), fmax)
+    check_limits(targets, [order.name for order in orders], chosen)
     served, few = with_casing_modes(model, top / (2.0 * np.pi))
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
@@ -124,7 +132,7 @@ def response(
     maps = zip(setup.lines.names, joint.maps, joint.face_maps, strict=True) if joint else ()
     between_nodes = map_errors((name, one or along) for name, one, along in maps)
     progress(1.0, "done")
-    return ResponseResult(
+    result = ResponseResult(
         model=model,
         speeds=chosen,
         orders=tuple(order.name for order in orders),
@@ -172,6 +180,7 @@ def response(
         status=short or "success",
         method=f"{words} ({how}: {why}){about_state(system.state)}",
     )
+    return replace(result, limits=against(result, targets)) if targets else result
 
 
 def _within(orders: list[Order], fastest: float, fmax: float | None) -> tuple[list[Order], float, float, list[Note]]:

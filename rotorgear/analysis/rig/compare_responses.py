@@ -25,10 +25,10 @@ from rotorgear.analysis.response.frequency_response import frf as model_frf  # t
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.rig.likeness import frac
 from rotorgear.analysis.rig.measured import MeasuredFrf, frf_of
-from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.analysis.rig.sensor_table import read_sensor_table
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.files.numbers import number_of
+from rotorgear.files.rows import csv_rows
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S

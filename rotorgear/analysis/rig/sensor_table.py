@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.points import coordinates, located
-from rotorgear.analysis.rig.rig_file import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.files.numbers import is_count
+from rotorgear.files.rows import csv_rows
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.references import ON_SHAFTS

@@ -12,7 +12,6 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.plots.response import waterfall_of
 from tests.paths import ROOT
 
 GEARBOX = ROOT / "models" / "split_torque.toml"
@@ -48,14 +47,14 @@ def test_a_rotor_without_meshes_bearings_and_points_is_drawn_by_its_displacement
 
 
 def test_a_waterfall_names_its_quantity(run_up: rg.ResponseResult) -> None:
-    title, unit, size = waterfall_of(run_up, "bearings.output_left")
+    title, unit, size = run_up.amplitudes_of("bearings.output_left")
     assert (title, unit) == ("force of bearing output_left (root of the sum of squares of x, y, z)", "N")
     own = run_up.bearing_force[:, :, run_up.bearings.index("output_left")]
     assert size == pytest.approx(np.sqrt((np.abs(own) ** 2).sum(axis=2)))
-    assert waterfall_of(run_up, "output_bearing_y")[1] == "m/s$^2$"
-    assert waterfall_of(run_up, None)[0] == f"dynamic force of mesh {max(run_up.peaks(), key=lambda row: row[4])[0]}"
+    assert run_up.amplitudes_of("output_bearing_y")[1] == "m/s^2"
+    assert run_up.amplitudes_of()[0] == f"dynamic force of mesh {max(run_up.peaks(), key=lambda row: row[4])[0]}"
     with pytest.raises(rg.AnalysisError, match="stage_1a"):
-        waterfall_of(run_up, "nowhere")
+        run_up.amplitudes_of("nowhere")
 
 
 def test_a_waterfall_draws_the_highest_peak_of_all_speeds(run_up: rg.ResponseResult) -> None:
@@ -161,11 +160,11 @@ def test_statics_of_points_alone_have_a_picture_that_says_so() -> None:
 
 
 def test_an_order_map_has_the_levels_of_the_orders_and_of_all_together(run_up: rg.ResponseResult) -> None:
-    _, _, size = waterfall_of(run_up, "stage_2a")
-    above, axis = rg.plot.order_map(run_up, at="stage_2a")
+    _, _, size = run_up.amplitudes_of("stage_2a")
+    above, axis, by_order = rg.plot.order_map(run_up, at="stage_2a")
     rms = size / np.sqrt(2.0)
     assert np.allclose(above.lines[0].get_ydata(), 20.0 * np.log10(np.sqrt((rms**2).sum(axis=0)) / 1e-6))
-    (lines,) = (one for one in axis.collections if hasattr(one, "get_segments"))
+    (lines,) = (one for one in axis.collections if hasattr(one, "get_segments") and len(one.get_segments()))
     assert lines.get_clim()[1] == pytest.approx(20.0 * np.log10(rms.max() / 1e-6))
     # Each piece lies on the ray of its order: its level is the mean of those at its ends.
     order, at = np.unravel_index(int(np.argmax(size)), size.shape)
@@ -178,5 +177,9 @@ def test_an_order_map_has_the_levels_of_the_orders_and_of_all_together(run_up: r
     near = [0.5 * (level[order, at] + level[order, k]) for k in (at - 1, at + 1) if 0 <= k < size.shape[1]]
     assert sorted(found) == pytest.approx(sorted(near))
     assert any("re 1 uN" in one.get_ylabel() for one in axis.figure.axes)
+    # By order they are level lines at the ratios to the input shaft.
+    (level_lines,) = (one for one in by_order.collections if hasattr(one, "get_segments") and len(one.get_segments()))
+    heights = {round(float(piece[0, 1]), 6) for piece in level_lines.get_segments()}
+    assert heights == {round(float(ratio), 6) for ratio in run_up.ratio}
     with pytest.raises(rg.AnalysisError, match="no mesh, bearing or point"):
         rg.plot.order_map(run_up, at="nowhere")
