@@ -223,7 +223,7 @@ def _time_of(channel: Any, tdms: Any) -> tuple[str, NDArray[np.float64]] | None:
     if "wf_increment" in channel.properties:
         # Without an offset, as some loggers leave it out, the first value is that of the start.
         offset = float(channel.properties.get("wf_start_offset", 0.0))
-        return "", offset + float(channel.properties["wf_increment"]) * np.arange(len(channel))
+        return "", offset + float(channel.properties["wf_increment"]) * np.arange(len(channel), dtype=np.float64)
     for other in tdms[channel.group_name].channels():
         if other.name.lower() in ("time", "t", "time_s", "time (s)", "time [s]") and len(other) == len(channel):
             return str(other.name), np.asarray(other[:], dtype=float)

@@ -41,6 +41,7 @@ from rotorgear.results.modal import ModalResult
 from rotorgear.results.response import ResponseResult
 from rotorgear.results.state_space import StateSpace
 from rotorgear.results.static import StaticResult
+from rotorgear.system.internal_loads import read_loads
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import flow_system
 
@@ -383,7 +384,7 @@ def static_convergence_study(
 
     The errors are those of the forces of contacts, bearings and supports, relative to the largest. The reference integrates the
     equations along each piece. The basic element is exact in statics: what remains is rounding, and the study shows that it is no
-    more.
+    more. Loads inside shafts and couplings are compared with those on four times the elements, each relative to its own size.
 
     Args:
         model, speed: as for `static`.
@@ -392,18 +393,22 @@ def static_convergence_study(
     finest = solved(model, Plan(), speed_or_operating(speed, model), silent, kind=ContinuumSystem)
     truth = forces_of(finest)
     size = max(float(np.abs(truth).max(initial=0.0)), np.finfo(float).tiny)
+    deep = static(model, speed=speed, elements=4 * max(elements)).internal_loads if read_loads(model) else ()
 
     def judge(result: StaticResult) -> Judged:
         held = (*result.bearing_force.values(), *result.support_force.values())
         forces = np.concatenate([result.mesh_force, *held])
-        return Judged(result.dofs, np.abs(forces - truth) / size, np.array([result.error_estimate]))
+        pairs = zip(result.internal_loads, deep, strict=True)
+        inside = [abs(own.load - best.load) / (abs(best.load) or 1.0) for own, best in pairs]
+        errors = np.concatenate([np.abs(forces - truth) / size, inside])
+        return Judged(result.dofs, errors, np.array([result.error_estimate]))
 
     return Study(
         _settings(elements, accuracies),
         run=lambda options: static(model, speed=speed, **options),
         judge=judge,
-        compared="forces",
-        count=len(truth),
+        compared="forces" if not deep else "forces, and loads inside shafts and couplings",
+        count=len(truth) + len(deep),
         reference=f"Timoshenko's equations integrated along each piece, {finest.system.n} dofs; {SHARED}, and so "
         "is the search of the equilibrium",
         resolution=RESOLUTION,
@@ -425,7 +430,8 @@ def response_convergence_study(
     """Run a forced response over speed on a series of meshes.
 
     The error of an order is the largest difference of its complex forces of contacts and bearings at any speed, relative to the
-    largest; the strongest orders are compared. The reference is solved directly at every speed; the rungs may take modes.
+    largest; the strongest orders are compared. The reference is solved directly at every speed; the rungs may take modes. Loads
+    inside shafts and couplings are compared in these orders, each relative to its own largest.
 
     Args:
         model, fmax, modal_damping: as for `response`.
@@ -436,10 +442,15 @@ def response_convergence_study(
         return response(of, points=101, fmax=fmax, modal_damping=modal_damping, **options)
 
     progress(0.0, "reference")
-    if modal_damping or model.damping.modal_ratio:
-        finest = run({"method": "direct", "accuracy": AMPLITUDE_REFERENCE}, _as_continuum(model))
+    by_elements = any(bearing.rigid_directions for bearing in model.bearings.values()) or bool(read_loads(model))
+    inside = np.zeros((0, 0, 0))
+    if modal_damping or model.damping.modal_ratio or by_elements:
+        by_modes = modal_damping or model.damping.modal_ratio
+        deep = {"accuracy": AMPLITUDE_REFERENCE} if by_modes else {"elements": 2 * max(elements)}
+        finest = run({"method": "direct", **deep}, _as_continuum(model))
         truth = _forces(finest)
-        words = f"direct solutions, {_finer(finest)}"
+        inside = finest.internal_load
+        words = f"direct solutions, {_finer(finest, by_elements=by_elements)}"
     else:
         first = run({"method": "direct", "elements": 1}, _as_continuum(model))
         truth, dofs = _exact_response(_as_continuum(model), first)
@@ -449,18 +460,24 @@ def response_convergence_study(
     if not size[:, strongest].any():
         raise AnalysisError("nothing moves: the excitations of the model come to nothing")
     largest = size.max(axis=0)[strongest]
+    loads = inside.shape[2]
 
     def judge(result: ResponseResult) -> Judged:
         difference = np.abs(_forces(result) - truth).max(axis=(0, 2))[strongest]
         error = difference / np.where(largest > 0.0, largest, 1.0)
+        if loads:
+            most = np.abs(inside[strongest]).max(axis=(0, 1))
+            off = np.abs(result.internal_load - inside)[strongest].max(axis=(0, 1))
+            error = np.concatenate([error, off / np.where(most > 0.0, most, 1.0)])
         return Judged(result.dofs, error, np.array([result.error_estimate]))
 
+    words_of_loads = ", and loads inside shafts and couplings in them" if loads else ""
     return Study(
         _settings(elements, accuracies),
         run=run,
         judge=judge,
-        compared="orders, each by its largest force over speed",
-        count=len(strongest),
+        compared=f"orders, each by its largest force over speed{words_of_loads}",
+        count=len(strongest) + loads,
         reference=words,
         resolution=AMPLITUDE_RESOLUTION,
     ).result("response", model, repeat, part_of(progress, 0.2, 1.0))
@@ -470,12 +487,13 @@ def response_convergence_study(
 _TANGENTS = 8
 
 
-def _finer(finest: ResponseResult | FrequencyResponse) -> str:
+def _finer(finest: ResponseResult | FrequencyResponse, *, by_elements: bool = False) -> str:
     """What a finest mesh is in words, and why it has to do."""
-    return (
-        f"a mesh of {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}; the same elements, because "
-        "damping by modes is that of the modes of a mesh"
-    )
+    why = "damping by modes is that of the modes of a mesh"
+    if by_elements:
+        why = "elements tell loads inside shafts and forces of rigid bearings"
+    own = f"its own error estimated at {finest.error_estimate:.0e}"
+    return f"a mesh of {finest.dofs} dofs, {own}; the same elements, because {why}"
 
 
 def _exact_response(model: Model, first: ResponseResult) -> tuple[np.ndarray, int]:

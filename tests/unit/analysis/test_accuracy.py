@@ -17,6 +17,7 @@ from rotorgear.analysis.common.study import Judged, Setting, Study, measured
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, ConvergenceError
 from tests.overhung import overhung_disk
+from tests.unit.system.test_rigid_bearings import rotor
 
 ROOT = Path(__file__).parents[3]
 SHORT: dict[str, Any] = {"elements": (2, 4), "accuracies": (1e-3,), "repeat": 0}
@@ -202,3 +203,20 @@ def test_the_command_writes_every_column_and_refuses_what_belongs_elsewhere(tmp_
         rg.accuracy(overhung_disk(), "static", stop=100.0)
     with pytest.raises(AnalysisError, match="expected modal, campbell"):
         rg.accuracy(overhung_disk(), "dance")
+
+
+def test_loads_inside_shafts_and_forces_of_rigid_bearings_have_their_error_against_run_time() -> None:
+    bearing = {"stiffness": {"radial": 1e8, "axial": 1e8}, "damping": {"radial": 300.0}}
+    rigid = {"stiffness": {"radial": "rigid", "axial": "rigid"}}
+    points = {"b": {"shaft": "a", "at": 0.25, "quantity": "bending", "direction": "x"}}
+    model = rotor(bearing, rigid, points=points)
+    options: dict[str, Any] = {"elements": (1, 2, 4), "accuracies": (), "repeat": 0}
+    static, response = (study_by_name(name)(model, **options) for name in ("static", "response"))
+    assert isinstance(static, rg.ConvergenceStudy)
+    assert isinstance(response, rg.ConvergenceStudy)
+    for study in (static, response):
+        assert "loads inside shafts" in study.compared
+    assert max(rung.error for rung in static.rungs) < 1e-9
+    assert "elements tell loads inside shafts" in response.text().replace("\n", " ")
+    within(response, 0.3, 30.0)
+    falls_with_order(response, 1.0)
