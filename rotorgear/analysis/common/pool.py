@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
+from functools import partial
 from itertools import islice
 from typing import Any, Protocol
 
+from rotorgear.analysis.common.stream import Piece
 from rotorgear.cpu import taken, timed
 
 # Seconds between two looks at work that takes long.
@@ -65,3 +67,26 @@ def in_order(
             future.cancel()
         if own:
             own.shutdown(wait=True, cancel_futures=True)
+
+
+def in_pieces(
+    function: Callable[..., dict[str, Any]], tasks: Sequence[tuple[Any, ...]], piece: Piece, executor: Pool | None
+) -> Iterator[dict[str, Any]]:
+    """Yield function(*task) of every task, in order, each a piece that may be kept; what is not done yet goes to an executor.
+
+    Args:
+        function: what is called. tasks: its arguments. piece: does the work of a task, or takes it over.
+        executor: does all that is left at once; without one it is done here, when its turn comes.
+    """
+    answers: Iterator[dict[str, Any]] | None = None
+
+    def work(number: int) -> dict[str, Any]:
+        nonlocal answers
+        if executor is None:
+            return function(*tasks[number])
+        if answers is None:  # what was kept comes first
+            answers = in_order(function, tasks[number:], None, executor)
+        return next(answers)
+
+    for number in range(len(tasks)):
+        yield piece(partial(work, number))

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from rotorgear.analysis.common.pool import Pool, in_pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import quantity
 from rotorgear.analysis.common.stream import Piece, Stream, pieces, unkept
@@ -26,6 +26,7 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.model import Model, model_hash
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh_map import MeshMap
+from rotorgear.solvers.sparse.factor import single_thread
 
 ORDERS = 3
 # What operating points differ in, with the dimension of its values.
@@ -66,6 +67,7 @@ def figures_at(
     positions: int,
     progress: Progress = silent,
     piece: Piece = unkept,
+    executor: Pool | None = None,
 ) -> MeshFigures:
     """Solve one mesh period at each of some operating points, torque by torque.
 
@@ -76,13 +78,18 @@ def figures_at(
         misalignment: (m,) over the face (m).
         positions: in the mesh period.
         progress: told how far it is.
-        piece: does the work of a point, or takes it over.
+        piece: does the work of a point, or takes it over. executor: does the points in place of this process.
     """
     points = list(product(torque.tolist(), misalignment.tolist()))
+    parts = [part_of(progress, number / len(points), (number + 1) / len(points)) for number in range(len(points))]
+    # What is told of a point stays in the process that shows it.
+    tasks = [
+        (request, teeth, load, f, positions, silent if executor else told)
+        for (load, f), told in zip(points, parts, strict=True)
+    ]
     rows = []
-    for number, (load, f) in enumerate(points):
-        told = part_of(progress, number / len(points), (number + 1) / len(points))
-        rows.append(piece(partial(_figures_at_point, request, teeth, load, f, positions, told)))
+    for told, row in zip(parts, in_pieces(_figures_at_point, tasks, piece, executor), strict=True):
+        rows.append(row)
         told(1.0, "contact")
     size = (len(torque), len(misalignment))
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0] if name != "warnings"}
@@ -178,6 +185,7 @@ def mesh_map(
     preset: str | None = None,
     body: str | None = None,
     positions: int = POSITIONS,
+    executor: Pool | None = None,
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> MeshMap:
@@ -192,6 +200,7 @@ def mesh_map(
         preset: as in `mesh`.
         body: as in `mesh`.
         positions: as in `mesh`.
+        executor: solves the points in place of this process: `rotorgear.cluster(address)`, or any object with `submit`.
         stream: keeps points while the map is made (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
@@ -206,7 +215,9 @@ def mesh_map(
     run = f"{request.mesh.name} {load.tolist()} {misalignment.tolist()} {positions} {preset} {body}"
     piece = pieces(stream, {"model": model_hash(model), "run": run})
     problem = contact_problem(teeth, part_of(progress, 0.0, 0.3))
-    figures = figures_at(request, teeth, load, misalignment, positions, part_of(progress, 0.3, 1.0), piece)
+    with single_thread(0):  # as workers have it: the result is the same to the last bit
+        told = part_of(progress, 0.3, 1.0)
+        figures = figures_at(request, teeth, load, misalignment, positions, told, piece, executor)
     clock.lap("teeth and contact")
     missing = ["error estimates: `rotorgear mesh` gives them for one point"]
     if teeth.first_flank.single_teeth or teeth.second_flank.single_teeth:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.errors import Problem
@@ -67,7 +67,7 @@ class Layout:
         if name not in self._meshes:
             part = self.model.meshes[name]
             pair = self.gear(part.pinion), self.gear(part.gear)
-            self._meshes[name] = MeshLayout(name, part, *pair, lambda: self.train)
+            self._meshes[name] = MeshLayout(name, part, *pair, partial(getattr, self, "train"))
         return self._meshes[name]
 
     @cached_property
