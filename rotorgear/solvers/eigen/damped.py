@@ -25,7 +25,7 @@ from rotorgear.solvers.eigen.quadratic import (
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EDGE, EPS, check_finite, check_wanted
 
-_DENSE_UP_TO = 80  # dofs up to which LAPACK is as fast
+_DENSE_UP_TO = 40  # dofs up to which LAPACK is as fast (validation/benchmarks/thresholds.py)
 _BLOCK = 4
 _CONVERGED = 1e-12  # residual of T x = mu x relative to mu
 _EQUAL = 1e-6  # relative distance of Ritz values that may be copies: one too many costs time, one too few a mode

@@ -34,9 +34,9 @@ from rotorgear.solvers.sparse.pencil import (
     rounding_noise,
 )
 
-_DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
-# It is slower already above 100 unknowns where 12 times the number of modes is less than that of unknowns.
-_FEW = (100, 12)
+_DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast (validation/benchmarks/thresholds.py)
+# It is slower already above 100 unknowns where 5 times the number of modes is less than that of unknowns.
+_FEW = (100, 5)
 _SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
 _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
 
