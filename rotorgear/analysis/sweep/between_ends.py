@@ -25,7 +25,6 @@ from rotorgear.errors import RotorgearError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model, hashes_over
 from rotorgear.solvers.time.contact_equilibrium import Expanded
-from rotorgear.solvers.time.local_forces import gather
 from rotorgear.solvers.time.local_system import LocalSystem
 
 _SPEED = "operation.speed"
@@ -156,15 +155,14 @@ class _Line:
     def _made(self, share: float) -> Point | Large:
         """The point at a share of the way from the lowest value to the highest."""
         low = self._low.local
-        laws = gather(tuple(_between(law, moving, share) for law, moving in self._laws))
-        forces = replace(laws, reference_stiffness=low.forces.reference_stiffness)
+        forces = low.forces.with_numbers_of(tuple(_between(law, moving, share) for law, moving in self._laws))
         local = replace(low, load=low.load + share * self._rise, forces=forces)
         made = self._maker.made(replace(self._low, local=local), self._expanded)
         if isinstance(made, Large):
             return made
-        if self._first is None:
-            self._first = made
-        return ready(made.about(self._first), self._low.speed, self._low.modal_ratio)
+        known = made.about(self._first) if self._first else made
+        self._first = self._first or known
+        return ready(known, self._low.speed, self._low.modal_ratio)
 
 
 class _Parts:

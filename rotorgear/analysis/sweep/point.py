@@ -205,7 +205,9 @@ class AtRest:
     def about(self, other: AtRest) -> AtRest:
         """The same, with what it shares with another state of these matrices and this reference stiffness taken from there."""
         found = replace(self)
-        found.__dict__.update(still=other.still.under(self.local, self.rest), period=other.period)
+        # Laws that act by themselves have numbers of their own; where there are none, both have the same.
+        own = {key: laws for key, laws in other._own.items() if not laws.forces.laws}
+        found.__dict__.update(still=other.still.under(self.local, self.rest), period=other.period, _own=own)
         return found
 
 
@@ -379,8 +381,9 @@ def ready_reduced(points: Sequence[Large], found: Sequence[tuple[LocalSystem, Sh
     for point, (local, shapes) in zip(points, found, strict=True):
         inside = point.inside and point.inside.within(shapes.vectors)
         known = replace(at_rest(local, point.orders, point.contact, expanded), shapes=shapes, inside=inside)
+        known = known.about(first) if first else known
         first = first or known
-        yield ready(known.about(first), point.speed, point.modal_ratio)
+        yield ready(known, point.speed, point.modal_ratio)
 
 
 def ready(known: AtRest, speed: float, modal_ratio: float = 0.0) -> Point:
@@ -398,7 +401,7 @@ def ready(known: AtRest, speed: float, modal_ratio: float = 0.0) -> Point:
     counted = columns.counted
     return Point(
         system,
-        known.local.forces,
+        replace(known.local.forces),  # without what was derived on the way: many points are kept
         order,
         known.contact,
         known.static[counted],

@@ -135,6 +135,15 @@ class LocalForces:
             gather(laws), reference_stiffness=self.reference_stiffness, reference_damping=self.reference_damping
         )
 
+    def with_numbers_of(self, laws: tuple[LocalLaw, ...]) -> LocalForces:
+        """Laws of the same kinds with as many parameters, about the same reference stiffness; what they share is there once."""
+        return replace(
+            self,
+            laws=laws,
+            parameters=_after_each_other([law.parameters() for law in laws]),
+            reference_damping=_side_by_side([law.reference_damping() for law in laws], self.first),
+        )
+
     @property
     def mean(self) -> LocalForces:
         """The laws without anything that varies in time, about the same linear reference."""
@@ -214,7 +223,7 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
         raise ValueError(f"{len(kinds)} different force laws, at most {MOST_LAWS} can act in one model")
     filled = kinds + [(no_schedule, no_force)] * (MOST_LAWS - len(kinds))
     sizes = [law.components for law in laws]
-    parameters = [np.ascontiguousarray(law.parameters(), dtype=float) for law in laws]
+    parameters = [law.parameters() for law in laws]
     first = _starts(sizes)
     return LocalForces(
         laws=laws,
@@ -222,8 +231,7 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
         forces=tuple(pair[1] for pair in filled),
         kind=np.array([kinds.index(law.functions()) for law in laws], dtype=np.int64),
         first=first,
-        # Of one law as they are: maps over a long cycle are large.
-        parameters=parameters[0] if len(parameters) == 1 else np.concatenate([*parameters, np.zeros(0)]),
+        parameters=_after_each_other(parameters),
         parameters_first=_starts([p.size for p in parameters]),
         state_first=_starts([law.state_size() for law in laws]),
         block_first=_starts([size**2 for size in sizes]),
@@ -231,6 +239,13 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
         reference_stiffness=_side_by_side([law.reference_stiffness() for law in laws], first),
         reference_damping=_side_by_side([law.reference_damping() for law in laws], first),
     )
+
+
+def _after_each_other(parameters: list[np.ndarray]) -> np.ndarray:
+    """All parameters in a row."""
+    parts = [np.ascontiguousarray(own, dtype=float) for own in parameters]
+    # Of one law as they are: maps over a long cycle are large.
+    return parts[0] if len(parts) == 1 else np.concatenate([*parts, np.zeros(0)])
 
 
 def _side_by_side(blocks: list[np.ndarray], first: np.ndarray) -> np.ndarray:
