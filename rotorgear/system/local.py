@@ -42,7 +42,7 @@ from rotorgear.system.local_parts import (
     unbalance_parts,
     without_linear_part,
 )
-from rotorgear.system.planets import require_constant, sister_places, turning_carriers
+from rotorgear.system.planets import require_alike_around, require_constant, sister_places, turning_carriers
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.run_up import Carried, on_rigid_train
 from rotorgear.system.system import System
@@ -103,14 +103,15 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     """Return the structure with its contacts as laws.
 
     Args:
-        system: nodes, dofs and groups.
+        system: nodes, dofs and groups; one that is seen from its carrier has no sisters, for nothing of it goes round.
         rotation: speed of the reference over time.
         speed: at which bearings with tables and internal damping are taken, in rad/s.
         along_faces: loaded teeth that feel the tilt of their shafts follow it in time, by maps at several tilts; otherwise they
             keep the tilt of the static state, and resist another one by the tangent about it.
 
     Raises:
-        AnalysisError: planets go round with what their carrier's turn does not allow (`_require_plain_planets`).
+        AnalysisError: planets go round with what their carrier's turn does not allow (`_require_plain_planets`), or what acts
+            is not seen alike from the carrier.
     """
     _require_plain_planets(system, rotation)
     from rotorgear.solvers.time.local_forces import gather
@@ -161,6 +162,11 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
     lines = contact_lines(system)
     couple = np.where(np.isin(np.arange(len(lines.states)), list(mapped)), 0.0, lines.couple)
     outside = outer_loads(system, steady=True)
+    if carriers and system.is_seen_from_carrier:
+        from_rest = [(part.part, part.columns) for part in parts if not part.part.startswith("meshes.")]
+        require_alike_around(
+            system.layout, system.nodes, [("what is steady of the loads", outside[:, None]), *from_rest]
+        )
     load = T.T @ (outside if runs_up else outside + centrifugal_loads(system, speed)) - lines.tilt @ couple
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
@@ -184,7 +190,8 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         columns = [f"{part.part} {part.label} {k}" for part in parts for k in range(part.columns.shape[1])]
         joined = [*groups, *(group for group in system.groups if group.part.startswith("meshes."))]
         rigid = rigid_motions(system, joined)
-        local = replace(local, sisters=sisters_of(sister_places(system.layout, columns)))
+        if not system.is_seen_from_carrier:
+            local = replace(local, sisters=sisters_of(sister_places(system.layout, columns)))
         if runs_up:
             still = [group for group in groups if not group.part.startswith("carriers.")]
             K = assemble(still, system.dofs, lambda g: g.matrices.stiffness)
@@ -208,7 +215,8 @@ def _require_plain_planets(system: System, rotation: Rotation) -> None:
     turning = {planets.shaft: planets for planets in turning_carriers(system.layout)}
     if not turning or not np.any(rotation.speeds):
         return
-    require_constant(system.layout)
+    if not system.is_seen_from_carrier:
+        require_constant(system.layout)
     for name, bearing in model.bearings.items():
         if bearing.rigid_directions:
             raise AnalysisError(

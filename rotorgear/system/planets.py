@@ -90,6 +90,14 @@ def _refuse_dampers_of_all(layout: Layout) -> None:
         )
 
 
+class NotSeenFromCarrierError(AnalysisError):
+    """Coefficients change even in axes that turn with a carrier; `why` says of which part."""
+
+    def __init__(self, message: str, why: str) -> None:
+        super().__init__(message)
+        self.why = why
+
+
 def seen_from_carrier(layout: Layout, groups: Iterable[ElementGroup]) -> list[ElementGroup]:
     """What a carrier that turns adds to some groups where everything is told in axes that turn with it, D = S for all and T = 0.
 
@@ -97,8 +105,8 @@ def seen_from_carrier(layout: Layout, groups: Iterable[ElementGroup]) -> list[El
     move the carrier off its axis and stress the meshes, and both would count in K_g.
 
     Raises:
-        AnalysisError: several carriers turn, pulls that do not balance, a shaft beside the axis of the carrier, or a part with
-            preferred directions at rest.
+        NotSeenFromCarrierError: several carriers turn, pulls that do not balance, a shaft beside the axis of the carrier, or a
+            part with preferred directions at rest.
     """
     turning = turning_carriers(layout)
     if not turning:
@@ -161,12 +169,32 @@ def seen_from_carrier(layout: Layout, groups: Iterable[ElementGroup]) -> list[El
     return found
 
 
-def _changing(layout: Layout, planets: PlanetSet, why: str) -> AnalysisError:
+def require_alike_around(layout: Layout, nodes: Nodes, acting: Iterable[tuple[str, np.ndarray]]) -> None:
+    """Refuse what acts across the axis of a carrier from axes at rest, in a system that is told as seen from it.
+
+    Args:
+        layout, nodes: of the system. acting: addresses and columns (a, k) among all dofs of loads and laws.
+
+    Raises:
+        NotSeenFromCarrierError: naming the first that does.
+    """
+    first = turning_carriers(layout)[0]
+    if layout.model.damping.modal_ratio:
+        raise _changing(layout, first, "damping.modal_ratio damps against axes at rest")
+    central = np.array([MARK not in shaft for shaft in nodes.shaft], dtype=bool)
+    for part, columns in acting:
+        of_nodes = np.abs(columns[: 6 * len(nodes)]).reshape(len(nodes), 6, -1)[central]
+        if np.any(of_nodes[:, [0, 1, 3, 4]] > _ALIKE * max(float(np.abs(columns).max(initial=0.0)), 1e-300)):
+            raise _changing(layout, first, f"{part} acts across its axis from axes at rest")
+
+
+def _changing(layout: Layout, planets: PlanetSet, why: str) -> NotSeenFromCarrierError:
     """That coefficients change as a carrier turns, even in axes that turn with it."""
-    return AnalysisError(
+    return NotSeenFromCarrierError(
         f"carriers.{planets.carrier}: coefficients of planets that are two, differ or stand at unequal angles change with the "
         f"angle of a carrier that turns; seen from it they would not, but {why}. Take three or more equal ones, equally spaced, "
-        f"or hold the carrier: speed_ratio = 0 of shafts.{planets.shaft}."
+        f"or hold the carrier: speed_ratio = 0 of shafts.{planets.shaft}.",
+        why,
     )
 
 

@@ -260,7 +260,8 @@ class System:
         linear = [group for group in self._constant if not group.part.startswith(("meshes.", "nonlinear_elements."))]
         loads = [load.group_per_square(self.train.ratio(load.planets.shaft)) for load in self._pins]
         of_speed = [group for group in self.groups_of(speed) if group.part.startswith("carriers.")]
-        return [group.at(speed) for group in (*planet_groups(self.layout, linear), *loads)] + of_speed
+        carried = seen_from_carrier if self.is_seen_from_carrier else planet_groups
+        return [group.at(speed) for group in (*carried(self.layout, linear), *loads)] + of_speed
 
     @cached_property
     def has_varying_springs(self) -> bool:

@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.orbits.between import Between, between
 from rotorgear.analysis.sweep.axes import axis_of, number_places
 from rotorgear.analysis.sweep.point import depends_on_speed, orders_of, shared_period
@@ -17,6 +18,7 @@ from rotorgear.analysis.transient.request import prepare
 from rotorgear.errors import AnalysisError, ConvergenceError, ModelError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model
+from rotorgear.model.parts.carrier import MARK
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.note import Note
 from rotorgear.solvers.batch.columns import PRESCRIBED
@@ -26,6 +28,8 @@ from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
 from rotorgear.system.internal_loads import LoadRows, load_rows, read_loads
 from rotorgear.system.local import LocalModel
+from rotorgear.system.planets import NotSeenFromCarrierError, turning_carriers
+from rotorgear.system.system import System, flow_system
 
 # Periods of the fastest mesh that a motion may take at most: unknowns grow with them.
 MOST_TURNS = 8
@@ -104,6 +108,10 @@ class SystemFamily:
         self._moving = [i for i in range(len(ranges)) if i != self._turning]
         self.local = self._built([0.0] * len(ranges))
         self.order, excited, self.notes = _excitation(self.local, excite)
+        if self.local.system.is_seen_from_carrier:
+            seen = "are told in axes that turn with the carrier"
+            carriers = turning_carriers(self.local.system.layout)
+            self.notes += tuple(Note(f"carriers.{one.carrier}", "motions across shafts", seen) for one in carriers)
         # What excites, in words.
         self.label = ", ".join(excited)
         self._varied = [i for i, part in enumerate(self.local.parts) if _keeps(part.law, self.order)]
@@ -124,7 +132,22 @@ class SystemFamily:
         return Model(**changed(self._data, zip(self._places, values, strict=True)))
 
     def _built(self, shares: Sequence[float]) -> LocalModel:
-        local = prepare(self._model_at(shares), None, self._elements).local
+        model = self._model_at(shares)
+        if not turning_carriers(model.layout):
+            local = prepare(model, None, self._elements).local
+        else:
+            # Seen from their carrier planets have the period of their meshes; from rest, a turn of the carrier.
+            system = flow_system(model, plan_in_time(self._elements)).seen_from_carrier()
+            _require_loads_along(system)
+            try:
+                local = prepare(system, None, self._elements).local
+            except NotSeenFromCarrierError as error:
+                carrier = turning_carriers(model.layout)[0].carrier
+                raise AnalysisError(
+                    f"carriers.{carrier}: motions of planets that go round repeat with their meshes as seen from their carrier "
+                    f"alone, and {error.why}; from rest they repeat with a turn of the carrier, which takes too many harmonics. "
+                    "Leave that out, or ask for a sweep, whose common period may be such a turn."
+                ) from None
         ratio = local.system.model.damping.modal_ratio
         return replace(local, local=with_modal_damping(local.local, ratio)) if ratio else local
 
@@ -214,6 +237,20 @@ class SystemFamily:
                 self._known.clear()
             self._known[shares] = self._plants.of(self.system(shares))
         return self._known[shares]
+
+
+def _require_loads_along(system: System) -> None:
+    """Refuse loads across shafts that do not go round, which have no period as seen from a carrier.
+
+    Raises:
+        AnalysisError: naming the first point that reads one.
+    """
+    for name, point in system.model.points.items():
+        if point.quantity in ("shear", "bending") and MARK not in f"{point.on or point.shaft}":
+            raise AnalysisError(
+                f"points.{name}: motions of planets that go round are told as seen from their carrier, where bending and shear "
+                "of shafts beside them turn. Read torque or axial force, or ask for a transient."
+            )
 
 
 def _keeps(law: LocalLaw, order: float) -> bool:

@@ -29,10 +29,11 @@ from rotorgear.solvers.batch.small_system import MOST_DOFS, Shapes, SmallSystem,
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, Expanded, unbalanced
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation, local_tangent
+from rotorgear.solvers.time.sisters import over_a_turn, sisters_of
 from rotorgear.system.internal_loads import load_rows, read_loads
-from rotorgear.system.local import local_model
-from rotorgear.system.planets import turning_carriers
-from rotorgear.system.system import flow_system
+from rotorgear.system.local import LocalModel, local_model
+from rotorgear.system.planets import NotSeenFromCarrierError, sister_places, turning_carriers
+from rotorgear.system.system import System, flow_system
 
 if TYPE_CHECKING:
     from rotorgear.solvers.time.local_forces import LocalLaw
@@ -97,6 +98,7 @@ def depends_on_speed(model: Model) -> bool:
         or any(bearing.table for bearing in model.bearings.values())
         or any(shaft.internal_damping for shaft in model.shafts.values())
         or any(gear.body.mesh for gear in model.gears.values())  # centrifugal softening
+        or turning_carriers(model.layout)
         or model.nonlinear_elements
     )
 
@@ -138,7 +140,9 @@ class Point:
         """What points in one block share."""
         c = self.system.columns
         own = self.system.own.forces
+        sets = [part.tobytes() for sisters in (self.system.sisters, self.system.seen_sisters) for part in sisters]
         return (
+            *sets,
             self.system.n,
             c.kind.tobytes(),
             c.mode.tobytes(),
@@ -311,16 +315,26 @@ class PointMaker:
         """
         system = flow_system(model, plan_in_time(self._elements)).with_state(state_in_time(model, speed))
         system.require_freedom()
-        for planets in turning_carriers(system.layout):
-            raise AnalysisError(
-                f"carriers.{planets.carrier}: sweeps and orbits of planets that go round are not built: their meshes turn with "
-                f"the carrier. Hold it, speed_ratio = 0 of shafts.{planets.shaft}, as in a star gear, or ask for a transient."
-            )
-        built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
+        built = None
+        if turning := turning_carriers(system.layout):
+            try:
+                built = _in_time(system.seen_from_carrier(), speed)
+            except NotSeenFromCarrierError:
+                if system.uneven_planets:
+                    raise
+        goes_round = bool(turning) and built is None
+        built = built or _in_time(system, speed)
         # Watched is the approach of each contact in the transverse plane, too, behind the transmission errors.
         approach = built.local.B[:, built.mesh_columns].toarray() / built.transverse
         watched = np.hstack([built.local.watched_vectors, approach])
-        built = replace(built, local=replace(built.local, watched=watched))
+        seen = [name + what for what in ("", " approach") for name in built.watched_names]
+        places = sister_places(system.layout, seen) if goes_round else ()
+        built = replace(built, local=replace(built.local, watched=watched, seen_sisters=sisters_of(places)))
+        for name in read_loads(model) if turning else ():
+            raise AnalysisError(
+                f"points.{name}: loads inside shafts are not told in sweeps of planets that go round: leave the point out, or "
+                "ask for a transient"
+            )
         inside = Inside(load_rows(system, speed), speed) if read_loads(model) else None
         left_out = (*left_out_in_time(built, speed, contacts_only=True), *damped_at_nodes(model))
         for part in built.parts:
@@ -330,6 +344,9 @@ class PointMaker:
             [o for part in built.parts if part.is_mesh is is_mesh for o in orders_of(part.law, part.label)]
             for is_mesh in (True, False)
         )
+        if goes_round:
+            # All repeats where it was before: with the planets there, too.
+            others += [abs(system.train.ratios[planets.shaft]) for planets in turning]
         orders = meshes + others
         common_period(orders, meshes)
         contact = tuple(part.label for part in built.parts if part.is_mesh)
@@ -353,6 +370,11 @@ def speed_of_all(model: Model) -> float:
     return 1.0 if (model.operating_speed or 0.0) > 0.0 else -1.0
 
 
+def _in_time(system: System, speed: float) -> LocalModel:
+    """The model as motions in time take it at a speed of the reference in rad/s."""
+    return springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
+
+
 def at_rest(
     local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], expanded: Expanded | None = None
 ) -> AtRest:
@@ -369,6 +391,7 @@ def at_rest(
     # Contacts that are open at rest: what the driving flanks alone would carry.
     usable = found.converged and bool(np.all(np.isfinite(found.force)))
     static = found.force if usable else local.forces.reference_stiffness @ (local.B.T @ rest.q)
+    static = over_a_turn(local.sisters, static)
     at_zero, _ = local_tangent(mean, np.zeros(local.m), 0.0)
     drifts = bool(rest.free.shape[1]) and unbalanced(local, rest.free, at_zero, expanded.separate)
     return AtRest(local, orders, contact, rest, static, drifts)

@@ -6,6 +6,7 @@ Every array has the systems as its last axis of BATCH entries, which move throug
 time only (k(t), e(t), prescribed forces) is in tables over the common period, for the times at and between steps.
 Tangents T obey T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; once in a period of the fastest excitation
 they are freed of rigid-body motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents.
+Columns of planets that go round are told where the pins were at the start, and act where these are (kernel_sisters.py).
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from rotorgear.solvers.batch.kernel_parts import (
     row_product,
     widen,
 )
+from rotorgear.solvers.batch.kernel_sisters import follow_planets, turn_rows
 from rotorgear.solvers.batch.kernel_switches import (
     DONE,
     MIDDLE,
@@ -83,7 +85,7 @@ def advance(number, h, matrix, stage, ahead, at, base, base_at, total):
 
 
 @compiled(fast=True, inner=True)
-def tangent_stage(number, h, system, columns, acting, found, kept, stage, ahead, base, work):
+def tangent_stage(number, h, time, system, columns, acting, sisters, found, kept, stage, ahead, base, work):
     """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin."""
     matrix = system.matrix
     across = system.across
@@ -102,6 +104,8 @@ def tangent_stage(number, h, system, columns, acting, found, kept, stage, ahead,
     for k in range(t):
         at = k * rows
         product(across, stage, at, d)
+        if sisters is not None:
+            follow_planets(sisters, time, d)
         for j in range(m):
             along = of(found, j, IN_D) * get(d, 2 * j) + of(found, j, IN_V) * get(d, 2 * j + 1)
             put(stage, at + 2 * n + j, along)
@@ -110,6 +114,8 @@ def tangent_stage(number, h, system, columns, acting, found, kept, stage, ahead,
         add_contacts(number, h, columns, found, d, work.done, DONE * m * k)
         if jumping:
             add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
+        if sisters is not None:
+            turn_rows(sisters, -time, stage, at + 2 * n, 1)
         advance(number, h, matrix, stage, ahead, at, base, 2 * n * k, totals[k])
 
 
@@ -120,7 +126,7 @@ def weight_of(number, h):
 
 
 @compiled(fast=True, inner=True)
-def end_tangents(system, columns, kept, moved, tangents, impulse, work):
+def end_tangents(time, system, columns, sisters, kept, moved, tangents, impulse, work):
     """Put the impulses of the damping right along all tangents."""
     across = system.across
     per_force = system.per_force
@@ -135,28 +141,48 @@ def end_tangents(system, columns, kept, moved, tangents, impulse, work):
     m = jumps.size
     for k in range(t):
         product(across, moved, k * rows, d)
+        if sisters is not None:
+            follow_planets(sisters, time, d)
         missing_along(jumps, values, kept, d, used, start, m * k, impulse)
+        if sisters is not None:
+            turn_rows(sisters, -time, impulse, 0, 1)
         add_impulses(per_force, impulse, moved, k * rows, tangents, 2 * n * k)
 
 
 @compiled(inner=True)
-def switch_tangents(h, system, columns, step_begin, ends, moved, tangents, work):
+def switch_tangents(h, time, system, columns, sisters, step_begin, ends, moved, tangents, work):
     """Put all tangents right where a contact has switched in a step."""
     across = system.across
     d = work.d
     m = columns.kind.size
     for k in range(tangents.shape[0]):
         product(across, moved[k], 0, d)
-        correct(h, columns, step_begin, ends, system.per_force, d, work.done, tangents[k], moved[k], DONE * m * k)
+        if sisters is not None:
+            follow_planets(sisters, time, d)
+        correct(
+            h,
+            time,
+            columns,
+            sisters,
+            step_begin,
+            ends,
+            system.per_force,
+            d,
+            work.done,
+            tangents[k],
+            moved[k],
+            DONE * m * k,
+        )
 
 
 @compiled(fast=True, free=True, seconds=25.0)
-def batch_loop(turns, steps, begun, counting, system, columns, table, acting, motion):
+def batch_loop(turns, steps, begun, counting, system, columns, table, acting, sisters, seen_sisters, motion):
     """Advance the motion of all systems in place by common periods and record a section at the end of each.
 
     turns: periods of the fastest excitation in a common one. steps: in one of those. begun: common periods before.
     counting: whether the statistics count. columns: of a batch. acting: see `ActingLaws`.
     table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
+    sisters, seen_sisters: planets that go round among the columns and among what is watched; None where there are none.
     """
     matrix = system.matrix
     across = system.across
@@ -219,18 +245,25 @@ def batch_loop(turns, steps, begun, counting, system, columns, table, acting, mo
             for number in range(4):
                 if number != 2:
                     at = 2 * step + (number + 1) // 2
+                    time = 0.5 * h * at
                     read_table(table, at, now)
                     if own:
                         schedule_laws(acting, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
                 product(across, stage, 0, d)
+                if sisters is not None:
+                    follow_planets(sisters, time, d)
                 contacts(columns, now, weight_of(number, h), d, F, found, used)
                 if own:
                     force_laws(acting, condition, d, F, found, blocks, space)
                 if number == 0 and counting:
                     count(counted, now, d, F, found, last, sums)
                     product(watched, stage, 0, seen)
+                    if seen_sisters is not None:
+                        turn_rows(seen_sisters, time, seen, 0, 1)
                     widen(seen, extremes, p)
                     add_moments(seen, p, moments)
+                if sisters is not None:
+                    turn_rows(sisters, -time, F, 0, 1)
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
                     if number == 0:
@@ -238,18 +271,38 @@ def batch_loop(turns, steps, begun, counting, system, columns, table, acting, mo
                     elif number == 1:
                         for j in range(m):
                             put_of(step_begin, j, MIDDLE, of(now, j, STIFFNESS))
-                    tangent_stage(number, h, system, columns, acting, found, kept, moved, moved_ahead, tangents, along)
+                    tangent_stage(
+                        number,
+                        h,
+                        time,
+                        system,
+                        columns,
+                        acting,
+                        sisters,
+                        found,
+                        kept,
+                        moved,
+                        moved_ahead,
+                        tangents,
+                        along,
+                    )
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if jumping or t:
                 product(across, stage, 0, d)
+                if sisters is not None:
+                    follow_planets(sisters, time, d)
             if t and keep_end(columns, now, d, step_begin, ends):
-                switch_tangents(h, system, columns, step_begin, ends, moved, tangents, along)
+                switch_tangents(h, time, system, columns, sisters, step_begin, ends, moved, tangents, along)
                 product(across, stage, 0, d)
+                if sisters is not None:
+                    follow_planets(sisters, time, d)
             if jumping:
                 missing(jumps, values, now, d, used, kept, impulse)
+                if sisters is not None:
+                    turn_rows(sisters, -time, impulse, 0, 1)
                 add_impulses(per_force, impulse, stage, 0, state, 0)
                 if t:
-                    end_tangents(system, columns, kept, moved, tangents, impulse, along)
+                    end_tangents(time, system, columns, sisters, kept, moved, tangents, impulse, along)
             if t and (step + 1) % steps == 0:
                 orthonormal(tangents, weighed, system.root, system.rigid, growth[period])
                 for k in range(t):
@@ -258,3 +311,5 @@ def batch_loop(turns, steps, begun, counting, system, columns, table, acting, mo
             keep_speed(state, system.carried, at_begin, 2.0 * np.pi * turns, at_end)
             copy_rows(state, 0, stage, 0, 2 * n)
         product(across, state, 0, section[period])
+        if sisters is not None:
+            follow_planets(sisters, 2.0 * np.pi * turns, section[period])

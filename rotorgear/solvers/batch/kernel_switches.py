@@ -17,8 +17,9 @@ from __future__ import annotations
 
 from rotorgear.solvers.batch.columns import CLEARANCE, ERROR, OWN_LAW, PER_DEPTH, PRESCRIBED, SLOPE, STIFFNESS, C, K
 from rotorgear.solvers.batch.kernel_parts import GROWTH, IN_D, IN_V, of
+from rotorgear.solvers.batch.kernel_sisters import turn_rows
 from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, PENETRATION
-from rotorgear.solvers.contact.vectors import BATCH, get, put
+from rotorgear.solvers.contact.vectors import BATCH, get, put, work
 from rotorgear.solvers.time.compiled import compiled
 
 # Of each column at the begin of a step: approach, its rate, whether it holds (0 or 1), shares of its stiffness there and in the
@@ -155,12 +156,15 @@ def keep_end(columns, table, d, step_begin, ends):
 
 
 @compiled(inner=True)
-def correct(h, columns, step_begin, ends, per_force, d, done, tangents, ahead, at):
+def correct(h, time, columns, sisters, step_begin, ends, per_force, d, done, tangents, ahead, at):
     """Put one tangent right: its d (2 m, w) at the end, done from row `at` on; its state (2 n, w) and that of the stage to come.
 
-    per_force: -B by rows.
+    per_force: -B by rows. sisters: planets that go round, whose impulses act where the pins were at the start.
     """
     n = tangents.shape[0] // 2
+    if sisters is not None:
+        moves = work(columns.kind.size)
+        pushes = work(columns.kind.size)
     values = columns.values
     for j in range(columns.kind.size):
         if not tangent_jumps(columns.kind[j], columns.mode[j]):
@@ -219,6 +223,10 @@ def correct(h, columns, step_begin, ends, per_force, d, done, tangents, ahead, a
                     far_by_c += (1.0 - theta) * h * there
                 velocity += c * by_c - done[row + BY_C, w]
             displacement += c * far_by_c - done[row + FAR_BY_C, w]
+            if sisters is not None:
+                moves[j, w] = displacement
+                pushes[j, w] = velocity
+                continue
             for i in range(n):
                 for p in range(per_force.first[i], per_force.first[i + 1]):
                     if per_force.column[p] == j:
@@ -228,3 +236,16 @@ def correct(h, columns, step_begin, ends, per_force, d, done, tangents, ahead, a
                         moved = tangents[n + i, w] + per_force.value[p, w] * velocity
                         tangents[n + i, w] = moved
                         ahead[n + i, w] = moved
+    if sisters is not None:
+        turn_rows(sisters, -time, moves, 0, 1)
+        turn_rows(sisters, -time, pushes, 0, 1)
+        for i in range(n):
+            moved = get(tangents, i)
+            pushed = get(tangents, n + i)
+            for p in range(per_force.first[i], per_force.first[i + 1]):
+                moved += get(per_force.value, p) * get(moves, per_force.column[p])
+                pushed += get(per_force.value, p) * get(pushes, per_force.column[p])
+            put(tangents, i, moved)
+            put(ahead, i, moved)
+            put(tangents, n + i, pushed)
+            put(ahead, n + i, pushed)

@@ -26,6 +26,7 @@ from rotorgear.solvers.batch.kernel_laws import SPACE, force_laws, schedule_laws
 from rotorgear.solvers.batch.kernel_parts import FOUND
 from rotorgear.solvers.contact.gap_contact import contact, momentum
 from rotorgear.solvers.time.compiled import compiled
+from rotorgear.solvers.time.kernel_sisters import add_going_round, turn
 
 
 @compiled(inner=True)
@@ -51,11 +52,11 @@ def edge(values, now, d):
 
 
 @compiled(free=True)
-def trajectory(steps, every, begun, system, columns, table, acting, state, out):
+def trajectory(steps, every, begun, system, columns, table, acting, sisters, state, out):
     """Run on from a state (2 n,) in place; out (s, m, 3) gets d, d' and F once in `every` steps, beginning with the first state.
 
     system: K and D (n, n), B (n, m) and the constant load (n,). steps: in a period of the fastest excitation, begun: before the
-    first one. table: (2 steps in a common period + 1, m, 4).
+    first one. table: (2 steps in a common period + 1, m, 4). sisters: as of `batch_loop`.
     """
     kind = columns.kind
     mode = columns.mode
@@ -74,6 +75,10 @@ def trajectory(steps, every, begun, system, columns, table, acting, state, out):
     damped = np.zeros(m)
     used = np.empty(m)
     begins = np.empty((m, 2))
+    # Displacements and velocities that laws see, and forces and impulses as the structure feels them.
+    seen = np.empty(m)
+    rates = np.empty(m)
+    felt = np.empty(m)
     # A batch of one system for the laws of kernel_laws.py.
     condition = np.zeros((1, laws.state_first[-1]))
     found = np.zeros((m, FOUND, 1))
@@ -95,17 +100,29 @@ def trajectory(steps, every, begun, system, columns, table, acting, state, out):
                 for i in range(n):
                     x += B[i, j] * y[i]
                     rate += B[i, j] * y[n + i]
-                d[2 * j, 0] = x
-                d[2 * j + 1, 0] = rate
+                seen[j] = x
+                rates[j] = rate
+            if sisters is not None:
+                time = 0.5 * h * (2.0 * (begun + step) + half)
+                add_going_round(sisters, 1.0, seen, rates)
+                turn(sisters, time, seen, 0)
+                turn(sisters, time, rates, 0)
+            for j in range(m):
+                d[2 * j, 0] = seen[j]
+                d[2 * j + 1, 0] = rates[j]
                 if kind[j] != OWN_LAW:
-                    F[j, 0], damped[j] = force(kind[j], mode[j], values[j], now[j], x, rate)
+                    F[j, 0], damped[j] = force(kind[j], mode[j], values[j], now[j], seen[j], rates[j])
             force_laws(acting, condition, d, F, found, tangents, space)
+            for j in range(m):
+                felt[j] = F[j, 0]
+            if sisters is not None:
+                turn(sisters, -time, felt, 0)
             for i in range(n):
                 z2 = load[i]
                 for k in range(n):
                     z2 -= stiffness[i, k] * y[k] + D[i, k] * y[n + k]
                 for j in range(m):
-                    z2 -= B[i, j] * F[j, 0]
+                    z2 -= B[i, j] * felt[j]
                 a[i] = z2
             if stage == 0 and step % every == 0:
                 for j in range(m):
@@ -127,12 +144,20 @@ def trajectory(steps, every, begun, system, columns, table, acting, state, out):
         for i in range(2 * n):
             state[i] += total[i]
         for j in range(m):
+            felt[j] = 0.0
+            seen[j] = 0.0
+            for i in range(n):
+                seen[j] += B[i, j] * state[i]
+        if sisters is not None:
+            turn(sisters, time, seen, 0)
+        for j in range(m):
             if jumps[j]:
-                x = 0.0
-                for i in range(n):
-                    x += B[i, j] * state[i]
-                integral, side = edge(values[j], now[j], x)
+                integral, side = edge(values[j], now[j], seen[j])
                 if jumps[j] == ALWAYS or (side != 0.0 and side != begins[j, 1]):
-                    rest = values[j, C] * (integral - begins[j, 0]) - used[j]
-                    for i in range(n):
-                        state[n + i] -= B[i, j] * rest
+                    felt[j] = values[j, C] * (integral - begins[j, 0]) - used[j]
+        if sisters is not None:
+            turn(sisters, -time, felt, 0)
+        for j in range(m):
+            if felt[j] != 0.0:
+                for i in range(n):
+                    state[n + i] -= B[i, j] * felt[j]

@@ -171,7 +171,9 @@ def run_block(
                 raise KeyboardInterrupt
             rows = slice(p, p + stride)
             motion = begin._replace(tangents=followed, growth=growth[rows], section=section[rows])
-            batch_loop(first.turns, plan.steps, begun + p, counting, system, columns, table, acting, motion)
+            batch_loop(
+                first.turns, plan.steps, begun + p, counting, system, columns, table, acting, *first.going_round, motion
+            )
         return begin._replace(growth=growth, section=section)
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
@@ -247,6 +249,7 @@ def trajectory(
         system.columns,
         np.ascontiguousarray(table),
         acting_laws([system]),
+        system.going_round[0],
         np.concatenate([start.z, start.dz]),
         out,
     )

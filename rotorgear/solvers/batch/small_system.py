@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,8 +16,10 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.batch.columns import Columns
 from rotorgear.solvers.batch.own_laws import OwnLaws, not_held, steepest, taken_at_rest
+from rotorgear.solvers.time.arguments import Sisters
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.solvers.time.local_system import LocalSystem, Rotation
+from rotorgear.solvers.time.sisters import sisters_of
 
 # Dense matrices in the kernel: beyond this many, other methods are cheaper.
 MOST_DOFS = 80
@@ -70,6 +72,8 @@ class SmallSystem:
         w: rad/s of the fastest excitation; turns: its periods in the common one.
         fastest: largest |eigenvalue| of the linear system, in radians of that excitation; followed: of those that a reduced
         system holds for. shapes: of a system that was reduced.
+        sisters, seen_sisters: planets that go round among the columns and the watched displacements, with the ratio of their
+        carriers to the fastest excitation.
     """
 
     K: np.ndarray
@@ -90,6 +94,13 @@ class SmallSystem:
     fastest: float
     followed: float
     shapes: Shapes | None = None
+    sisters: Sisters = field(default_factory=sisters_of)
+    seen_sisters: Sisters = field(default_factory=sisters_of)
+
+    @property
+    def going_round(self) -> tuple[Sisters | None, Sisters | None]:
+        """Both sets of sisters as compiled loops take them, see `LocalSystem.going_round`."""
+        return (self.sisters, self.seen_sisters) if self.sisters.planets.size else (None, None)
 
     @property
     def size(self) -> int:
@@ -240,6 +251,7 @@ def small_system(
         float(rates.max()),
         float(followed.max(initial=0.0)),
         shapes,
+        *(sets._replace(ratio=sets.ratio * own.turn) for sets in (still.local.sisters, still.local.seen_sisters)),
     )
 
 

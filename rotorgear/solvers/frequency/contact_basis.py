@@ -355,5 +355,7 @@ def reduced(local: LocalSystem, among: Candidates, Q: np.ndarray) -> tuple[Local
         rotation=local.rotation,
         G=None if local.G is None else sp.csc_array(T.T @ among.G @ T),
         watched=V.T @ local.watched_vectors,
+        sisters=local.sisters,
+        seen_sisters=local.seen_sisters,
     )
     return in_basis, V

@@ -29,6 +29,8 @@ _ALL = 60
 _LEAST = 24
 # Share of a vector left without the motions R that is rounding.
 _ROUNDING = 1e-6
+# Share of all velocity terms below which those on free motions are rounding.
+_BRAKED = 1e-9
 _MOST = 120
 
 
@@ -132,7 +134,40 @@ def multipliers(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switch
         plant: at the motion's own value. basis: its modes. fine: N FINER instants.
         switches: where laws change sides between these.
     """
-    return sorted_by_size(la.eigvals(monodromy(plant, basis, fine, switches)[basis.unheld :, basis.unheld :]))
+    moved = monodromy(plant, basis, fine, switches)[basis.unheld :, basis.unheld :]
+    kept = _momenta(plant, basis, _period(fine))
+    if len(kept):
+        # Deviations without these momenta keep to themselves.
+        Z = la.null_space(kept)
+        moved = Z.T @ moved @ Z
+    return sorted_by_size(la.eigvals(moved))
+
+
+def _period(fine: Samples) -> float:
+    return float((fine.t[1] - fine.t[0]) * len(fine.t))
+
+
+def _units(K: np.ndarray, period: float) -> np.ndarray:
+    """Units of displacements: in w = [unit q, q'], from the diagonal of K, an undamped structure has orthogonal eigenvectors."""
+    return np.asarray(np.maximum(np.sqrt(np.maximum(np.diag(K), 0.0)), 0.01 / period))
+
+
+def _momenta(plant: Plant, basis: ModalBasis, period: float) -> np.ndarray:
+    """Rows (k, 2 r - unheld) on deviations: momenta of what nothing holds in its place that nothing brakes, either.
+
+    R' (M q' + D q) never changes, for R' K = 0 and the laws do no work on R. Where R' D R = 0 its value is that of a motion at
+    another speed, as of planets that go round, whose Coriolis forces tie the turn of their train to what they do outwards.
+    """
+    count = basis.unheld
+    if not count:
+        return np.zeros((0, 0))
+    V = basis.V
+    R = V[:, :count]
+    braked = R.T @ (plant.D @ R)
+    if np.abs(braked).max() > _BRAKED * np.linalg.norm(plant.D @ V):
+        return np.zeros((0, 0))
+    unit = _units(V.T @ (plant.K @ V), period)
+    return np.hstack([(R.T @ (plant.D @ V) / unit)[:, count:], R.T @ (plant.M @ V)])
 
 
 def sorted_by_size(values: np.ndarray) -> np.ndarray:
@@ -149,11 +184,9 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches
     D = V.T @ (plant.D @ V)
     B = V.T @ plant.B
     N = len(fine.t) // FINER
-    period = (fine.t[1] - fine.t[0]) * len(fine.t)
+    period = _period(fine)
     h = period / N
-    # In w = [unit q, q'] with unit from the diagonal of K an undamped structure has orthogonal eigenvectors.
-    stiff = np.sqrt(np.maximum(np.diag(K), 0.0))
-    unit = np.maximum(stiff, 0.01 / period)
+    unit = _units(K, period)
     A = np.zeros((2 * r, 2 * r))
     A[:r, r:] = np.diag(unit)
     A[r:, :r] = -K / unit

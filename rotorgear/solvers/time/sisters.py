@@ -58,6 +58,12 @@ def turned(sisters: Sisters, angle: np.ndarray, x: np.ndarray) -> np.ndarray:
     return found
 
 
+def over_a_turn(sisters: Sisters, x: np.ndarray) -> np.ndarray:
+    """Mean of R(a) x over the angle for x (p,): as much of it as half a turn takes to its opposite is gone."""
+    half = turned(sisters._replace(ratio=np.ones(len(sisters.ratio))), np.full(1, np.pi), x[None])[0]
+    return np.asarray(0.5 * (x + half))
+
+
 def turning_matrix(sisters: Sisters, size: int) -> np.ndarray:
     """W T (size, size) for unit speed of the reference: what planets see as a rate beside x' is -W T x."""
     found = np.zeros((size, size))

@@ -7,6 +7,7 @@ that all its coefficients change with time; contacts and excitations are written
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -18,13 +19,13 @@ from scipy.integrate import solve_ivp
 import rotorgear as rg
 from rotorgear.analysis.transient.channels import channels
 from rotorgear.analysis.transient.request import prepare
-from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.errors import AnalysisError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.planets import pin_loads
 from rotorgear.system.system import System
 from tests.paths import MODELS
-from tests.planetary import BODIES, GROUND, PIN, helical_stage
+from tests.planetary import BODIES, GROUND, PIN, Springs, helical_stage
 
 # Teeth of sun, planet and ring by the number of planets: excitations of translational and of planet modes.
 TEETH = {3: (28, 35, 98), 4: (26, 36, 98)}
@@ -52,13 +53,14 @@ def stage(
     speed: float = SPEED,
     backlash: bool = True,
     error: float = ERROR,
+    ground: Mapping[str, Springs] = UNEQUAL,
     more: str = "",
 ) -> str:
     """A helical stage with transmission errors, and backlash if wished; its pins are damped by loss, its meshes are not."""
     text = helical_stage(
         planets,
         teeth=TEETH[planets],
-        ground=UNEQUAL,
+        ground=ground,
         loss=loss,
         speed=f"{speed!r} rad/s",
         more=LOADS.format(torque=torque) + more,
@@ -569,7 +571,7 @@ def test_what_turns_in_axes_of_planets_is_refused_by_name(more: str, words: str)
         rg.transient(rg.loads(stage(900.0, more=more)), time=0.001)
 
 
-def test_methods_and_sweeps_are_refused_by_name() -> None:
+def test_methods_are_refused_by_name() -> None:
     model = rg.loads(stage(900.0))
     for words, asked in (
         ("method exponential: it needs a constant speed", {"speed_to": 300.0, "method": "exponential"}),
@@ -577,10 +579,6 @@ def test_methods_and_sweeps_are_refused_by_name() -> None:
     ):
         with pytest.raises(AnalysisError, match=re.escape(words)):
             rg.transient(model, time=0.001, **asked)
-    with pytest.raises(
-        RotorgearError, match=r"carriers\.stage: sweeps and orbits of planets that go round are not built"
-    ):
-        rg.sweep(model, over={"operation.speed": [200.0, 300.0]})
     uneven = rg.loads(
         helical_stage(3, teeth=TEETH[3]).replace("planets = 3", 'angles = ["0 deg", "120 deg", "240.001 deg"]')
     )
