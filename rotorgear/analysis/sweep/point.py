@@ -77,17 +77,16 @@ def common_period(orders: list[Fraction], meshes: Sequence[Fraction] = ()) -> tu
 
 def orders_of(law: LocalLaw, label: str) -> list[Fraction]:
     """Orders of what varies in a law and belongs to the common period; none where it stays the same."""
-    orders = []
-    for each in law.repeats():
-        if not each.common:
-            continue
-        order = Fraction(each.order).limit_denominator(100000)
-        if abs(float(order) - each.order) > _WHOLE * each.order:
-            raise AnalysisError(
-                f"{label}: its order {each.order:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
-            )
-        orders.append(order)
-    return orders
+    return [_in_whole_numbers(each.order, label) for each in law.repeats() if each.common]
+
+
+def _in_whole_numbers(order: float, label: str) -> Fraction:
+    found = Fraction(order).limit_denominator(100000)
+    if abs(float(found) - order) > _WHOLE * order:
+        raise AnalysisError(
+            f"{label}: its order {order:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
+        )
+    return found
 
 
 def depends_on_speed(model: Model) -> bool:
@@ -346,7 +345,10 @@ class PointMaker:
         )
         if goes_round:
             # All repeats where it was before: with the planets there, too.
-            others += [abs(system.train.ratios[planets.shaft]) for planets in turning]
+            others += [
+                _in_whole_numbers(abs(system.train.ratio(planets.shaft)), f"carriers.{planets.carrier}")
+                for planets in turning
+            ]
         orders = meshes + others
         common_period(orders, meshes)
         contact = tuple(part.label for part in built.parts if part.is_mesh)
