@@ -59,6 +59,7 @@ GROUPS: dict[str, dict[str, tuple[str, ...]]] = {
         "shear_factor": ("shear_coefficient",),
     },
     "Bearings and supports: ROSS, Nastran, catalogues": {
+        "bore": ("diameter",),
         "k": ("stiffness",),
         "c": ("damping",),
         "spring_rate": ("stiffness",),
