@@ -60,7 +60,9 @@ VERBS: dict[str, Callable[[rg.Model], Any]] = {
     "modal": lambda model: rg.modal(model, modes=6, elements=1),
     "modal at a speed": lambda model: rg.modal(model, modes=6, elements=1, speed="2500 rpm"),
     "campbell": lambda model: rg.campbell(model, modes=4, points=3, start="2000 rpm", elements=1),
-    "critical": lambda model: rg.critical(model, elements=1, shaft_orders=(1.0,), mesh_orders=()),
+    "critical": lambda model: rg.critical(
+        model, elements=1, start="2000 rpm", stop="4000 rpm", shaft_orders=(1.0,), mesh_orders=()
+    ),
     "critical map": lambda model: rg.critical_map(model, stiffness=[3e7, 4e8], elements=1),
     "frf": lambda model: rg.frf(
         model, [300.0], inputs=["gears.pinion:x"], outputs=["gears.wheel:y"], elements=1, speed="2900 rpm"

@@ -304,7 +304,7 @@ def test_a_bore_that_does_not_fit_its_seat_is_warned_of(designation, diameters, 
     text = TEXT.replace('{ length = "200 mm", outer_diameter = "45 mm" }', f"{left}, {right}")
     text = text.replace('at = "start"', 'at = "100 mm"') % f'designation = "{designation}"'
     said = [str(note) for note in rg.check(rg.loads(text)).warnings]
-    assert any("front.rolling.designation: a bore of 50 mm on a shaft of" in note for note in said) == warned
+    assert any("front.rolling.designation (a bore of 50 mm on a shaft of" in note for note in said) == warned
 
 
 def test_a_bore_beside_another_designation_is_refused():

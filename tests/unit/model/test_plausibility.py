@@ -234,7 +234,7 @@ def test_a_bare_number_as_a_speed_is_asked_about_and_a_text_is_not(ask, argument
     model = spur_pair()
     doubts = [text for text in ask(model, 9000.0).warnings if "rpm meant?" in text]
     assert len(doubts) == 1
-    assert doubts[0].startswith(f"{argument}: 8.594e+04 rpm of shaft 'one'")
+    assert doubts[0].startswith(f"{argument} (8.594e+04 rpm of shaft 'one'")
     assert not any("rpm meant?" in text for text in ask(model, 150.0).warnings)
 
 

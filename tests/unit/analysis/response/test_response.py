@@ -388,7 +388,7 @@ def test_a_receptance_is_that_of_mass_spring_and_dashpot_and_meets_statics() -> 
         ({"speeds": ["10 mm"]}, "speed"),
         ({"fmax": 1e-3}, "no order is as low"),
         ({"method": "magic"}, "modal"),
-        ({"damping_ratio": 1.5}, "damping ratio"),
+        ({"modal_damping": 1.5}, "damping ratio"),
         ({"shape_speed": -10.0}, "sense"),
         ({"elements": 0}, "at least 1"),
     ],

@@ -518,7 +518,9 @@ def test_friction_and_energy() -> None:
         assert found.energy.dissipated[-1] > 0.0
 
 
-@pytest.mark.parametrize("motions", [["torsion"], ["bending", "axial", "torsion"]])
+@pytest.mark.parametrize(
+    "motions", [["torsion"], pytest.param(["bending", "axial", "torsion"], marks=pytest.mark.long)]
+)
 def test_two_stages_carry_what_statics_says(motions: list[str]) -> None:
     """Planets of two carriers that turn at different speeds, in one train; in torsion alone they stay on their pins."""
     model = rg.load(MODELS / "wind_turbine.toml").with_("motions", motions)
