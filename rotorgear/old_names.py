@@ -1,6 +1,6 @@
-"""Former names of options, keys and values: still read for one version, with a warning that says the new one.
+"""Former names of options and values: still read for one version, with a warning that says the new one.
 
-The tables stand beside what they name: `model/parts/old_names.py` for keys of the model file, `cli/old_options.py` for options.
+The tables stand beside what they name: `model/parts/old_names.py` for values in the model file, `cli/old_options.py` for options.
 """
 
 from __future__ import annotations

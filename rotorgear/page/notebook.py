@@ -27,12 +27,12 @@ _LARGEST = 6_000_000
 _MOST = 20_000
 _EDGE = 1e-6
 _TURNTABLE = 500
-_WIDTH = 900  # as in the style
+_WIDTH = 900
 _STYLE = """
 body { margin: 0; font: 14px system-ui, sans-serif; background: #fff; color: #1b1f24; }
 p { margin: .3rem; }
 canvas { width: 100%; height: 440px; display: block; touch-action: none; }
-.box { position: relative; max-width: 900px; }
+.box { position: relative; }
 .box > svg, .box > img { width: 100%; height: auto; display: block; }
 .said { position: absolute; transform: translateY(-130%); background: #1b1f24; color: #fff; padding: .15rem .4rem;
   border-radius: 3px; white-space: pre; pointer-events: none; font-size: 12px; }
@@ -94,7 +94,9 @@ def _picture(result: Result) -> tuple[str, int]:
     width, height = figure.get_size_inches()
     points = json.dumps(_points(figure)).replace("<", "\\u003c")
     script = f"{text_of(_FOLDER / 'hover.js')}hover(document.querySelector('.box'), {points});"
-    return f'<div class="box">{picture}</div><script>{script}</script>', round(_WIDTH * height / width) + 10
+    return f'<div class="box" style="max-width:{_WIDTH}px">{picture}</div><script>{script}</script>', round(
+        _WIDTH * height / width
+    ) + 10
 
 
 def _curves(axes: Any) -> Iterator[tuple[str, np.ndarray]]:
@@ -113,7 +115,8 @@ def _points(figure: Any) -> list[tuple[float, float, str]]:
     """Points of all curves of a figure that is laid out: where they are, in shares of its width and height, and their words."""
     found = []
     for axes in figure.axes:
-        x_name, y_name = axes.get_xlabel() or "x", axes.get_ylabel() or "y"
+        x_name = axes.get_xlabel() or "x"
+        y_name = axes.get_ylabel() or "y"
         within = axes.get_position()
         for name, curve in _curves(axes):
             head = "" if name.startswith("_") else f"{name}\n"

@@ -24,13 +24,11 @@ from rotorgear.plots.figure import (
     values,
 )
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.response import MOMENTS, TURNING, LimitLine, ResponseResult, reference_of
+from rotorgear.results.response import LimitLine, ResponseResult, reference_of
 
 _MOST_LINES = len(COLOURS)
 _WIDTH = 5.6
 _HEIGHT = 2.9
-# Rows of the run-up that limits are about.
-_LIMITED = ("force along the flank normal", "force on the shaft", "acceleration", "load inside")
 _HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 
 
@@ -54,10 +52,10 @@ def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
     title = f"{result.model.title or 'Forced response'}: amplitudes over speed"
     figure = figure_for(fig, (2.0 * _WIDTH, _HEIGHT * max(len(rows), 1) + 0.4), title)
     axes = np.atleast_2d(figure.subplots(max(len(rows), 1), 2, sharex=True))
-    for (left, right), (quantity, names, size) in zip(axes, rows, strict=False):
+    for (left, right), (quantity, names, size, is_limited) in zip(axes, rows, strict=False):
         total = np.sqrt((size**2).sum(axis=0))  # (s, lines)
         quantity, _, squares = quantity.partition("; ")
-        known = {(line.at, line.order): line for line in result.limits} if quantity.startswith(_LIMITED) else {}
+        known = {(line.at, line.order): line for line in result.limits} if is_limited else {}
         targets = {name: known[name, ""] for name in names if (name, "") in known}
         _lines(left, result, names, total.T, f"{quantity}: root of the sum of squares of {squares}all orders", targets)
         strongest = int(np.argmax(total.max(axis=0)))
@@ -70,29 +68,34 @@ def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
     return axes
 
 
-def _quantities(result: ResponseResult) -> Iterator[tuple[str, list[str], np.ndarray]]:
-    """Yield what is drawn with its unit, names of the lines, amplitudes (o, s, lines)."""
+def _quantities(result: ResponseResult) -> Iterator[tuple[str, list[str], np.ndarray, bool]]:
+    """Yield what is drawn with its unit, names of the lines, amplitudes (o, s, lines), and whether limits are about it."""
     meshes = list(dict.fromkeys(result.contact_mesh))
     for field, unit in (("mesh_force", "N"), ("transmission_error", "um")) if meshes else ():
         sizes = np.abs(values(result, field, unit))
         of_meshes = [sizes[:, :, result.contacts_of(mesh)].max(axis=2) for mesh in meshes]
-        yield label(result, field, unit), meshes, np.stack(of_meshes, axis=2)
+        yield label(result, field, unit), meshes, np.stack(of_meshes, axis=2), field == "mesh_force"
     force = f"{label(result, 'bearing_force')}; x, y, z and "
-    yield force, list(result.bearings), np.linalg.norm(np.abs(result.bearing_force), axis=3)
-    turns = np.array([result.model.points[name].direction in TURNING for name in result.points], bool)
+    yield force, list(result.bearings), np.linalg.norm(np.abs(result.bearing_force), axis=3), True
+    turns = np.array([result.model.points[name].turns for name in result.points], bool)
     for chosen, unit in ((~turns, "m/s$^2$"), (turns, "rad/s$^2$")):
         names = [name for name, drawn in zip(result.points, chosen, strict=True) if drawn]
-        yield label(result, "acceleration", unit), names, np.abs(result.acceleration[:, :, chosen])
-    moments = np.array([result.model.points[name].quantity in MOMENTS for name in result.load_points], bool)
+        yield label(result, "acceleration", unit), names, np.abs(result.acceleration[:, :, chosen]), True
+    moments = np.array([result.model.points[name].load_unit == "N m" for name in result.load_points], bool)
     for chosen, unit in ((~moments, "N"), (moments, "N m")):
         names = [name for name, drawn in zip(result.load_points, chosen, strict=True) if drawn]
         if names:
-            yield label(result, "internal_load", unit), names, np.abs(result.internal_load[:, :, chosen])
+            yield label(result, "internal_load", unit), names, np.abs(result.internal_load[:, :, chosen]), True
     if result.casings:  # the power of orders adds up, as the squares of amplitudes do
-        yield "root of the equivalent radiated power, W$^{1/2}$", list(result.casings), np.sqrt(result.radiated_power)
+        yield (
+            "root of the equivalent radiated power, W$^{1/2}$",
+            list(result.casings),
+            np.sqrt(result.radiated_power),
+            False,
+        )
     if not meshes and not result.bearings:
         orbit = 1e6 * np.abs(result.displacement[:, :, :, :2]).max(axis=3)
-        yield "displacement, um", list(result.places), orbit
+        yield "displacement, um", list(result.places), orbit, False
 
 
 def _lines(
@@ -309,23 +312,20 @@ def _levels(
 
 def _limit_of(result: ResponseResult, at: str | None, order: str) -> LimitLine | None:
     """The limit of a quantity of `amplitudes_of`, of an order or, "", of all together; None without one."""
-    name = result.amplitudes_of(at)[0].partition(" (")[0].rpartition(" ")[2]
+    name = result.name_at(at)
     return next((line for line in result.limits if (line.at, line.order) == (name, order)), None)
 
 
 def _exceeded(result: ResponseResult, at: str | None) -> tuple[np.ndarray, np.ndarray]:
     """Whether a quantity exceeds its limit with all orders together (s,), and order by order (o, s)."""
-    size = result.amplitudes_of(at)[2]
-    whole = _limit_of(result, at, "")
-    over = np.zeros(size.shape[1], bool)
-    if whole is not None:
-        over = np.sqrt((size**2).sum(axis=0)) > whole.over(result.speed_rpm)
-    above = np.zeros(size.shape, bool)
-    for o, order in enumerate(result.orders):
+    found = []
+    for order in ("", *result.orders):
         line = _limit_of(result, at, order)
-        if line is not None:
-            above[o] = size[o] > line.over(result.speed_rpm)
-    return over, above
+        nowhere = np.zeros(len(result.speeds), bool)
+        found.append(
+            nowhere if line is None else result.amplitude_over_speed(line.at, order) > line.over(result.speed_rpm)
+        )
+    return found[0], np.array(found[1:])
 
 
 def _decibel(values: np.ndarray, reference: float) -> np.ndarray:

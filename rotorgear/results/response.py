@@ -53,7 +53,9 @@ class LimitLine(Record):
     unit: str = of("unit of the amplitudes")
     speed_rpm: np.ndarray = of("speeds of its corners", "rpm", "corner")
     amplitude: np.ndarray = of("limit", "", "corner", note=" at these speeds, half of peak to peak")
-    ratio: float = of("largest ratio of the amplitude to the limit", column="of limit", form=".3g")
+    ratio: float = of(
+        "largest ratio of the amplitude to the limit", note=" at the speeds asked for", column="of limit", form=".3g"
+    )
     worst_rpm: float = of("speed of that ratio", "rpm", column="at rpm", form=".1f")
     reached: float = of("amplitude there", note=" in that unit", column="reached", form=".4g")
     allowed: float = of("limit there", note=" in that unit", column="limit", form=".4g")
@@ -67,12 +69,17 @@ class LimitLine(Record):
 
     def over(self, speed_rpm: np.ndarray) -> np.ndarray:
         """The limit at some speeds (...), NaN outside of the line."""
-        return np.interp(np.abs(speed_rpm), self.speed_rpm, self.amplitude, left=np.nan, right=np.nan)
+        return straight_between(self.speed_rpm, self.amplitude, speed_rpm)
 
     @property
     def level_db(self) -> float:
         """By how many dB the amplitude is above the limit at worst; negative below it."""
         return float(20.0 * np.log10(max(self.ratio, 1e-30)))
+
+
+def straight_between(corners_rpm: np.ndarray, amplitude: np.ndarray, speed_rpm: np.ndarray) -> np.ndarray:
+    """The limit at some speeds (...) of either sense by its corners (c,), NaN outside of them."""
+    return np.interp(np.abs(speed_rpm), corners_rpm, amplitude, left=np.nan, right=np.nan)
 
 
 # rho c of air at 20 degrees and 1 atm, in kg/(m^2 s).
@@ -252,15 +259,24 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         kw_only=True,
     )
 
+    def name_at(self, at: str | None = None) -> str:
+        """Name of the mesh, bearing or point of an address; without one that of the most loaded mesh, else the first bearing."""
+        if at is None:
+            at = max(self.peaks(), key=lambda row: row[4])[0] if self.contact_mesh else next(iter(self.bearings), "")
+        return at.rpartition(".")[2]
+
+    def amplitude_over_speed(self, at: str, order: str = "") -> np.ndarray:
+        """What `amplitudes_of` tells of one order (s,), or, "", of all together: the root of their sum of squares."""
+        size = self.amplitudes_of(at)[2]
+        return size[self.orders.index(order)] if order else np.sqrt((size**2).sum(axis=0))
+
     def amplitudes_of(self, at: str | None = None) -> tuple[str, str, np.ndarray]:
         """What a mesh (its most loaded helix), a bearing (all three forces) or a point tells: words, unit, amplitudes (o, s).
 
         Raises:
             AnalysisError: no such mesh, bearing or point.
         """
-        if at is None:
-            at = max(self.peaks(), key=lambda row: row[4])[0] if self.contact_mesh else next(iter(self.bearings), "")
-        name = at.rpartition(".")[2]
+        name = self.name_at(at)
         if name in self.contact_mesh:
             force = np.abs(self.mesh_force[:, :, self.contacts_of(name)])
             return f"dynamic force of mesh {name}", "N", force.max(axis=2)
@@ -375,11 +391,8 @@ class ResponseResult(AboutEquilibrium, kind="response"):
         return table_of(self, "largest", *columns)
 
 
-# Directions of a point that are rotations, and loads that a point reads about an axis.
-TURNING = ("tilt_x", "tilt_y", "torsion")
-MOMENTS = ("torque", "bending")
 # Reference of a level by its unit: ISO 1683 for forces and accelerations; there is none for the others.
-REFERENCES = {"N": (1e-6, "1 uN"), "m/s^2": (1e-6, "1 um/s^2")}
+_REFERENCES = {"N": (1e-6, "1 uN"), "m/s^2": (1e-6, "1 um/s^2")}
 
 
 def unit_at(model: Model, name: str) -> str:
@@ -388,13 +401,13 @@ def unit_at(model: Model, name: str) -> str:
     if point is None or name in model.meshes or name in model.bearings:
         return "N"
     if point.quantity is not None:
-        return "N m" if point.quantity in MOMENTS else "N"
-    return "rad/s^2" if point.direction in TURNING else "m/s^2"
+        return point.load_unit
+    return "rad/s^2" if point.turns else "m/s^2"
 
 
 def reference_of(unit: str) -> tuple[float, str]:
     """Reference of a level in dB, and its words."""
-    return REFERENCES.get(unit, (1.0, f"1 {unit}"))
+    return _REFERENCES.get(unit, (1.0, f"1 {unit}"))
 
 
 def _rows_of_orders(orders: tuple[str, ...]) -> list[tuple[int, int]]:

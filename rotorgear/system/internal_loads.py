@@ -27,7 +27,6 @@ from rotorgear.system.nodes import Nodes
 from rotorgear.system.system import System
 
 # Of the load that a point reads: its unit.
-_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ class Cut:
 def read_loads(model: Tables) -> dict[str, str]:
     """The points that read a load, in the order of the model, with its unit."""
     return {
-        name: _UNITS[point.load]
+        name: point.load_unit
         for name, point in model.points.items()
         if point.quantity is not None and point.load is not None
     }

@@ -103,7 +103,9 @@ def conditions(layout: Layout, nodes: Nodes, dofs: DofMap, rigid: Sequence[MeshF
     moving = [k for motion in layout.model.motions for k in MOTION_DOFS[motion]]
     for address, part in layout.model.parts_of("bearings", "couplings"):
         directions = [k for k in moving if k in part.rigid_directions]
-        columns, relative = relative_motion(layout, nodes, address) if directions else (np.zeros(0), np.zeros(0))
+        if not directions:
+            continue
+        columns, relative = relative_motion(layout, nodes, address)
         for k in directions:
             # The dofs of the shaft stand last in a bearing.
             add(address, k, columns, relative[k], int(columns[k - 6]) if address.startswith("bearings.") else -1)

@@ -16,10 +16,11 @@ from typing import NamedTuple
 import numpy as np
 
 from rotorgear.errors import AnalysisError, ModelError, Problem
+from rotorgear.files.numbers import number_of
 from rotorgear.files.rows import csv_rows
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S, QuantityError, did_you_mean, parse_quantity
-from rotorgear.results.response import LimitLine, ResponseResult, reference_of, unit_at
+from rotorgear.results.response import LimitLine, ResponseResult, reference_of, straight_between, unit_at
 
 _EXPECTED = "expected a table of limits (CSV), such as at,speed_rpm,amplitude_N and below it stage,1000,250"
 _KINDS = ("amplitude", "rms", "level")
@@ -67,17 +68,18 @@ def read_limits(path: str | Path, model: Model) -> Lines:
     found: Lines = {}
     for number, cells in body:
         cells = [*cells, *[""] * (len(header) - len(cells))]
-        at, order = cells[columns["at"]], cells[columns["order"]] if "order" in columns else ""
+        at = cells[columns["at"]]
+        order = cells[columns["order"]] if "order" in columns else ""
         where = f"{file.name}:{number}"
-        if at.rpartition(".")[2] not in there:
+        name = at.rpartition(".")[2]
+        if name not in there:
             wanted = f"a mesh, bearing or point of the model: {', '.join(there) or 'none'}"
             problems.append(Problem(f"{where}:at", repr(at), wanted, did_you_mean(at, there)))
             continue
-        name = at.rpartition(".")[2]
         try:
-            speed = parse_quantity(f"{cells[columns['speed_rpm']]} 1/min", "speed") * RPM_PER_RAD_S
+            speed = number_of(cells[columns["speed_rpm"]])
             limit = _amplitude(cells[values[0]], kind.lower(), unit, unit_at(model, name))
-        except QuantityError as error:
+        except ValueError as error:
             problems.append(Problem(where, ",".join(cells), str(error)))
             continue
         corners = found.setdefault((name, order), [])
@@ -117,7 +119,8 @@ def check_limits(lines: Lines, orders: Collection[str], speeds: np.ndarray) -> N
     """AnalysisError where a line limits an order that the run-up has not, or where none of its speeds (rad/s) lies in it."""
     rpm = np.abs(speeds) * RPM_PER_RAD_S
     for (name, order), corners in lines.items():
-        first, last = corners[0].speed_rpm, corners[-1].speed_rpm
+        first = corners[0].speed_rpm
+        last = corners[-1].speed_rpm
         if not np.any((rpm >= first) & (rpm <= last)):
             reach = f"from {first:g} to {last:g} rpm; the run-up has no speed there"
             raise AnalysisError(f"limits: that of {name} is {reach}: ask for speeds in it (--from, --to)")
@@ -133,14 +136,12 @@ def against(result: ResponseResult, lines: Lines) -> tuple[LimitLine, ...]:
     steps = np.gradient(rpm[rising]) if len(rpm) > 1 else np.zeros(1)
     found = []
     for (name, order), corners in lines.items():
-        _, unit, size = result.amplitudes_of(name)
-        value = size[result.orders.index(order)] if order else np.sqrt((size**2).sum(axis=0))
+        value = result.amplitude_over_speed(name, order)
         speeds, limits = (np.array(numbers) for numbers in zip(*corners, strict=True))
-        line = LimitLine(name, order, unit, speeds, limits, 0.0, 0.0, 0.0, 0.0, 0.0)
-        allowed = line.over(rpm)
+        allowed = straight_between(speeds, limits, rpm)
         ratio = np.where(np.isnan(allowed), 0.0, value / allowed)
         worst = int(np.argmax(ratio))
         above = float(steps[ratio[rising] > 1.0].sum())
         numbers = (float(ratio[worst]), float(rpm[worst]), float(value[worst]), float(allowed[worst]), above)
-        found.append(LimitLine(name, order, unit, speeds, limits, *numbers))
+        found.append(LimitLine(name, order, unit_at(result.model, name), speeds, limits, *numbers))
     return tuple(found)

@@ -30,7 +30,6 @@ _SAME_FREQUENCY = 1e-9
 # Harmonics of r that move the contacts: the number of the strongest, down to this share of the largest.
 _STRONG = 12
 _WEAK = 0.02
-_MOTIONS_THAT_TURN = ("tilt_x", "tilt_y", "torsion")
 # Quantities with an amplitude along each axis.
 _ALONG_AXES = ("bearing force", "seat force", "ground force", "displacement")
 
@@ -87,7 +86,7 @@ def _quantities(plant: Plant, readings: Readings) -> Iterable[tuple[str, str, st
     for k, name in enumerate(model.bearings):
         yield "bearing force", name, "N", readings.bearing_force[:, :, k]
     for k, name in enumerate(plant.points):
-        unit = "rad/s^2" if model.points[name].direction in _MOTIONS_THAT_TURN else "m/s^2"
+        unit = "rad/s^2" if model.points[name].turns else "m/s^2"
         yield "acceleration", name, unit, readings.acceleration[:, :, k]
     for k, (name, unit) in enumerate(plant.load_units.items()):
         yield "internal load", name, unit, readings.internal_load[:, :, k]

@@ -217,8 +217,9 @@ def _on_model(channel: Channel, text: str, model: Model, time: NDArray[np.float6
         return replace(found, history=act(where, along, found.values - held, drives=k == 5))
     point = model.points.get(place)
     if point is not None and point.quantity is not None:
-        si = "N m" if point.quantity in ("torque", "bending") else "N"
-        return seen(OUTPUT, point.quantity, si, in_si(si)[1], f"points.{place} {point.quantity}")
+        return seen(
+            OUTPUT, point.quantity, point.load_unit, in_si(point.load_unit)[1], f"points.{place} {point.quantity}"
+        )
     _, there, dof = located(model, place)
     turns = dof > 2
     motions = [row[2 if turns else 1] for row in _MOTIONS]

@@ -209,12 +209,7 @@ def _part(model: Model, place: tuple[str, ...]) -> Any:
 def _is_line(low: Built, middle: Built, high: Built) -> bool:
     """Whether three systems are the same but for loads and numbers of laws, of which the middle one has the mean of both ends."""
     for one in (middle, high):
-        if (one.orders, one.contact, one.left_out, one.is_large) != (
-            low.orders,
-            low.contact,
-            low.left_out,
-            low.is_large,
-        ):
+        if any(getattr(one, name) != getattr(low, name) for name in ("orders", "contact", "left_out", "is_large")):
             return False
         if not (_same(one, low) and np.array_equal(one.local.watched_vectors, low.local.watched_vectors)):
             return False

@@ -95,7 +95,8 @@ def load_scatter(own: np.ndarray, windows: np.ndarray, draws: np.ndarray) -> np.
         mean = windows[which, :, MEAN].mean(axis=1)
         square = (windows[which, :, RMS] ** 2 + windows[which, :, MEAN] ** 2).mean(axis=1)
         rms = np.sqrt(np.maximum(square - mean**2, 0.0))
-        largest, smallest = windows[ends, :, LARGEST].max(axis=1), windows[ends, :, SMALLEST].min(axis=1)
+        largest = windows[ends, :, LARGEST].max(axis=1)
+        smallest = windows[ends, :, SMALLEST].min(axis=1)
         return np.stack([mean, rms, largest, smallest], axis=-1)
 
     every = np.arange(len(windows))[None]

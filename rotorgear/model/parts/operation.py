@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from rotorgear.model.parts import fields as si
-from rotorgear.model.parts.fields import Part, Station, Whole, listed, refuse
+from rotorgear.model.parts.fields import DOF_NAMES, Part, Station, Whole, listed, refuse
 
 
 class Operation(Part):
@@ -80,6 +80,16 @@ class Point(Part):
     def load(self) -> int | None:
         """Number of the internal load that it reads in Fx Fy Fz Mx My Mz; None of a motion, or of a direction without one."""
         return None if self.quantity is None else _LOADS[self.quantity].get(self.direction)
+
+    @property
+    def load_unit(self) -> str:
+        """SI unit of that load."""
+        return "N m" if self.quantity in ("torque", "bending") else "N"
+
+    @property
+    def turns(self) -> bool:
+        """Whether its direction is that of a rotation."""
+        return self.direction in DOF_NAMES[3:]
 
     @property
     def on_coupling(self) -> bool:

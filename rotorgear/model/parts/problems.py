@@ -18,7 +18,8 @@ from rotorgear.quantity import did_you_mean, nearest
 
 Loc = tuple[int | str, ...]
 # Pydantic's marks in a location of which kind of value it took: no keys of the file.
-LIST, TABLE = "[list]", "[table]"
+LIST = "[list]"
+TABLE = "[table]"
 _LONGEST = 60
 _TYPES = {
     "model_type": "a table",
