@@ -14,6 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from rotorgear.casings.elements import element
 from rotorgear.casings.file_mesh import FileMesh, NamedSet
 from rotorgear.errors import AnalysisError
 from rotorgear.quantity import millimetres
@@ -77,6 +78,26 @@ class BoxShape:
         return np.array(self.low) - self.wall, np.array(self.high) + self.wall
 
     @property
+    def feet_axis(self) -> int:
+        """Number of the axis along which the feet stand out."""
+        return "xyz".index(self.feet_side[1])
+
+    @property
+    def feet_sense(self) -> float:
+        """1 where they stand out along that axis, -1 against it."""
+        return 1.0 if self.feet_side[0] == "+" else -1.0
+
+    @property
+    def footed(self) -> float:
+        """Coordinate along that axis of the face that they stand on."""
+        return float(self.outside[self.feet_sense > 0.0][self.feet_axis])
+
+    @property
+    def sole(self) -> float:
+        """Coordinate along that axis of their soles."""
+        return self.footed + self.feet_sense * self.feet[self.feet_axis]
+
+    @property
     def plates(self) -> list[tuple[float, float]]:
         """First and last z of each wall across z."""
         half = 0.5 * self.wall
@@ -110,7 +131,8 @@ class _Block:
 
     def tube(self, seat: BoxSeat, plates: list[tuple[float, float]]) -> tuple[float, float]:
         """First and last z of the block that holds a seat: from its wall, the nearest, to its far end."""
-        z, half = seat.at[2], 0.5 * seat.width
+        z = seat.at[2]
+        half = 0.5 * seat.width
         wall = min(plates, key=lambda plate: abs(0.5 * (plate[0] + plate[1]) - z))
         return min(wall[0], z - half), max(wall[1], z + half)
 
@@ -221,10 +243,7 @@ def _edges(shape: BoxShape, axis: int) -> list[float]:
             edges += [low - height, high + height]
     if shape.feet:
         extent = shape.feet[axis]
-        if shape.feet_side[1] == "xyz"[axis]:
-            edges.append(low - extent if shape.feet_side[0] == "-" else high + extent)
-        else:
-            edges += [low + extent, high - extent]
+        edges += [shape.sole] if axis == shape.feet_axis else [low + extent, high - extent]
     return edges
 
 
@@ -260,64 +279,93 @@ def _plane(shape: BoxShape, blocks: list[_Block], address: str) -> _Plane:
         inside[i0:i1, j0:j1] = True
     i, j = np.nonzero(~inside)
     corner = i * across + j
-    cells = [np.column_stack([corner, corner + across, corner + across + 1, corner + 1])]
-    numbers = [np.full(len(corner), -1)]
-    inner = [np.zeros(len(corner))]
-    every = [points]
-    total = len(points)
-    circles = {}
+    made = _Cells([points], [], [], [], len(points))
+    made.add(np.column_stack([corner, corner + across, corner + across + 1, corner + 1]), -1, 0.0)
+    circles: dict[tuple[int, int], np.ndarray] = {}
     for number, (block, (i0, i1, j0, j1)) in enumerate(zip(blocks, ranges, strict=True)):
         own = np.arange(i0, i1 + 1)[:, None] * across + np.arange(j0, j1 + 1)
         grid = np.array([(xs[a], ys[b]) for a in range(i0, i1 + 1) for b in range(j0, j1 + 1)])
-        local = np.arange(own.size).reshape(own.shape)
-        border = np.concatenate([local[:-1, 0], local[-1, :-1], local[:0:-1, -1], local[0, :0:-1]])
-        loop = own.ravel()[border]
+        loop = own.ravel()[_around(own.shape)]
         block.loop = np.array([cut.get(node, node) for node in loop.tolist()])
-        # The core: the grid of the block, shrunk into the smallest bore; it is kept where a wall is closed.
-        core = block.centre + (grid - block.centre) * (0.5 * block.radii[0] / block.half)
-        every.append(core)
-        core_nodes = total + local
-        total += len(core)
-        before, radius = core_nodes.ravel()[border], 0.0
-        square = np.column_stack(
-            [
-                part.ravel()
-                for part in (core_nodes[:-1, :-1], core_nodes[1:, :-1], core_nodes[1:, 1:], core_nodes[:-1, 1:])
-            ]
-        )
-        cells.append(square)
-        inner.append(np.zeros(len(square)))
-        angle = np.arctan2(*(grid[border] - block.centre).T[::-1])
-        step = np.mod(np.roll(angle, -1) - angle, 2.0 * math.pi)
-        scale = math.sqrt(2.0 * math.pi / np.sin(step).sum())  # the polygon has the area of the circle
-        direction = np.column_stack([np.cos(angle), np.sin(angle)])
-        for at, bore in enumerate(block.radii):
-            every.append(block.centre + scale * bore * direction)
-            nodes = total + np.arange(len(angle))
-            total += len(angle)
-            circles[number, at] = nodes
-            cells.append(_ring(before, nodes))
-            inner.append(np.full(len(angle), radius))
-            before, radius = nodes, bore
-        layers = max(1, math.ceil(shape.boss / shape.element - 1e-6))
-        outer = points[block.loop]
-        start = block.centre + scale * radius * direction
-        for layer in range(1, layers + 1):
-            if layer == layers:
-                nodes = block.loop
-            else:
-                every.append(start + (outer - start) * layer / layers)
-                nodes = total + np.arange(len(angle))
-                total += len(angle)
-            cells.append(_ring(before, nodes))
-            inner.append(np.full(len(angle), radius))
-            before = nodes
-        numbers.append(np.full(len(np.vstack(cells)) - sum(map(len, numbers)), number))
-    whole = np.vstack(cells)
-    positions = np.vstack(every)
-    return _Plane(
-        positions, whole, positions[whole].mean(axis=1), np.concatenate(numbers), np.concatenate(inner), circles
-    )
+        rings = _bored(made, number, block, grid, own.shape, points[block.loop], shape)
+        circles |= {(number, at): nodes for at, nodes in enumerate(rings)}
+    positions = np.vstack(made.points)
+    whole = np.vstack(made.cells)
+    middle = positions[whole].mean(axis=1)
+    return _Plane(positions, whole, middle, np.concatenate(made.block), np.concatenate(made.inner), circles)
+
+
+@dataclass
+class _Cells:
+    """Points and quadrilaterals of a plane grid while it is made; attributes as of `_Plane`, `count` points so far."""
+
+    points: list[np.ndarray]
+    cells: list[np.ndarray]
+    block: list[np.ndarray]
+    inner: list[np.ndarray]
+    count: int
+
+    def nodes_at(self, points: np.ndarray) -> np.ndarray:
+        """Numbers (n,) of new nodes at some points (n, 2)."""
+        self.points.append(points)
+        self.count += len(points)
+        return np.arange(self.count - len(points), self.count)
+
+    def add(self, cells: np.ndarray, block: int, inner: float) -> None:
+        """Add quadrilaterals (c, 4) of a block, outside of the bore with that radius."""
+        self.cells.append(cells)
+        self.block.append(np.full(len(cells), block))
+        self.inner.append(np.full(len(cells), inner))
+
+
+def _around(shape: tuple[int, ...]) -> np.ndarray:
+    """Numbers of the nodes on the border of a grid of so many by so many, row by row, counter-clockwise."""
+    local = np.arange(math.prod(shape)).reshape(shape)
+    return np.concatenate([local[:-1, 0], local[-1, :-1], local[:0:-1, -1], local[0, :0:-1]])
+
+
+def _bored(
+    made: _Cells,
+    number: int,
+    block: _Block,
+    grid: np.ndarray,
+    size: tuple[int, ...],
+    outer: np.ndarray,
+    shape: BoxShape,
+) -> list[np.ndarray]:
+    """Fill a block: a core, the rings of its bores, and rings out to its border.
+
+    Args:
+        made: gets its cells. number: of the block. grid: places (n, 2) of the grid that it takes up, of a size; outer: those of
+            its border (b, 2), as far as it reaches.
+
+    Returns:
+        The nodes (b,) of each bore.
+    """
+    border = _around(size)
+    # The core: the grid of the block, shrunk into the smallest bore; it is kept where a wall is closed.
+    core = made.nodes_at(block.centre + (grid - block.centre) * (0.5 * block.radii[0] / block.half)).reshape(size)
+    parts = (core[:-1, :-1], core[1:, :-1], core[1:, 1:], core[:-1, 1:])
+    made.add(np.column_stack([part.ravel() for part in parts]), number, 0.0)
+    angle = np.arctan2(*(grid[border] - block.centre).T[::-1])
+    step = np.mod(np.roll(angle, -1) - angle, 2.0 * math.pi)
+    scale = math.sqrt(2.0 * math.pi / np.sin(step).sum())  # the polygon has the area of the circle
+    direction = scale * np.column_stack([np.cos(angle), np.sin(angle)])
+    last = core.ravel()[border]
+    radius = 0.0
+    circles = []
+    for bore in block.radii:
+        circles.append(made.nodes_at(block.centre + bore * direction))
+        made.add(_ring(last, circles[-1]), number, radius)
+        last = circles[-1]
+        radius = bore
+    layers = max(1, math.ceil(shape.boss / shape.element - 1e-6))
+    start = block.centre + radius * direction
+    for layer in range(1, layers + 1):
+        beyond = block.loop if layer == layers else made.nodes_at(start + (outer - start) * layer / layers)
+        made.add(_ring(last, beyond), number, radius)
+        last = beyond
+    return circles
 
 
 def _ring(inner: np.ndarray, outer: np.ndarray) -> np.ndarray:
@@ -347,7 +395,8 @@ def _cut(
             f"bores of {' and '.join(millimetres(2.0 * b.radii[-1]) for b in blocks)} in blocks. Make boss thinner."
         )
     (p, q), (u, v) = corners[0][0], corners[1][0]
-    begin, end = points[p * across + v], points[u * across + q]
+    begin = points[p * across + v]
+    end = points[u * across + q]
     normal = np.array([-(end - begin)[1], (end - begin)[0]]) / np.linalg.norm(end - begin)
     for name, block in zip(names, blocks, strict=True):
         distance = abs(normal @ (block.centre - begin))
@@ -364,7 +413,8 @@ def _cut(
     one = [(p, j) for j in steps(v, q)] + [(i, q) for i in steps(p, u)]
     other = [(i, v) for i in steps(p, u)] + [(u, j) for j in steps(v, q)]
     for number, ((i, j), (k, m)) in enumerate(zip(one, other, strict=True)):
-        node, twin = i * across + j, k * across + m
+        node = i * across + j
+        twin = k * across + m
         if number and ({node, twin} & {*cut, *cut.values()}):
             raise AnalysisError(f"{names[1]}: the blocks of three bores overlap at one place. Make boss thinner.")
         points[node] = begin + (end - begin) * number / len(one)
@@ -415,34 +465,31 @@ def _solid(shape: BoxShape, blocks: list[_Block], plane: _Plane, z: float) -> np
         for place in places:
             solid |= free & (np.abs(at[across] - place) < 0.5 * thickness) & near[0] & near[1] & (outer[0] | outer[1])
     if shape.feet:
-        under = "xyz".index(shape.feet_side[1])
-        beyond = low[under] - at[under] if shape.feet_side[0] == "-" else at[under] - high[under]
-        solid |= free & (beyond > 0.0) & (beyond < shape.feet[under]) & _over_feet(shape, np.column_stack(at))
+        beyond = shape.feet_sense * (at[shape.feet_axis] - shape.footed)
+        solid |= free & (beyond > 0.0) & (beyond < shape.feet[shape.feet_axis]) & _over_feet(shape, np.column_stack(at))
     return solid
 
 
 def _over_feet(shape: BoxShape, points: np.ndarray) -> np.ndarray:
     """Which of some points (n, 3) are above or below one of the feet, (n,)."""
     low, high = shape.outside
-    across = [axis for axis in range(3) if "xyz"[axis] != shape.feet_side[1]]
-    at, extent = points[:, across], np.array(shape.feet)[across]
+    across = [axis for axis in range(3) if axis != shape.feet_axis]
+    at = points[:, across]
+    extent = np.array(shape.feet)[across]
     near = (at < low[across] + extent) | (at > high[across] - extent)
     return np.asarray((near & (at > low[across]) & (at < high[across])).all(axis=1))
 
 
 def _outer_sets(shape: BoxShape, bricks: np.ndarray, points: np.ndarray) -> dict[str, NamedSet]:
     """Faces of bricks outside of blocks on the outside of the walls, by their side, and the soles of the feet."""
-    corners = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
-    faces = bricks[:, corners].reshape(-1, 4)
+    faces = bricks[:, np.array(element("hexahedron").faces)].reshape(-1, 4)
     _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
     faces = faces[first[counts == 1]]
-    planes = {side: shape.outside[side[0] == "+"]["xyz".index(side[1])] for side in _SIDES}
+    planes = {side: ("xyz".index(side[1]), shape.outside[side[0] == "+"]["xyz".index(side[1])]) for side in _SIDES}
     if shape.feet:
-        axis = "xyz".index(shape.feet_side[1])
-        planes["feet"] = planes[shape.feet_side] + (1.0 if shape.feet_side[0] == "+" else -1.0) * shape.feet[axis]
+        planes["feet"] = shape.feet_axis, shape.sole
     sets = {}  # without the blocks, so that a face can be held whose seats are free to move
-    for name, place in planes.items():
-        axis = "xyz".index((shape.feet_side if name == "feet" else name)[1])
+    for name, (axis, place) in planes.items():
         there = (np.abs(points[faces][:, :, axis] - place) < _SAME).all(axis=1)
         middle = points[faces].mean(axis=1)
         if name == "feet":  # ribs may reach down as far

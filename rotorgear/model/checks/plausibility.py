@@ -36,6 +36,8 @@ _SEAT = 0.02
 # A file with this many spacings or more is sampled; one wider than this many of the usual ones means that rows are missing.
 _MANY = 20
 _GAP = 10.0
+# Size of an element over the thickness of the wall that it is in, up to which the stated error of a mesh is that of a plate.
+_PLATE = 8.0
 # Two turns: more is no angle of a drawing, nor a phase that one would write.
 _ANGLE = 4.0 * math.pi
 
@@ -50,6 +52,7 @@ def implausible(layout: Layout) -> Iterator[Note]:
         *(_bearing(layout, f"bearings.{name}", bearing) for name, bearing in layout.model.bearings.items()),
         _couplings(layout),
         _bodies(layout),
+        _boxes(layout),
         _operation(layout),
     )
     return _facts(judged)
@@ -268,6 +271,16 @@ def _bodies(layout: Layout) -> Iterator[Judged]:
             off = 1e3 * size / mass
             got = f"{size:.4g} kg m, which puts its rotor off by {off:.3g} mm"
             yield f"unbalances.{name}.magnitude", off, (0.0, 1.0), got, "up to {1:g} mm", "g mm meant?"
+
+
+def _boxes(layout: Layout) -> Iterator[Judged]:
+    """Elements of boxes beside their walls."""
+    for name, casing in layout.model.casings.items():
+        if casing.box is not None:
+            size = casing.box.largest_element
+            got = f"elements of up to {millimetres(size)} in walls of {millimetres(casing.box.wall)}"
+            slip = "the error of such a mesh is larger than is stated; give a smaller element"
+            yield f"casings.{name}.box.element", size / casing.box.wall, (0.0, _PLATE), got, "up to {1:g} walls", slip
 
 
 def _operation(layout: Layout) -> Iterator[Judged]:

@@ -102,7 +102,6 @@ def box_shape(model: Tables, name: str) -> BoxShape:
     box = model.casings[name].box
     assert box is not None, "asked for boxes only"
     low, high = (_three(edge(box.corners, axis=0)) for edge in (np.min, np.max))
-    longest = max(b - a for a, b in zip(low, high, strict=True)) + 2.0 * box.wall
     seats = []
     for part_name, part in parts_in(model, name).items():
         diameter, width = bore_sizes(box, part_name, part) or (0.0, 0.0)
@@ -125,7 +124,7 @@ def box_shape(model: Tables, name: str) -> BoxShape:
         rib=(box.ribs.thickness, box.ribs.height) if box.ribs else (0.0, 0.0),
         feet=box.feet.size if box.feet else (),
         feet_side=box.feet.side if box.feet else "-y",
-        element=box.element or max(0.1 * longest, 4.0 * box.wall),
+        element=box.largest_element,
     )
 
 

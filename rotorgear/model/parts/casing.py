@@ -183,6 +183,12 @@ class Box(Part):
         description="largest size of an element; default: a tenth of the longest edge, four times the wall at least",
     )
 
+    @property
+    def largest_element(self) -> float:
+        """Largest size of an element in m: given, or the default."""
+        longest = max(abs(b - a) for a, b in zip(*self.corners, strict=True)) + 2.0 * self.wall
+        return self.element or max(0.1 * longest, 4.0 * self.wall)
+
 
 class Casing(Part):
     """An elastic body from a finite-element mesh, reduced to the motions of its bearing seats and a few modes of its own."""

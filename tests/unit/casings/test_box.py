@@ -267,3 +267,11 @@ def test_blocks_that_cannot_stand_beside_each_other_are_refused() -> None:
     wide = seat("wide", 0.1, 0.1, 0.004, 0.04, 0.006)
     with pytest.raises(rg.AnalysisError, match=r"bores\.slim: .*in the bore of another on its axis"):
         body_of(replace(CUBE, seats=(wide, seat("slim", 0.1, 0.1, 0.005, 0.03, 0.01))))
+
+
+def test_walls_much_thinner_than_their_elements_are_told() -> None:
+    model = rg.load(ROOT / "models" / "two_stage_casing.toml")
+    wall = model.casings["housing"].box.wall
+    for times, told in ((7.9, False), (8.1, True)):
+        said = rg.check(model.with_("casings.housing.box.element", times * wall)).warnings
+        assert any("box.element" in note and "larger than is stated" in note for note in said) == told
